@@ -3,7 +3,9 @@
 //! `cargo xtask read-drawings` reads them. Others, with another salt, are among those that `cargo xtask train-kinds` learns
 //! from.
 
+pub(crate) mod hands;
 pub(crate) mod kinds;
+mod ways;
 
 use std::f64::consts::TAU;
 
@@ -24,6 +26,8 @@ pub(crate) struct Shown {
     pub(crate) lines: Vec<Vec<DVec2>>,
     /// The plants in it, from left to right.
     pub(crate) plants: Vec<Kind>,
+    /// Lines beyond so many are of no plant.
+    pub(crate) own: usize,
 }
 
 type Lines = Vec<Vec<DVec2>>;
@@ -41,12 +45,18 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
         all.push(row("lollipop trees side by side", &mut stream(3, k), Kind::Tree, lollipop));
         all.push(row("mixed plants in a row", &mut stream(4, k), Kind::None, |_| (Vec::new(), Kind::None)));
         all.push(scene(&mut stream(5, k)));
+        all.push(beside(&mut stream(6, k)));
     }
     for (number, (set, trunk, first)) in TREE_WAYS.into_iter().enumerate() {
         for k in 0..TREES {
             let r = &mut stream(10 + number as u64, k);
             let crown = CROWNS[usize::try_from(k).unwrap_or(0) % CROWNS.len()];
-            all.push(Shown { set, lines: tree(r, trunk, crown, first), plants: vec![Kind::Tree] });
+            all.push(Shown {
+                set,
+                lines: tree(r, trunk, crown, first),
+                plants: vec![Kind::Tree],
+                own: usize::MAX,
+            });
         }
     }
     all
@@ -320,31 +330,7 @@ fn scribble(r: &mut Stream, centre: DVec2, size: DVec2) -> Vec<DVec2> {
     points
 }
 
-/// A drawing as another hand might have drawn it: a little turned, stretched and slanted, now and then without one of
-/// its strokes, in another order; `copy` tells the variations apart.
-pub(crate) fn varied(drawing: &ink::Drawing, copy: u64) -> ink::Drawing {
-    let r = &mut Seed::new(copy).child(hash(&drawing.name)).stream(Draw::Template);
-    let (s, c) = ops::sin_cos(r.range(-8.0, 8.0) * TAU / 360.0);
-    let stretch = r.range(0.85, 1.18);
-    let slant = r.range(-0.08, 0.08);
-    let mut strokes = drawing.strokes.clone();
-    if strokes.len() > 4 && r.chance(0.4) {
-        strokes.remove(r.below(drawing.strokes.len()));
-    }
-    for k in (1..strokes.len()).rev() {
-        strokes.swap(k, r.below(k + 1));
-    }
-    for p in strokes.iter_mut().flat_map(|s| &mut s.samples) {
-        let q = DVec2::new(p.at.x * stretch + p.at.y * slant, p.at.y);
-        p.at = DVec2::new(c * q.x - s * q.y, s * q.x + c * q.y);
-    }
-    ink::Drawing { name: drawing.name.clone(), strokes, ..ink::Drawing::default() }
-}
-
-/// A number for a name.
-fn hash(name: &str) -> u64 {
-    name.bytes().fold(7, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)))
-}
+pub(crate) use hands::varied;
 
 fn moved(lines: Lines, scale: f64, to: DVec2) -> Lines {
     lines.into_iter().map(|l| l.into_iter().map(|p| p * scale + to).collect()).collect()
@@ -391,7 +377,7 @@ fn row(set: &'static str, r: &mut Stream, kind: Kind, make: Making) -> Shown {
     let made: Vec<(Lines, Kind)> =
         (0..n).map(|_| if kind == Kind::None { any[r.below(4)](r) } else { make(r) }).collect();
     let (drawings, plants) = made.into_iter().unzip();
-    Shown { set, lines: side_by_side(r, drawings), plants }
+    Shown { set, lines: side_by_side(r, drawings), plants, own: usize::MAX }
 }
 
 /// A tree among bushes and grass.
@@ -412,5 +398,39 @@ fn scene(r: &mut Stream) -> Shown {
         drawings.push(lines);
         plants.push(kind);
     }
-    Shown { set: "a tree among bushes and grass", lines: side_by_side(r, drawings), plants }
+    Shown { set: "a tree among bushes and grass", lines: side_by_side(r, drawings), plants, own: usize::MAX }
+}
+
+/// A plant with the sun, a cloud, birds, a butterfly or a word beside it.
+fn beside(r: &mut Stream) -> Shown {
+    let any: [Making; 4] = [flower, leafy, lollipop, bush];
+    let (mut lines, kind) = any[r.below(4)](r);
+    let own = lines.len();
+    let (lo, hi) = extent(&lines);
+    let tall = (hi.y - lo.y).max(0.6 * (hi.x - lo.x));
+    let side = if r.chance(0.5) { 1.0 } else { -1.0 };
+    for k in 0..1 + r.below(3) {
+        let side = if k == 1 { -side } else { side };
+        let (thing, size, high) = match r.below(5) {
+            0 => (kinds::sun(r), r.range(0.15, 0.3), r.range(0.75, 1.1)),
+            1 => (
+                vec![ring(r, DVec2::ZERO, DVec2::new(0.5, 0.22), 7, 0.2)],
+                r.range(0.2, 0.35),
+                r.range(0.8, 1.1),
+            ),
+            2 => (ways::birds(r), r.range(0.1, 0.25), r.range(0.7, 1.1)),
+            3 => (ways::butterfly(r), r.range(0.1, 0.22), r.range(0.5, 0.9)),
+            _ => (ways::written(r), r.range(0.25, 0.45), r.range(-0.2, -0.1)),
+        };
+        let (a, b) = extent(&thing);
+        let scale = size * tall / (b - a).max_element().max(1e-9);
+        let half = 0.5 * (b - a) * scale;
+        let word = high < 0.0;
+        let out = 0.5 * (hi.x - lo.x) + half.x + r.range(0.12, 0.4) * tall;
+        let x = if word { r.range(-0.3, 0.3) * tall } else { side * out };
+        let to = DVec2::new(0.5 * (lo.x + hi.x) + x, lo.y + (high + 0.12 * k as f64) * tall);
+        let to = if word { to - DVec2::new(0.0, half.y) } else { to };
+        lines.extend(moved(thing, scale, to - 0.5 * (a + b) * scale));
+    }
+    Shown { set: "a plant and what is beside it", lines, plants: vec![kind], own }
 }

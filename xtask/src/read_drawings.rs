@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use base::{Draw, Report, Run, Seed};
 use glam::DVec2;
-use ink::Drawing;
+use ink::{Drawing, Source};
 use reading::{Kind, OrganWord, Reading};
 use serde_json::{Value, json};
 
@@ -101,6 +101,8 @@ struct Case {
     plants: Option<usize>,
     /// Of a made drawing: the kinds of its plants, from left to right.
     kinds: Vec<Kind>,
+    /// Strokes beyond so many are of no plant.
+    own: usize,
 }
 
 /// How one drawing was read.
@@ -242,6 +244,7 @@ fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
                 acceptable: acceptable.to_vec(),
                 plants: (!MANY.contains(&&*set)).then_some(1),
                 kinds: Vec::new(),
+                own: usize::MAX,
             }));
         }
     }
@@ -288,8 +291,11 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
         kinds: c.right.into_iter().take(1).collect(),
         drawing: c.drawing,
     });
-    let rows =
-        made(part).into_iter().map(|c| Labelled { drawing: c.drawing, kinds: c.kinds, origin: Origin::Rows });
+    let rows = made(part).into_iter().filter(|c| c.own == usize::MAX).map(|c| Labelled {
+        drawing: c.drawing,
+        kinds: c.kinds,
+        origin: Origin::Rows,
+    });
     let each = if part == Part::Train { MADE_TO_LEARN } else { MADE_TO_TEST };
     let kinds = made_drawings::kinds::of_kinds(part as u64 + 1, each).into_iter().enumerate();
     let kinds = kinds.map(|(k, (word, kind, lines))| Labelled {
@@ -337,6 +343,7 @@ fn together(cases: &[Case], part: Part, sets: u64) -> Vec<Case> {
             acceptable: Vec::new(),
             plants: Some(n),
             kinds: Vec::new(),
+            own: usize::MAX,
         });
     }
     found
@@ -358,9 +365,10 @@ fn made(part: Part) -> Vec<Case> {
     let cases = (0_u32..).zip(made_drawings::shown(salt)).map(|(k, shown)| Case {
         set: shown.set.to_owned(),
         drawing: Drawing::from_polylines(format!("made-{k}"), &shown.lines),
-        right: if shown.plants.len() == 1 { vec![Kind::Tree] } else { Vec::new() },
+        right: if let [one] = shown.plants[..] { vec![one] } else { Vec::new() },
         acceptable: Vec::new(),
         plants: Some(shown.plants.len()),
+        own: shown.own,
         kinds: shown.plants,
     });
     cases.collect()
@@ -385,7 +393,7 @@ fn judge(case: &Case, reading: Reading) -> Judged {
         }
     } else if case.right.is_empty() {
         if number { Frame::Right } else { Frame::Wrong }
-    } else if number && case.right.contains(&kind) && (case.kinds.is_empty() || whole_tree(&reading)) {
+    } else if number && case.right.contains(&kind) && whole(case, &reading) {
         Frame::Right
     } else if case.right.contains(&kind) || case.acceptable.contains(&kind) {
         Frame::Acceptable
@@ -416,6 +424,17 @@ fn built(case: &Case, reading: &Reading) -> bool {
         n if meant(Kind::Stem) == n => standing == n && flowers == 0,
         _ => flowers == meant(Kind::Flower),
     }
+}
+
+/// Of a made drawing: no line was taken for something else.
+fn whole(case: &Case, reading: &Reading) -> bool {
+    if case.own == usize::MAX {
+        return case.kinds.is_empty() || whole_tree(reading);
+    }
+    reading.strokes.iter().all(|s| {
+        let left = s.source == Source::Rule(reading::BESIDE_THE_PLANT);
+        left == (s.index as usize >= case.own)
+    })
 }
 
 /// Nothing of a tree of one trunk and one crown was taken for something else.

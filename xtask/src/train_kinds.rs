@@ -1,32 +1,31 @@
 //! `cargo xtask train-kinds`: drawings of the part to learn from -> the coefficients of the model of kinds.
 //!
-//! A softmax over kinds, linear in the numbers of the whole drawing, by gradient descent with a pull towards 0. Nothing of
-//! it is chance: the same drawings give the same coefficients.
+//! A small network ([`network`]) over the numbers of the whole drawing. The same drawings give the same coefficients.
+
+mod network;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use base::{Report, Run, ops};
+use base::{Report, Run};
+use network::{Network, UNITS};
 use reading::{KIND_FEATURE_LIMIT, Kind, SEVERAL};
 
 use crate::made_drawings::varied;
 use crate::read_drawings::{Labelled, Origin, Part, labelled};
 use crate::shell::{Outcome, repository, say};
 
-/// Steps of gradient descent.
-const STEPS: usize = 800;
-/// Length of a step.
-const RATE: f64 = 0.1;
-/// Pull of every coefficient towards 0.
-const PULL: f64 = 0.002;
-/// Variations of each drawing by people that are learnt from beside it, and how much one counts.
-const VARIATIONS: u64 = 7;
+/// Variations of each drawing by people that are learnt from beside it, of the SPG set, of made ones; how much one counts.
+const VARIATIONS: u64 = 14;
+const VARIATIONS_SPG: u64 = 3;
+const VARIATIONS_MADE: u64 = 1;
 const VARIED: f64 = 0.6;
 /// How much a drawing counts: made ones are many and alike, and the SPG set shows three things only.
 const MADE_ROW: f64 = 0.2;
-const MADE_KIND: f64 = 0.5;
+const MADE_KIND: f64 = 0.1;
+const TOGETHER: f64 = 0.3;
 const SPG: f64 = 0.3;
 /// Trees count so many times as much: they are what people draw most, and few drawings to learn from show one.
 const TREES: f64 = 3.0;
@@ -58,6 +57,7 @@ fn is_tree(column: usize) -> bool {
 }
 
 /// One plant: its numbers, the place of its kind in [`KINDS`], how much it counts.
+#[derive(Clone)]
 struct Row {
     features: Vec<f64>,
     kind: usize,
@@ -70,8 +70,8 @@ struct Scale(Vec<(f64, f64)>);
 
 /// Learns the model of kinds and writes `crates/reading/data/kinds.csv`.
 ///
-/// With `--half`, from the part to learn from alone, and says how good that is on the part to choose by: all choices are
-/// made with this one. Without, from both: drawings are what the model lacks, and the end is in neither.
+/// First from the part to learn from alone, and says how good that is on the part to choose by: all choices are made with
+/// this one, and `--half` writes it. Then from both: drawings are what the model lacks, and the end is in neither.
 ///
 /// # Errors
 /// A sentence: a file that cannot be read or written.
@@ -83,53 +83,90 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         say(&format!("skipped: {} is not here", folder.display()));
         return Ok(());
     }
-    let mut drawings = labelled(&folder, Part::Train)?;
+    let mut learnt = rows(&labelled(&folder, Part::Train)?, true);
     let choose = labelled(&folder, Part::Choose)?;
-    let mut held_out = Vec::new();
+    let held_out = rows(&choose, false);
+    let path = repository().join("crates/reading/data/kinds.csv");
+    let write = |text: String| fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()));
+    let first = model(learnt.clone(), held_out);
     if half {
-        held_out = rows(&choose, 0);
-    } else {
-        // Made drawings are as many as one likes, and enough already.
-        drawings.extend(choose.into_iter().filter(|d| matches!(d.origin, Origin::Public | Origin::Spg)));
+        return write(first);
     }
-    let mut learnt = rows(&drawings, VARIATIONS);
+    // Made drawings are as many as one likes, and enough already.
+    let people = choose.into_iter().filter(|d| matches!(d.origin, Origin::Public | Origin::Spg));
+    learnt.extend(rows(&people.collect::<Vec<_>>(), true));
+    write(model(learnt, Vec::new()))
+}
+
+/// Learns a model and says how good it is; the file of it.
+fn model(mut learnt: Vec<Row>, mut held_out: Vec<Row>) -> String {
+    weigh(&mut learnt);
     let scale = Scale::of(&learnt);
     learnt.iter_mut().chain(&mut held_out).for_each(|r| scale.apply(&mut r.features));
-    let coefficients = descend(&learnt);
-    say(&format!("learnt from: {}", told(&learnt, &coefficients)));
-    if half {
-        say(&format!("held out: {}", told(&held_out, &coefficients)));
+    let examples: Vec<network::Example<'_>> =
+        learnt.iter().map(|r| (&*r.features, r.kind, r.weight)).collect();
+    let net = Network::learn(&examples, COLUMNS);
+    say(&format!("learnt from: {}", told(&learnt, &net)));
+    if !held_out.is_empty() {
+        say(&format!("held out: {}", told(&held_out, &net)));
     }
     let mut text = String::from(
         "# Written by cargo xtask train-kinds from drawings of \"Quick, Draw!\" (Google, CC BY 4.0), SPG and made ones.\n\
          name,mean,spread",
     );
-    for column in 0..COLUMNS {
-        let _ = write!(text, ",{}", word(column));
+    let units = (0..UNITS).map(|k| format!("unit-{k}"));
+    for word in (0..COLUMNS).map(|c| word(c).to_owned()).chain(units.clone()) {
+        let _ = write!(text, ",{word}");
+    }
+    let numbers = reading::kind_feature_names().into_iter().zip(&scale.0);
+    let rows = net.direct.chunks(COLUMNS).zip(net.inner.chunks(UNITS));
+    for ((name, (mean, spread)), (direct, inner)) in numbers.zip(rows) {
+        let _ = write!(text, "\n{name},{mean:.3},{spread:.3}");
+        text.extend(direct.iter().chain(inner).map(|c| format!(",{}", short(*c))));
+    }
+    for (name, outer) in units.zip(net.outer.chunks(COLUMNS)) {
+        let _ = write!(text, "\n{name},0,1");
+        text.extend(outer.iter().map(|c| format!(",{}", short(*c))));
     }
     text.push('\n');
-    for (i, (name, (mean, spread))) in reading::kind_feature_names().into_iter().zip(&scale.0).enumerate() {
-        let _ = write!(text, "{name},{mean:.3},{spread:.3}");
-        for c in &coefficients {
-            let _ = write!(text, ",{:.3}", c[i]);
+    text
+}
+
+/// As [`rows_of`], by several at once.
+fn rows(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
+    const HANDS: usize = 3;
+    let part = drawings.len().div_ceil(8 * HANDS).max(1);
+    let parts: Vec<&[Labelled]> = drawings.chunks(part).collect();
+    let mut found: Vec<Vec<Row>> = parts.iter().map(|_| Vec::new()).collect();
+    std::thread::scope(|scope| {
+        let mut hands: Vec<Vec<_>> = (0..HANDS).map(|_| Vec::new()).collect();
+        for (k, job) in parts.iter().zip(&mut found).enumerate() {
+            hands[k % HANDS].push(job);
         }
-        text.push('\n');
-    }
-    let path = repository().join("crates/reading/data/kinds.csv");
-    fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))
+        for jobs in hands {
+            scope.spawn(move || jobs.into_iter().for_each(|(part, to)| *to = rows_of(part, varied_too)));
+        }
+    });
+    found.into_iter().flatten().collect()
 }
 
 /// Every plant of drawings whose plants are known, measured; of people's drawings also some variations.
-fn rows(drawings: &[Labelled], variations: u64) -> Vec<Row> {
+fn rows_of(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for Labelled { drawing, kinds, origin } in drawings {
-        let people = matches!(origin, Origin::Public | Origin::Spg);
-        for copy in 0..=if people { variations } else { 0 } {
+        let variations = match origin {
+            Origin::Public => VARIATIONS,
+            Origin::Spg => VARIATIONS_SPG,
+            Origin::Kinds => VARIATIONS_MADE,
+            Origin::Rows | Origin::Together => 0,
+        };
+        for copy in 0..=if varied_too { variations } else { 0 } {
             let weight = match origin {
                 Origin::Public => 1.0,
                 Origin::Spg => SPG,
                 Origin::Rows => MADE_ROW,
-                Origin::Kinds | Origin::Together => MADE_KIND,
+                Origin::Kinds => MADE_KIND,
+                Origin::Together => TOGETHER,
             };
             let weight = if copy > 0 { VARIED * weight } else { weight };
             let own = if copy > 0 { &varied(drawing, copy) } else { drawing };
@@ -139,15 +176,18 @@ fn rows(drawings: &[Labelled], variations: u64) -> Vec<Row> {
             }));
         }
     }
-    // A kind of which there are many drawings counts more than one with few, but not as much more.
+    rows
+}
+
+/// A kind of which there are many drawings counts more than one with few, but not as much more.
+fn weigh(rows: &mut [Row]) {
     let mut count = [0.0_f64; COLUMNS];
     rows.iter().for_each(|r| count[r.kind] += r.weight / if is_tree(r.kind) { TREES } else { 1.0 });
-    for row in &mut rows {
+    for row in rows.iter_mut() {
         row.weight /= count[row.kind].sqrt();
     }
     let total: f64 = rows.iter().map(|r| r.weight).sum();
     rows.iter_mut().for_each(|r| r.weight /= total);
-    rows
 }
 
 /// The numbers and the kind of each plant of a drawing, unless it is not taken apart into as many; and of several together.
@@ -198,45 +238,18 @@ impl Scale {
     }
 }
 
-fn shares(features: &[f64], coefficients: &[Vec<f64>]) -> Vec<f64> {
-    let sums: Vec<f64> =
-        coefficients.iter().map(|c| c.iter().zip(features).map(|(c, x)| c * x).sum()).collect();
-    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
-    let total: f64 = powers.iter().sum();
-    powers.into_iter().map(|p| p / total).collect()
-}
-
-/// Gradient descent with a memory (Nesterov).
-fn descend(rows: &[Row]) -> Vec<Vec<f64>> {
-    let n = reading::kind_feature_names().len();
-    let mut coefficients = vec![vec![0.0; n]; COLUMNS];
-    let mut before = coefficients.clone();
-    for step in 0..STEPS {
-        let memory = step as f64 / (step as f64 + 3.0);
-        let ahead: Vec<Vec<f64>> = (coefficients.iter().zip(&before))
-            .map(|(c, b)| c.iter().zip(b).map(|(c, b)| c + memory * (c - b)).collect())
-            .collect();
-        let mut slope = vec![vec![0.0; n]; COLUMNS];
-        for row in rows {
-            let p = shares(&row.features, &ahead);
-            for (k, slope) in slope.iter_mut().enumerate() {
-                let miss = (p[k] - f64::from(u8::from(k == row.kind))) * row.weight;
-                slope.iter_mut().zip(&row.features).for_each(|(s, x)| *s += miss * x);
-            }
-        }
-        for ((a, s), b) in ahead.iter().zip(&slope).zip(&mut before) {
-            b.iter_mut().zip(a.iter().zip(s)).for_each(|(b, (a, s))| *b = a - RATE * (s + PULL * a));
-        }
-        core::mem::swap(&mut coefficients, &mut before);
-    }
-    coefficients
+/// A coefficient in few bytes: two decimals.
+fn short(c: f64) -> String {
+    let text = format!("{c:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    let short = text.replacen("0.", ".", 1);
+    if short.is_empty() || short == "-" || short == "-." { "0".to_owned() } else { short }
 }
 
 /// How many are right, and for each kind what it was taken for.
-fn told(rows: &[Row], coefficients: &[Vec<f64>]) -> String {
+fn told(rows: &[Row], net: &Network) -> String {
     let best = |row: &Row| {
-        let p = shares(&row.features, coefficients);
+        let p = net.told(&row.features);
         (0..p.len()).max_by(|&a, &b| p[a].total_cmp(&p[b])).unwrap_or(0)
     };
     let mut confused: BTreeMap<(usize, usize), usize> = BTreeMap::new();

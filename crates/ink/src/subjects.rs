@@ -22,6 +22,8 @@ const LEVEL: f64 = 0.2;
 const FULL: f64 = 0.13;
 /// As [`FULL`], of an arch.
 const ARCHED: f64 = 0.04;
+/// What hangs in the air farther from all else than this share of its own size does not belong to it.
+const CLEAR: f64 = 0.5;
 /// A stroke is closed if its ends are nearer than this share of its length.
 const CLOSED: f64 = 0.22;
 
@@ -272,10 +274,13 @@ impl Sheet {
         if enclosed > 0.7 {
             return Some(0.2 * gap / small.size());
         }
+        // What hangs in the air clearly apart, as the sun does.
+        let clear = gap > CLEAR * small.size() && gap > 3.0 * TOUCH * self.height() && !stand_a;
         // Above one another.
         let apart = (small.lo.y - large.hi.y).max(large.lo.y - small.hi.y).max(0.0);
         let both = stand_a && stand_b;
-        if over > 0.5 && !both && apart < 0.35 * large.height().max(small.height()) {
+        let near = apart < 0.35 * large.height().max(small.height());
+        if over > 0.5 && !both && near && !(clear && !bare[0] && !bare[1]) {
             return Some(gap / small.height().max(large.height()));
         }
         // Side by side on the ground, but one reaches into the other below the lower one's top.
@@ -302,7 +307,7 @@ impl Sheet {
             _ => {}
         }
         // What hangs in the air belongs to what it is nearest to.
-        if !stand_a && gap < 0.3 * large.size() {
+        if !stand_a && !clear && gap < 0.3 * large.size() {
             return Some(0.6 + gap / large.size());
         }
         if !stand_b && gap < 0.2 * large.size() {

@@ -12,6 +12,7 @@ use crate::blade::{Sheetlet, split_stalks};
 use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::near::bounds;
+use crate::steady::steady;
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, Reading, RegionKind,
     RegionReading, StrokeReading, blade, rings,
@@ -127,7 +128,9 @@ impl<'a> Draft<'a> {
         self.organ[stroke] = organ;
         let whole = || vec![s.points.clone()];
         let pieces = self.legs.get(&stroke).cloned().unwrap_or_else(whole);
-        self.lines.extend(pieces.into_iter().map(|points| Line { points, source: Some(s.index) }));
+        let calm = |points: Vec<DVec2>| steady(&points).unwrap_or(points);
+        self.lines
+            .extend(pieces.into_iter().map(|points| Line { points: calm(points), source: Some(s.index) }));
     }
 
     pub(crate) fn set_organ(&mut self, source: Option<u32>, organ: OrganWord) {
@@ -478,6 +481,7 @@ impl<'a> Draft<'a> {
             fruits,
             thorns,
             woody,
+            pressed: Vec::new(),
             plants: Vec::new(),
         }
     }

@@ -1,6 +1,6 @@
 //! How well each kind of plant explains a whole drawing: `ink + classes + first reading -> share of each kind`.
 //!
-//! A linear model over numbers of the whole drawing, with a softmax over the kinds. Its coefficients are data
+//! A small network over numbers of the whole drawing, with a softmax over the kinds. Its coefficients are data
 //! (`data/kinds.csv`), learnt by `cargo xtask train-kinds` from drawings of people and made ones of the part to learn
 //! from. `docs/strokes.md` says how, and how good it is.
 
@@ -181,11 +181,14 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
     ]
 }
 
-/// The model: for each number its mean, its spread and a coefficient for each kind.
+/// The model: for each number its mean, its spread and a coefficient for each kind and for each unit; for each unit a
+/// coefficient for each kind.
 struct Model {
     /// What each column stands for; nothing for several plants side by side.
     kinds: Vec<Option<Kind>>,
     rows: Vec<ModelRow>,
+    /// A row for each unit.
+    units: Vec<Vec<f64>>,
 }
 
 struct ModelRow {
@@ -196,28 +199,49 @@ struct ModelRow {
 
 /// The word of the column for several plants.
 pub const SEVERAL: &str = "several";
+/// How the names of units begin.
+const UNIT: &str = "unit-";
 /// A number counts at most this many spreads from its mean: no single one decides.
 pub const KIND_FEATURE_LIMIT: f64 = 4.0;
 
 impl Model {
     fn parse(text: &str) -> Option<Self> {
         let mut lines = text.lines().filter(|l| !l.starts_with('#'));
-        let column = |word: &str| if word == SEVERAL { Some(None) } else { Kind::from_word(word).map(Some) };
-        let kinds: Option<Vec<Option<Kind>>> = lines.next()?.split(',').skip(3).map(column).collect();
-        let kinds = kinds?;
-        let mut rows = Vec::new();
-        for (line, name) in lines.zip(kind_feature_names()) {
-            let mut cells = line.split(',');
+        let words: Vec<&str> = lines.next()?.split(',').skip(3).collect();
+        let (units, kinds): (Vec<&str>, Vec<&str>) = words.into_iter().partition(|w| w.starts_with(UNIT));
+        let column =
+            |word: &&str| if *word == SEVERAL { Some(None) } else { Kind::from_word(word).map(Some) };
+        let kinds: Vec<Option<Kind>> = kinds.iter().map(column).collect::<Option<_>>()?;
+        let mut row = |name: &str, length: usize| {
+            let mut cells = lines.next()?.split(',');
             if cells.next()? != name {
                 return None;
             }
             let numbers: Option<Vec<f64>> = cells.map(|c| c.parse().ok()).collect();
             let [mean, spread, coefficients @ ..] = &numbers?[..] else { return None };
-            let coefficients = coefficients.to_vec();
-            let whole = coefficients.len() == kinds.len() && *spread > 0.0;
-            rows.push(whole.then_some(ModelRow { mean: *mean, spread: *spread, coefficients })?);
+            let whole = coefficients.len() == length && *spread > 0.0;
+            whole.then(|| ModelRow { mean: *mean, spread: *spread, coefficients: coefficients.to_vec() })
+        };
+        let names = kind_feature_names();
+        let rows: Option<Vec<ModelRow>> =
+            names.iter().map(|name| row(name, kinds.len() + units.len())).collect();
+        let units: Option<Vec<Vec<f64>>> =
+            units.iter().map(|name| Some(row(name, kinds.len())?.coefficients)).collect();
+        Some(Self { rows: rows?, units: units?, kinds })
+    }
+
+    /// How well each column explains a row of numbers, before the softmax.
+    fn sums(&self, row: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.kinds.len() + self.units.len()];
+        for (m, x) in self.rows.iter().zip(row) {
+            let z = ((x - m.mean) / m.spread).clamp(-KIND_FEATURE_LIMIT, KIND_FEATURE_LIMIT);
+            sums.iter_mut().zip(&m.coefficients).for_each(|(sum, c)| *sum += c * z);
         }
-        (rows.len() == COUNT).then_some(Self { kinds, rows })
+        let units = sums.split_off(self.kinds.len());
+        for (unit, coefficients) in units.into_iter().zip(&self.units) {
+            sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += c * unit.max(0.0));
+        }
+        sums
     }
 }
 
@@ -240,11 +264,7 @@ pub(crate) struct Shares {
 /// What the model says of a row of [`kind_features`].
 pub(crate) fn shares(row: &[f64]) -> Shares {
     let Some(model) = trained() else { return Shares::default() };
-    let mut sums = vec![0.0; model.kinds.len()];
-    for (m, x) in model.rows.iter().zip(row) {
-        let z = ((x - m.mean) / m.spread).clamp(-KIND_FEATURE_LIMIT, KIND_FEATURE_LIMIT);
-        sums.iter_mut().zip(&m.coefficients).for_each(|(sum, c)| *sum += c * z);
-    }
+    let sums = model.sums(row);
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
     let total: f64 = powers.iter().sum();
@@ -270,6 +290,7 @@ mod tests {
         let model = trained().expect("data/kinds.csv is of other features: run `cargo xtask train-kinds`");
         assert_eq!(kind_feature_names().len(), COUNT);
         assert!(model.rows.iter().flat_map(|r| &r.coefficients).all(|c| c.is_finite()));
+        assert!(model.units.iter().flatten().all(|c| c.is_finite()) && !model.units.is_empty());
         let row = kind_features(&Ink::default(), &[], &Reading::default());
         assert!(row.iter().all(|x| x.is_finite()));
         let sum: f64 = shares(&row).kinds.iter().map(|s| s.score).sum();

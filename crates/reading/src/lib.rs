@@ -11,11 +11,14 @@
 //! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
+//! | `steady`, `pressed` | lines without tremor, and how boldly they were drawn | beyond |
 //! | `attach` | what bears what | beyond |
+//! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 
+mod aside;
 mod attach;
 mod blade;
 mod body;
@@ -32,16 +35,19 @@ mod kinds;
 mod look;
 mod near;
 mod outlines;
+mod pressed;
 mod read;
 mod rings;
 mod rows;
 mod rules;
 mod several;
+mod steady;
 #[cfg(test)]
 mod tests;
 mod validate;
 mod veins;
 
+pub use aside::BESIDE_THE_PLANT;
 pub use inertia::AS_SHOWN;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};

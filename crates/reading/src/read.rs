@@ -6,8 +6,8 @@ use ink::{Classified, Ink, Source};
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::{
-    Kind, PlantReading, READ_AS, Reading, Scored, attach, flowers, inertia, kinds, outlines, rules, several,
-    veins,
+    BESIDE_THE_PLANT, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers, inertia, kinds,
+    outlines, pressed, rules, several, veins,
 };
 
 /// Understands a drawing.
@@ -63,6 +63,11 @@ impl Asked<'_> {
         let guessed = classes.iter().all(|c| c.source != Source::User);
         guessed && ink.strokes.len() <= MOST_STROKES && !self.off.contains(&READ_AS)
     }
+
+    /// Whether what looks like no plant is left out where it stands beside one.
+    fn leaves_out(&self, ink: &Ink) -> bool {
+        ink.strokes.len() <= MOST_STROKES && !self.off.contains(&BESIDE_THE_PLANT)
+    }
 }
 
 /// A plant as its strokes say, and how well each kind explains it.
@@ -96,16 +101,43 @@ impl First {
 }
 
 fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    Reading { pressed: pressed::pressed(ink), ..each(asked, ink, classes, report) }
+}
+
+/// Every plant of a drawing.
+fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     if !ink.is_several() {
         return one(asked, ink, classes, First::of(asked, ink, classes), report);
     }
-    if asked.kind.is_none() && asked.is_free(ink, classes) {
+    let parts = several::parts(ink, classes);
+    let mut firsts: Vec<First> = parts.iter().map(|p| First::of(asked, &p.ink, &p.classes)).collect();
+    let mut left = vec![false; parts.len()];
+    if asked.leaves_out(ink) {
+        let pieces: Vec<aside::Piece<'_>> = parts
+            .iter()
+            .zip(&firsts)
+            .map(|(p, f)| aside::Piece::new(&p.rows, &p.classes, &f.shares))
+            .collect();
+        left = aside::beside(ink, &pieces, |rows| {
+            let part = several::part(ink, classes, rows.to_vec());
+            First::of(asked, &part.ink, &part.classes).shares.no_plant
+        });
+    }
+    if asked.kind.is_none() && asked.is_free(ink, classes) && !left.contains(&true) {
         let first = First::of(asked, ink, classes);
         if first.is_one() {
             return one(asked, ink, classes, first, report);
         }
     }
-    several::read_each(ink, classes, |part, own| one(asked, part, own, First::of(asked, part, own), report))
+    let mut kept = several::Collected::new(ink, classes);
+    for ((part, first), left) in parts.iter().zip(firsts.drain(..)).zip(left) {
+        if left {
+            kept.leave(&part.rows);
+        } else {
+            kept.add(part, one(asked, &part.ink, &part.classes, first, report));
+        }
+    }
+    kept.finish(report)
 }
 
 /// Several plants explain a drawing at most so well where it is read as one, and the kind of that one at least so well.
@@ -181,12 +213,21 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && no_plant > NO_PLANT {
         report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
     }
+    if asked.kind.is_none() {
+        kind = told_apart(kind, &scores);
+    }
     let readings = readings(kind, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
     reading
+}
+
+/// A fruit and a root are built alike: the model says which of them it is.
+fn told_apart(kind: Kind, scores: &[Scored]) -> Kind {
+    let body = scores.iter().find(|s| s.kind.is_like(Kind::Fruit));
+    body.filter(|_| kind.is_like(Kind::Fruit)).map_or(kind, |s| s.kind)
 }
 
 /// How sure the classifier is of the strokes of a drawing, the mean over their length: 0 to 1.

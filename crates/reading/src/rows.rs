@@ -213,6 +213,8 @@ pub struct Reading {
     pub thorns: Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)>,
     /// It is a woody plant (trunk outline, crown, several orders of branches) rather than a herb.
     pub woody: bool,
+    /// Strokes that were drawn more boldly or more lightly than usual, by their indices, and how much: 1 is as usual.
+    pub pressed: Vec<(u32, f64)>,
     /// The plants that the drawing shows, from left to right.
     pub plants: Vec<PlantReading>,
 }

@@ -1,53 +1,91 @@
 //! Drawings of several plants: each is read by itself, and put back where it was drawn.
 
+use base::Report;
 use glam::DVec2;
 use ink::{Classified, Ink, InkMap, Source, StrokeClass};
 
-use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading};
+use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading, aside};
 
-/// Reads every plant of a drawing, from left to right.
-pub(crate) fn read_each(
-    ink: &Ink,
-    classes: &[Classified],
-    mut one: impl FnMut(&Ink, &[Classified]) -> Reading,
-) -> Reading {
-    let mut all = Reading::default();
-    let class = |row: usize| classes.get(row).copied().unwrap_or_default();
-    // What the user says is no ground belongs to the plant that it was drawn with.
-    let (ground, other): (Vec<usize>, Vec<usize>) =
-        ink.subjects.ground.iter().partition(|&&row| class(row).class == StrokeClass::Ground);
-    for (k, rows) in ink.subjects.plants.iter().enumerate() {
+/// One piece of a drawing, as if it were the whole.
+pub(crate) struct Part {
+    /// Rows of its strokes in the whole drawing.
+    pub(crate) rows: Vec<usize>,
+    pub(crate) ink: Ink,
+    pub(crate) classes: Vec<Classified>,
+}
+
+/// Some strokes of a drawing.
+pub(crate) fn part(ink: &Ink, classes: &[Classified], rows: Vec<usize>) -> Part {
+    let own = rows.iter().map(|&row| classes.get(row).copied().unwrap_or_default()).collect();
+    Part { ink: ink.part(&rows), classes: own, rows }
+}
+
+/// The pieces of a drawing, from left to right; what the user says is no ground belongs to the first.
+pub(crate) fn parts(ink: &Ink, classes: &[Classified]) -> Vec<Part> {
+    let is_ground = |row: usize| classes.get(row).is_some_and(|c| c.class == StrokeClass::Ground);
+    let other = ink.subjects.ground.iter().copied().filter(|&row| !is_ground(row));
+    let mut other: Vec<usize> = other.collect();
+    let own = ink.subjects.plants.iter().map(|rows| {
         let mut rows = rows.clone();
-        if k == 0 {
-            rows.extend(&other);
-            rows.sort_unstable();
+        rows.append(&mut other);
+        rows.sort_unstable();
+        part(ink, classes, rows)
+    });
+    own.collect()
+}
+
+/// What was read of a drawing, piece by piece.
+pub(crate) struct Collected<'a> {
+    ink: &'a Ink,
+    classes: &'a [Classified],
+    all: Reading,
+    left: Vec<usize>,
+}
+
+impl<'a> Collected<'a> {
+    pub(crate) fn new(ink: &'a Ink, classes: &'a [Classified]) -> Self {
+        Self { ink, classes, all: Reading::default(), left: Vec::new() }
+    }
+
+    pub(crate) fn add(&mut self, part: &Part, reading: Reading) {
+        let back = Back { whole: self.ink.map, part: part.ink.map };
+        back.add(&mut self.all, reading);
+    }
+
+    /// Strokes that are of no plant.
+    pub(crate) fn leave(&mut self, rows: &[usize]) {
+        self.left.extend(rows);
+    }
+
+    /// All of it, with the ground and with what was left out.
+    pub(crate) fn finish(mut self, report: &mut Report) -> Reading {
+        let (ink, all) = (self.ink, &mut self.all);
+        if !self.left.is_empty() {
+            all.strokes.extend(aside::tell(ink, self.classes, &self.left, report));
         }
-        let part = ink.part(&rows);
-        let own: Vec<Classified> = rows.iter().map(|&row| class(row)).collect();
-        let reading = one(&part, &own);
-        let back = Back { whole: ink.map, part: part.map };
-        back.add(&mut all, reading);
-    }
-    for row in ground {
-        let Some(s) = ink.strokes.get(row) else { continue };
-        let said = class(row);
-        all.strokes.push(StrokeReading {
-            index: s.index,
-            class: said.class,
-            organ: OrganWord::Ignored,
-            confidence: said.confidence,
-            source: said.source,
+        let class = |row: usize| self.classes.get(row).copied().unwrap_or_default();
+        let ground = ink.subjects.ground.iter().filter(|&&row| class(row).class == StrokeClass::Ground);
+        let ground = ground.filter_map(|&row| {
+            let said = class(row);
+            Some(StrokeReading {
+                index: ink.strokes.get(row)?.index,
+                class: said.class,
+                organ: OrganWord::Ignored,
+                confidence: said.confidence,
+                source: said.source,
+            })
         });
+        all.strokes.extend(ground);
+        all.strokes.extend(ink.skipped.iter().map(|&index| StrokeReading {
+            index,
+            class: StrokeClass::Other,
+            organ: OrganWord::Ignored,
+            confidence: 0.0,
+            source: Source::Classifier,
+        }));
+        base::sort_by_key(&mut all.strokes, |s| s.index);
+        self.all
     }
-    all.strokes.extend(ink.skipped.iter().map(|&index| StrokeReading {
-        index,
-        class: StrokeClass::Other,
-        organ: OrganWord::Ignored,
-        confidence: 0.0,
-        source: Source::Classifier,
-    }));
-    base::sort_by_key(&mut all.strokes, |s| s.index);
-    all
 }
 
 /// From the ink of one plant to that of the whole drawing.

@@ -744,7 +744,7 @@ fn a_line_by_itself_is_the_classifiers_where_its_rule_is_off() {
     let classes = ink::classify(&ink, &base::Run::plain());
     let on = read(&ink, &classes, &mut Report::default()).strokes[0];
     assert_eq!((on.class, on.source), (StrokeClass::Axis, Source::Rule(ink::LONE_LINE)));
-    let off = read_without(&[ink::LONE_LINE], &ink, &classes, &mut Report::default()).strokes[0];
+    let off = read_without(&[ink::LONE_LINE, READ_AS], &ink, &classes, &mut Report::default()).strokes[0];
     assert_eq!((off.class, off.source), (Classified::by_shares(classes[0].shares).class, Source::Classifier));
 }
 

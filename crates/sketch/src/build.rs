@@ -139,10 +139,36 @@ pub fn build_again(
     hang_in_crowns(&mut plant, &scene, reading, &crowned, &leaves);
     let model = pipes(&plant, &plans, &ids, reading, spec, map);
     pipe_radii(&mut plant, &model);
+    press(&mut plant, reading);
     name_bodies(&mut plant);
     report.book("depth", run.clock.now_ms() - started);
     debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
     Ok(Built { plant, map, grown })
+}
+
+/// Lines that were drawn boldly are thick, and so is what they bear; none is thicker than what bears it.
+fn press(plant: &mut Plant, reading: &Reading) {
+    if reading.pressed.is_empty() {
+        return;
+    }
+    let mut pressed = base::map_of(reading.pressed.iter().copied().filter(|p| p.1.is_finite() && p.1 > 0.0));
+    // What was drawn as an outline has the width that was drawn.
+    for axis in reading.axes.iter().filter(|a| !a.half_width.is_empty()) {
+        axis.source.and_then(|source| pressed.remove(&source));
+    }
+    let mut by = vec![1.0; plant.axes.len()];
+    for i in 0..plant.axes.len() {
+        let axis = &plant.axes[i];
+        let rows = axis.nodes.start as usize..axis.nodes.end as usize;
+        let below =
+            axis.bearer.map(|b| (plant.nodes.axis[b.index()].index(), plant.nodes.radius_m[b.index()]));
+        let inherited = below.map_or(1.0, |(bearer, _)| by[bearer]);
+        by[i] = axis.source.and_then(|s| pressed.get(&s).copied()).unwrap_or(inherited);
+        let base = plant.nodes.radius_m.get(rows.start).copied().unwrap_or(0.0) * by[i];
+        let most = below.map_or(f64::INFINITY, |(_, radius)| radius);
+        let factor = if base > most && base > 0.0 { by[i] * most / base } else { by[i] };
+        plant.nodes.radius_m[rows].iter_mut().for_each(|r| *r *= factor);
+    }
 }
 
 /// What was read as a fruit and is a good part of its plant is a body: a cactus pad is, an apple is not.

@@ -590,3 +590,24 @@ fn contours_by_the_thousand_share_the_leaves() {
     assert!(few > 1000, "{few}: density is kept");
     assert!((100_000..=200_000).contains(&many), "{many}: bounded, whatever is drawn");
 }
+
+#[test]
+fn a_bold_line_is_thick_and_nothing_is_thicker_than_what_bears_it() {
+    let stem = axis(vec![v(0.5, 0.0), v(0.5, 1.0)], None, 0);
+    let twig = |at: f64, source| axis(vec![v(0.5, at), v(0.8, at + 0.2)], Some((0, at)), source);
+    let plain = Reading { axes: vec![stem, twig(0.4, 1), twig(0.6, 2)], ..Reading::default() };
+    let radii = |pressed: Vec<(u32, f64)>| -> Vec<f64> {
+        let plant = made(&Reading { pressed, ..plain.clone() }, &SketchSpec::default()).plant;
+        (0..3).map(|k| plant.axis_radii(AxisId::new(k))[0]).collect()
+    };
+    let usual = radii(Vec::new());
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+    // A bold stem carries thicker twigs; a light twig is thinner than the other.
+    let bold = radii(vec![(0, 1.6), (2, 0.5)]);
+    assert!(near(bold[0], 1.6 * usual[0]) && near(bold[1], 1.6 * usual[1]), "{usual:?} {bold:?}");
+    assert!(near(bold[2], 0.5 * usual[2]), "{usual:?} {bold:?}");
+    // However boldly a twig was drawn.
+    let thin = radii(vec![(0, 0.5), (1, 2.0)]);
+    assert!(thin[1] <= thin[0], "{thin:?}");
+    assert_eq!(radii(vec![(0, f64::NAN), (9, 2.0)]), usual);
+}

@@ -9,13 +9,13 @@ use base::{Draw, Seed, Stream, ops};
 use glam::DVec2;
 use reading::Kind;
 
-use super::{Lines, blade, direction, extent, flower, grass, hand, leafy, moved, ring, scribble};
+use super::{Lines, blade, direction, extent, flower, grass, hand, leafy, moved, ring, scribble, ways};
 
 /// Makes the lines of one drawing.
 type Making = fn(&mut Stream) -> Lines;
 
 /// What is made: a word for it, its kind, how it is made.
-const MAKERS: [(&str, Kind, Making); 44] = [
+const MAKERS: [(&str, Kind, Making); 68] = [
     ("tree, crown open below", Kind::Tree, open_tree),
     ("tree, crown open below again", Kind::Tree, open_tree),
     ("tree in one line", Kind::Tree, one_line_tree),
@@ -60,10 +60,34 @@ const MAKERS: [(&str, Kind, Making); 44] = [
     ("strawberry", Kind::Fruit, strawberry),
     ("pineapple", Kind::Fruit, pineapple),
     ("pear", Kind::Fruit, pear),
+    ("spears", Kind::Vegetable, ways::spears),
+    ("bean", Kind::Vegetable, ways::bean),
+    ("open pod", Kind::Vegetable, ways::open_pod),
+    ("round root", Kind::Vegetable, ways::round_root),
+    ("ribbed body", Kind::Vegetable, ways::ribbed),
+    ("bare body", Kind::Vegetable, ways::bare_body),
+    ("pointed root", Kind::Vegetable, ways::pointed_root),
+    ("mushroom again", Kind::Vegetable, ways::other_mushroom),
+    ("round berries", Kind::Fruit, ways::round_berries),
+    ("hanging berries", Kind::Fruit, ways::hanging),
+    ("bumpy berry", Kind::Fruit, ways::bumpy_berry),
+    ("palm in few strokes", Kind::Palm, ways::palm_in_few),
+    ("tree of few lines", Kind::Tree, ways::sparse_tree),
+    ("willow", Kind::Tree, ways::willow),
+    ("tree with a loose crown", Kind::Tree, ways::loose_tree),
+    ("pointed tree", Kind::Tree, ways::pointed_tree),
+    ("cactus with arms", Kind::Cactus, ways::saguaro),
+    ("round cactus", Kind::Cactus, ways::round_cactus),
+    ("flower of arcs and lines", Kind::Flower, ways::other_flower),
+    ("vase", Kind::HousePlant, ways::vase),
+    ("tufts", Kind::Grass, ways::tufts),
+    ("leaf of another form", Kind::Leaf, ways::other_leaf),
+    ("bush of arcs and scribbles", Kind::Bush, ways::other_bush),
+    ("frond", Kind::Stem, ways::other_stem),
 ];
 
 /// Things that are no plants: a word, how it is made.
-const OTHERS: [(&str, Making); 16] = [
+const OTHERS: [(&str, Making); 21] = [
     ("house", house),
     ("cat", cat),
     ("face", face),
@@ -80,6 +104,11 @@ const OTHERS: [(&str, Making); 16] = [
     ("arrow", arrow),
     ("box", cube),
     ("hills", hills),
+    ("butterfly", ways::butterfly),
+    ("birds", ways::birds),
+    ("sun in a corner", ways::corner_sun),
+    ("word", ways::written),
+    ("fence", ways::fence),
 ];
 
 /// Drawings of each maker, with their words and kinds; [`Kind::None`] is no plant.
@@ -96,17 +125,17 @@ pub(crate) fn of_kinds(salt: u64, each: u64) -> Vec<(&'static str, Kind, Lines)>
     found
 }
 
-fn v(x: f64, y: f64) -> DVec2 {
+pub(super) fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
 /// A line of a hand through points.
-fn pen(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
+pub(super) fn pen(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
     hand(r, corners)
 }
 
 /// A wobbly ring.
-fn round(centre: DVec2, size: DVec2, bumps: usize, depth: f64, r: &mut Stream) -> Vec<DVec2> {
+pub(super) fn round(centre: DVec2, size: DVec2, bumps: usize, depth: f64, r: &mut Stream) -> Vec<DVec2> {
     ring(r, centre, size, bumps, depth)
 }
 
@@ -120,7 +149,7 @@ fn scribbled(centre: DVec2, size: DVec2, r: &mut Stream) -> Vec<DVec2> {
 }
 
 /// A soft line of a hand: corners are rounded.
-fn soft(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
+pub(super) fn soft(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
     let (first, last) = (corners[0], corners[corners.len() - 1]);
     let mut points = vec![first];
     for w in corners.windows(3) {
@@ -134,7 +163,7 @@ fn soft(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
 }
 
 /// Part of a lobed ring, from one angle to another.
-fn arc(
+pub(super) fn arc(
     centre: DVec2,
     size: DVec2,
     from: f64,
@@ -157,7 +186,7 @@ fn arc(
 }
 
 /// Left and right side of a trunk, from the neck down, flaring.
-fn sides(r: &mut Stream, half: f64, top: f64) -> [Vec<DVec2>; 2] {
+pub(super) fn sides(r: &mut Stream, half: f64, top: f64) -> [Vec<DVec2>; 2] {
     let flare = r.range(1.0, 2.6);
     let lean = r.range(-0.05, 0.05);
     let mut side = |s: f64| {
@@ -262,7 +291,14 @@ fn one_line_tree(r: &mut Stream) -> Lines {
 }
 
 /// Branches from a place, and theirs.
-fn branches(r: &mut Stream, from: DVec2, angle: f64, length: f64, depth: usize, lines: &mut Lines) {
+pub(super) fn branches(
+    r: &mut Stream,
+    from: DVec2,
+    angle: f64,
+    length: f64,
+    depth: usize,
+    lines: &mut Lines,
+) {
     let tip = from + direction(angle) * length;
     let bend = from.lerp(tip, 0.5) + direction(angle + 0.5 * PI) * (r.range(-0.15, 0.15) * length);
     lines.push(soft(&[from, bend, tip], r));
@@ -830,7 +866,7 @@ fn sprout(r: &mut Stream) -> Lines {
     lines
 }
 
-fn turned(r: &mut Stream, lines: Lines, most: f64) -> Lines {
+pub(super) fn turned(r: &mut Stream, lines: Lines, most: f64) -> Lines {
     let (s, c) = ops::sin_cos(r.range(-most, most));
     lines
         .into_iter()
@@ -839,7 +875,7 @@ fn turned(r: &mut Stream, lines: Lines, most: f64) -> Lines {
 }
 
 /// A tuft of green at a place.
-fn tuft(r: &mut Stream, at: DVec2, size: f64) -> Lines {
+pub(super) fn tuft(r: &mut Stream, at: DVec2, size: f64) -> Lines {
     let n = 3 + r.below(4);
     match r.below(3) {
         0 => (0..n)
@@ -1243,7 +1279,7 @@ fn fish(r: &mut Stream) -> Lines {
     lines
 }
 
-fn sun(r: &mut Stream) -> Lines {
+pub(super) fn sun(r: &mut Stream) -> Lines {
     let size = r.range(0.2, 0.35);
     let mut lines = vec![round(DVec2::ZERO, DVec2::splat(size), 0, 0.0, r)];
     let n = 7 + r.below(7);

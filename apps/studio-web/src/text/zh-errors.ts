@@ -209,6 +209,7 @@ export const zhWords: Record<string, string> = {
 /** What was not as one might expect of a plant, by its code; the core's own words follow, with its numbers. */
 export const zhWarnings: Record<string, string> = {
   'unlike-a-plant': '这看起来不像植物：已按最接近的植物生成',
+  'left-out': '植物旁边有 {count} 笔看起来不像植物，已略去',
   scribble: '第 {stroke} 笔是涂鸦：已当作树冠',
   'sample-skipped': '第 {stroke} 笔有 {count} 个点不是可用的数字，已略去',
   'stray-skipped': '第 {stroke} 笔有 {count} 个点离画面太远，已略去',

@@ -103,6 +103,12 @@ pub const RULES: &[Rule] = &[
         "A low, flat line on which several plants stand is their ground.",
     ),
     rule(
+        crate::BESIDE_THE_PLANT,
+        MANY,
+        |_| Findings::default(), // `read` applies it, because it compares what stands beside one another
+        "What hangs in the air apart from a plant and needs ground, or looks like no plant, is left out.",
+    ),
+    rule(
         READ_AS,
         MANY,
         |_| Findings::default(), // `read` applies it, because it compares whole readings

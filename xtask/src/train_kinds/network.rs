@@ -1,0 +1,158 @@
+//! Learns a small network: a softmax over what is linear in the numbers, and over some units that are linear in them
+//! where they are above 0.
+//!
+//! Adam (Kingma and Ba 2015) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units, and a
+//! pull of every coefficient towards 0. The same rows give the same network.
+
+use base::{Draw, Seed, Stream, ops};
+
+/// Units.
+pub(super) const UNITS: usize = 24;
+/// Times that each row is looked at, on the average.
+const ROUNDS: usize = 14;
+const BATCH: usize = 256;
+/// Length of the first step; later ones are shorter, along half a cosine.
+const RATE: f64 = 2e-3;
+/// Pull towards 0, a share of the step.
+const PULL: f64 = 0.01;
+/// Share of numbers and of units that is left out of each look.
+const DROP_NUMBERS: f64 = 0.1;
+const DROP_UNITS: f64 = 0.3;
+/// Noise on numbers whose spread is 1.
+const NOISE: f64 = 0.1;
+
+/// Coefficients, row by row.
+pub(super) struct Network {
+    columns: usize,
+    /// A row for each number: a coefficient for each column.
+    pub(super) direct: Vec<f64>,
+    /// A row for each number: a coefficient for each unit.
+    pub(super) inner: Vec<f64>,
+    /// A row for each unit: a coefficient for each column.
+    pub(super) outer: Vec<f64>,
+}
+
+/// One example: its numbers, its column, how much it counts.
+pub(super) type Example<'a> = (&'a [f64], usize, f64);
+
+impl Network {
+    pub(super) fn learn(examples: &[Example<'_>], columns: usize) -> Self {
+        let numbers = examples.first().map_or(0, |e| e.0.len());
+        let r = &mut Seed::new(20).stream(Draw::Template);
+        let mut chance =
+            |n: usize, spread: f64| -> Vec<f64> { (0..n).map(|_| r.normal() * spread).collect() };
+        let mut net = Self {
+            columns,
+            direct: vec![0.0; numbers * columns],
+            inner: chance(numbers * UNITS, 1.0 / (numbers.max(1) as f64).sqrt()),
+            outer: chance(UNITS * columns, 1.0 / (UNITS as f64).sqrt()),
+        };
+        let sums: Vec<f64> = examples
+            .iter()
+            .scan(0.0, |sum, e| {
+                *sum += e.2;
+                Some(*sum)
+            })
+            .collect();
+        let Some(&total) = sums.last() else { return net };
+        let steps = ROUNDS * examples.len() / BATCH;
+        let mut moments = [&net.direct, &net.inner, &net.outer].map(|c| Moments::new(c.len()));
+        for step in 0..steps {
+            let mut slope =
+                Self::of(columns, [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
+            for _ in 0..BATCH {
+                let drawn = r.uniform() * total;
+                let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
+                net.look(examples[at], r, &mut slope);
+            }
+            let rate = RATE * 0.5 * (1.0 + ops::cos(ops::PI * step as f64 / steps as f64));
+            let slopes = [&slope.direct, &slope.inner, &slope.outer];
+            let own = [&mut net.direct, &mut net.inner, &mut net.outer];
+            for ((own, slope), moments) in own.into_iter().zip(slopes).zip(&mut moments) {
+                moments.step(own, slope, step + 1, rate);
+            }
+        }
+        net
+    }
+
+    fn of(columns: usize, [direct, inner, outer]: [Vec<f64>; 3]) -> Self {
+        Self { columns, direct, inner, outer }
+    }
+
+    /// Adds the slope of one example.
+    fn look(&self, (numbers, column, _): Example<'_>, r: &mut Stream, slope: &mut Self) {
+        let keep = |r: &mut Stream, drop: f64| if r.chance(drop) { 0.0 } else { 1.0 / (1.0 - drop) };
+        let x: Vec<f64> = numbers.iter().map(|x| (x + NOISE * r.normal()) * keep(r, DROP_NUMBERS)).collect();
+        let mask: Vec<f64> = (0..UNITS).map(|_| keep(r, DROP_UNITS)).collect();
+        let units = self.units(&x);
+        let heard: Vec<f64> = units.iter().zip(&mask).map(|(u, m)| u.max(0.0) * m).collect();
+        let mut miss = self.shares(&x, &heard);
+        miss[column] -= 1.0;
+        let part = 1.0 / BATCH as f64;
+        let mut back = [0.0; UNITS];
+        for (k, back) in back.iter_mut().enumerate() {
+            let rows = k * self.columns..(k + 1) * self.columns;
+            let own = self.outer[rows.clone()].iter().zip(&mut slope.outer[rows]);
+            for ((c, s), m) in own.zip(&miss) {
+                *back += c * m;
+                *s += heard[k] * m * part;
+            }
+            *back *= if units[k] > 0.0 { mask[k] } else { 0.0 };
+        }
+        for (i, &x) in x.iter().enumerate().filter(|(_, x)| **x != 0.0) {
+            let direct = &mut slope.direct[i * self.columns..(i + 1) * self.columns];
+            direct.iter_mut().zip(&miss).for_each(|(s, m)| *s += x * m * part);
+            let inner = &mut slope.inner[i * UNITS..(i + 1) * UNITS];
+            inner.iter_mut().zip(&back).for_each(|(s, b)| *s += x * b * part);
+        }
+    }
+
+    fn units(&self, x: &[f64]) -> Vec<f64> {
+        let mut units = vec![0.0; UNITS];
+        for (x, row) in x.iter().zip(self.inner.chunks(UNITS)).filter(|(x, _)| **x != 0.0) {
+            units.iter_mut().zip(row).for_each(|(u, c)| *u += x * c);
+        }
+        units
+    }
+
+    fn shares(&self, x: &[f64], heard: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.columns];
+        let rows = self.direct.chunks(self.columns).zip(x).chain(self.outer.chunks(self.columns).zip(heard));
+        for (row, x) in rows {
+            sums.iter_mut().zip(row).for_each(|(s, c)| *s += x * c);
+        }
+        let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+        let total: f64 = powers.iter().sum();
+        powers.into_iter().map(|p| p / total).collect()
+    }
+
+    /// What the network says of a row of numbers.
+    pub(super) fn told(&self, x: &[f64]) -> Vec<f64> {
+        let heard: Vec<f64> = self.units(x).into_iter().map(|u| u.max(0.0)).collect();
+        self.shares(x, &heard)
+    }
+}
+
+/// Means of slopes and of their squares.
+struct Moments {
+    slope: Vec<f64>,
+    square: Vec<f64>,
+}
+
+impl Moments {
+    fn new(n: usize) -> Self {
+        Self { slope: vec![0.0; n], square: vec![0.0; n] }
+    }
+
+    fn step(&mut self, own: &mut [f64], slope: &[f64], number: usize, rate: f64) {
+        const MEMORY: [f64; 2] = [0.9, 0.999];
+        let seen = MEMORY.map(|m| 1.0 - ops::powf(m, number as f64));
+        let moments = self.slope.iter_mut().zip(&mut self.square);
+        for ((c, s), (mean, square)) in own.iter_mut().zip(slope).zip(moments) {
+            *mean = MEMORY[0] * *mean + (1.0 - MEMORY[0]) * s;
+            *square = MEMORY[1] * *square + (1.0 - MEMORY[1]) * s * s;
+            *c -= rate * ((*mean / seen[0]) / ((*square / seen[1]).sqrt() + 1e-8) + PULL * *c);
+        }
+    }
+}
