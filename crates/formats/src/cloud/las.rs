@@ -92,6 +92,12 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
     if data_at < 227.min(header_size) || data_at > bytes.len() {
         return Err(fail(96, format!("the points begin at byte {data_at} of {}", bytes.len())));
     }
+    let there = (bytes.len() - data_at) / record;
+    if !packed && count > there {
+        let inside = format!("the points: {count} are announced, {there} are there");
+        let fault = FileFault::Truncated { inside };
+        return Err(CloudError::new(CloudFormat::Las, Place::Byte(bytes.len() as u64), fault));
+    }
     if count > MAX_POINTS {
         return Err(too_many(CloudFormat::Las));
     }
@@ -106,12 +112,6 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
         #[cfg(feature = "laz")]
         unpack(bytes, (data_at, header_size, b.u32(100)?), count, &mut rows, sink)?;
     } else {
-        let there = (bytes.len() - data_at) / record;
-        if count > there {
-            let inside = format!("the points: {count} are announced, {there} are there");
-            let fault = FileFault::Truncated { inside };
-            return Err(CloudError::new(CloudFormat::Las, Place::Byte(bytes.len() as u64), fault));
-        }
         for row in bytes[data_at..].chunks_exact(record).take(count) {
             rows.take(row, sink)?;
         }
