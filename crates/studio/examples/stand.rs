@@ -4,6 +4,8 @@
 //! SPEC is a preset or a TOML file. Prints means and coefficients of variation of height, diameter at breast height and
 //! crown area, and what one seed is at each age; with `--png` also nine seeds side by side.
 
+#![expect(clippy::print_stdout, reason = "it tells what it measured")]
+
 use burgeon::formats::write_png;
 use burgeon::geom::signed_area;
 use burgeon::growth::{Grown, grow};
