@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::ModelFormat;
+use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::glam::DVec3;
-use burgeon::scan::TreeScanSpec;
+use burgeon::scan::{FoundTree, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
 use serde::Serialize;
@@ -132,9 +132,25 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     run.input.offset_m = origin.told(&axes);
     run.ok = 1;
     run.items = items;
+    let scan = tally(&found, stood, &axes);
+    let whole = ScanRun { run, scan };
+    report::finish(&whole, &args.common, outputs)?;
+    if !machine.quiet {
+        let run = &whole.run;
+        for item in &run.items {
+            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        }
+        say::line(&summary(&whole, args.png.as_deref()));
+        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
+    }
+    Ok(())
+}
+
+/// What was found in the scan; `stood`: where the tree stood, in the coordinates of the scan.
+fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> Tally {
     let t = &found.tally;
-    let metres = burgeon::formats::ExportSpec { up: axes.up, ..Default::default() };
-    let scan = Tally {
+    let metres = ExportSpec { up: axes.up, ..ExportSpec::default() };
+    Tally {
         points: t.points as u64,
         ground: t.ground as u64,
         noise: t.noise as u64,
@@ -149,18 +165,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         pipe_scatter: t.pipe_scatter,
         foot_m: metres.place(stood),
         ground_found: found.ground.is_some(),
-    };
-    let whole = ScanRun { run, scan };
-    report::finish(&whole, &args.common, outputs)?;
-    if !machine.quiet {
-        let run = &whole.run;
-        for item in &run.items {
-            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
-        }
-        say::line(&summary(&whole, args.png.as_deref()));
-        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
     }
-    Ok(())
 }
 
 fn summary(whole: &ScanRun, png: Option<&Path>) -> String {

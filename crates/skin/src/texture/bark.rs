@@ -213,8 +213,9 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     const FRESH: Paint = [0.86, 0.70, 0.56];
     let wave = 0.006 * noise(u, v, (3, 4), 1) + 0.003 * noise(u, v, (9, 9), 2);
     let y = v + wave;
-    let pore =
-        strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| (n < 0.42).then_some((0.10 + 0.85 * n, 0.10 + 0.20 * n)));
+    let pore = strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| {
+        (n < 0.42).then_some((0.10 + 0.85 * n, 0.10 + 0.20 * n))
+    });
     let fine = strokes((14.0 * u, 90.0 * y), (14, 90), 4, |n| (n < 0.30).then_some((0.10 + 1.2 * n, 0.22)));
     let pore = (1.0 - ops::smoothstep(0.55, 1.0, pore)).max(0.55 * (1.0 - ops::smoothstep(0.4, 1.0, fine)));
     // Sheets: bands whose lower edge is torn; below it the paper has gone for a while.
