@@ -142,7 +142,7 @@ impl GestureRecord {
     /// [`WorkspaceError::RecordProject`].
     pub fn project(&self) -> Result<Option<Vec<u8>>, WorkspaceError> {
         let decode = |text: &String| BASE64.decode(text.as_bytes());
-        self.project.as_ref().map(decode).transpose().map_err(|_not_base64| WorkspaceError::RecordProject)
+        self.project.as_ref().map(decode).transpose().map_err(|_why| WorkspaceError::RecordProject)
     }
 }
 

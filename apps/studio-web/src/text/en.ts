@@ -1081,7 +1081,7 @@ export const en = {
   'field.skin.petals': 'colour of petals',
   'field.skin.sides': 'sides of a branch',
   'field.textures': 'textures',
-  'field.variation': 'variation of colour',
+  'field.skin.variation': 'variation of colour',
   'word.pine': 'pine',
   'word.terminalia': 'terminalia',
   'word.chinese-fir': 'Chinese fir',

@@ -92,7 +92,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'flower.Aestivation': '一轮花瓣在花蕾中如何排列。',
   'flower.Aestivation.contorted': '旋转状：每片一侧盖住邻片，另一侧被邻片盖住。',
   'flower.Aestivation.fused': '合生成筒或漏斗。',
-  'flower.Aestivation.imbricate': '覆瓦状：沿螺旋一片套一片，最外一片在前；五片时两片在外、两片在内（双盖覆瓦状）。',
+  'flower.Aestivation.imbricate':
+    '覆瓦状：沿螺旋一片套一片，最外一片在前；五片时两片在外、两片在内（双盖覆瓦状）。',
   'flower.Aestivation.valvate': '镊合状：边缘相接，互不覆盖。',
   'flower.Cluster': '花序中各花如何着生。',
   'flower.Cluster.arch_deg': '花序轴弯垂多少，度，0 至 120，默认 0。',
@@ -100,7 +101,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'flower.Cluster.form': '花序的类型。',
   'flower.Cluster.pedicel_m': '每朵花的花梗长度，米；默认 0，即与花相称。',
   'flower.Cluster.sided': '各花转向前方多少，0 为均匀环绕，1 为全部朝前，默认 0。',
-  'flower.Cluster.spread_days': '第一朵开到最后一朵开相隔的天数，0 至 60，默认 0。盛开和凋谢的天数是整个花序的。',
+  'flower.Cluster.spread_days':
+    '第一朵开到最后一朵开相隔的天数，0 至 60，默认 0。盛开和凋谢的天数是整个花序的。',
   'flower.Cluster.spread_deg': '花梗与轴的最大夹角，度，0 至 150，默认 75。',
   'flower.ClusterForm': '花序的类型。',
   'flower.ClusterForm.raceme': '总状：花沿轴排列，各有花梗；下部的花先开。',
@@ -198,7 +200,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'flower.Whorl.guide': '为访花者指路的斑纹。',
   'flower.Whorl.innermost': '几轮中最内的一轮。',
   'flower.Whorl.insertion': '花瓣着生的位置。',
-  'flower.Whorl.lean_m': '同轮花瓣相互斜靠：花瓣两侧边缘的前后距离，米，默认 0.002。覆瓦状的一轮：相邻里外两片的距离。',
+  'flower.Whorl.lean_m':
+    '同轮花瓣相互斜靠：花瓣两侧边缘的前后距离，米，默认 0.002。覆瓦状的一轮：相邻里外两片的距离。',
   'flower.Whorl.length_m': '盛开时一片花瓣的长度，米，默认 0.05。',
   'flower.Whorl.notch': '尖端凹缺的深度占长度的比例，0 至 0.5，默认 0。',
   'flower.Whorl.open_deg': '盛开时基部、中部和尖端与轴的夹角，度。',
@@ -210,7 +213,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'flower.Whorl.sepal': '萼片或苞片：花瓣被替换时保持自己的形状。默认否。',
   'flower.Whorl.shrivel': '枯萎时缩小多少，0 为不缩，默认 1：短四分之一，窄近一半。',
   'flower.Whorl.spacing_deg': '相邻花瓣的夹角，度，0 至 360；默认 0，即均匀环绕。',
-  'flower.Whorl.succession': '一轮中最后一片比第一片晚开多少，占盛开所需天数的比例，0 至 0.6，默认 0。旋转状和合生的一轮同时开放。',
+  'flower.Whorl.succession':
+    '一轮中最后一片比第一片晚开多少，占盛开所需天数的比例，0 至 0.6，默认 0。旋转状和合生的一轮同时开放。',
   'flower.Whorl.tip_color': '尖端的颜色，以线性光表示。',
   'flower.Whorl.twist_deg': '花蕾中尖端绕轴扭转的角度，度，默认 0。',
   'flower.Whorl.widest': '最宽处沿花瓣的位置，0.2 至 0.9，默认 0.5。',

@@ -1071,7 +1071,7 @@ export const zh: Record<TextKey, string> = {
   'field.skin.petals': '花瓣颜色',
   'field.skin.sides': '枝条的边数',
   'field.textures': '纹理',
-  'field.variation': '颜色变化',
+  'field.skin.variation': '颜色变化',
   'word.pine': '松',
   'word.terminalia': '榄仁树',
   'word.chinese-fir': '杉木',
