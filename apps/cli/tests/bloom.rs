@@ -147,7 +147,7 @@ fn bad_input_is_one_clear_line() {
     fit("typo.toml", "fil");
     fit("nan.toml", "finite");
     fit("missing.toml", "no such file");
-    bad(&dir, &["bloom", "run", "dandelion", "-o", "x.glb"], "no such flower");
+    bad(&dir, &["bloom", "run", "hyacinth", "-o", "x.glb"], "no such flower");
     bad(&dir, &["bloom", "run", "rose", "--law", "law.json", "-o", "x.glb"], "no growth law");
     bad(&dir, &["bloom", "run", "a.xyz", "-o", "x.glb"], "--end is missing");
     bad(&dir, &["bloom", "run", "a.xyz", "--end", "a.xyz", "-o", "x.glb", "--lattice", "1x4x4"], "2 to 16");

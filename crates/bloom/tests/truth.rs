@@ -2,14 +2,22 @@
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 use base::{Draw, Run, Seed};
-use bloom::{Form, GrowthLaw, LawSpec, Logistic, MotionSpec, Organ, Quantity, RegionLaw, Rival, Stage};
+use bloom::{
+    FlowerSpec, Form, GrowthLaw, LawSpec, Logistic, MotionSpec, Nods, Organ, Quantity, RegionLaw, Rival,
+    Stage,
+};
 use bloom::{fit_stages, leave_one_out, preset, settle};
 use glam::DVec3;
 use plant::{OrganKind, Shape};
 
+/// A lily whose head nods as it opens, by the same law: what moves by another pace than its petals is no growth.
+fn lily() -> FlowerSpec {
+    FlowerSpec { nods: Nods::default(), ..preset("lily").unwrap() }
+}
+
 /// The outer petals of a lily on a day, each an organ with `noise` on every point.
 fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
-    let plant = preset("lily").unwrap().at(day, law, Seed::new(1));
+    let plant = lily().at(day, law, Seed::new(1));
     let petals = plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
     let mut s = Seed::new(day.to_bits()).stream(Draw::Test);
     let organs = petals.take(3).enumerate().map(|(k, o)| {

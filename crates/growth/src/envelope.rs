@@ -247,6 +247,17 @@ impl Envelope {
         Ok(Region { form: Arc::new(form), lo, hi, habit: None, more: 1.0 })
     }
 
+    /// What it fills as a whole: masses on limbs become the profile that they stand in. For growth that finds limbs itself.
+    #[must_use]
+    pub fn whole(&self) -> Self {
+        match self {
+            Self::Limbs(l) => {
+                Self::Revolution { base: DVec3::new(0.0, l.base_m, 0.0), profile: l.profile.clone() }
+            }
+            other => other.clone(),
+        }
+    }
+
     fn bounds(&self, form: &Form) -> (DVec3, DVec3) {
         let of = |points: &mut dyn Iterator<Item = DVec3>| {
             points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))

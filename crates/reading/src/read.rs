@@ -2,6 +2,7 @@
 
 use base::Report;
 use ink::{Classified, Ink, Source};
+use plant::AxisKind;
 
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
@@ -179,6 +180,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     };
     // Petals round a middle were no chance either.
     let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
+    // Roots under the ground are those of what stands on it; the model learnt from no drawing that has any.
+    let rooted = reading.axes.iter().any(|a| a.kind == AxisKind::Root);
     let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
         let (own, sure) =
@@ -189,7 +192,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if let Some(wanted) = asked.kind {
         (said, kind) = (Report::default(), wanted);
         reading = attempt(asked.off, asked.kind, ink, classes, &mut said);
-    } else if let Some(other) = other.filter(|_| asked.is_free(ink, classes)) {
+    } else if let Some(other) = other.filter(|_| !rooted && asked.is_free(ink, classes)) {
         let mut again = Report::default();
         let tried = attempt(asked.off, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.

@@ -1100,7 +1100,6 @@ export const en = {
   'word.cherry': 'cherry',
   'word.cypress': 'cypress',
   'word.beech': 'beech',
-  'word.cedar': 'cedar',
   'word.grass': 'grass',
   'word.umbrella-pine': 'umbrella pine',
   'word.rose': 'rose',

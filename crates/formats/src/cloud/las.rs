@@ -107,7 +107,14 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
         7 | 8 | 10 => Some(30),
         _ => None,
     };
-    let mut rows = Rows { scale, offset, colours, record, low: Some(vec![]) };
+    let mut rows = Rows {
+        scale,
+        offset,
+        colours,
+        #[cfg(feature = "laz")]
+        record,
+        low: Some(vec![]),
+    };
     if packed {
         #[cfg(feature = "laz")]
         unpack(bytes, (data_at, header_size, b.u32(100)?), count, &mut rows, sink)?;
@@ -129,6 +136,7 @@ struct Rows {
     offset: [f64; 3],
     /// Where colours stand in a record.
     colours: Option<usize>,
+    #[cfg(feature = "laz")]
     record: usize,
     /// The lower bytes of colours, as long as no upper one is above 0.
     low: Option<Vec<[u8; 3]>>,

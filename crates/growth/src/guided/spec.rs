@@ -182,6 +182,7 @@ impl GuidedSpec {
     /// rounds enough to reach its ends, and vigour, pull and markers such that a crown is full and its leader upright.
     /// An envelope that is wrong keeps the default numbers; growth then says what is wrong with it.
     pub fn of_crown(envelope: Envelope) -> Self {
+        let envelope = envelope.whole();
         let size = envelope.prepare().map_or(DVec3::ZERO, |region| {
             let (lo, hi) = region.bounds();
             hi - lo

@@ -16,8 +16,8 @@ pub const GUIDED_METHODS: [&str; 2] = ["guided growth", "self-organisation"];
 /// `None` where the method has no envelope. The baseline's markers are as dense as a bud's own in its perception cone.
 pub fn guided_methods(method: &Method) -> Option<[Method; 2]> {
     let envelope = match method {
-        Method::Competition(s) => s.envelope.clone(),
-        Method::Colonization { envelope, .. } => envelope.clone(),
+        Method::Competition(s) => s.envelope.whole(),
+        Method::Colonization { envelope, .. } => envelope.whole(),
         _ => return None,
     };
     let guided = GuidedSpec::of_crown(envelope.clone());

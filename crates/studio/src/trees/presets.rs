@@ -51,7 +51,6 @@ presets![
     "rose",
     "grass",
     "beech",
-    "cedar",
 ];
 
 impl Preset {
