@@ -247,7 +247,7 @@ export type BrushStroke = {
 export type CarriedPose = {
   /** Where it began. */
   from: [number, number, number];
-  /** The name of the meshes of which [`Workspace::held_rows`] are. */
+  /** The name of the meshes of which [`Workspace::held_rows`](crate::Workspace::held_rows) are. */
   mesh: number;
   /** Where it begins now. */
   to: [number, number, number];

@@ -3,85 +3,10 @@
 use base::{Seed, ops, turn};
 use glam::{DQuat, DVec3};
 use plant::{AxisKind, NodeId, Plant};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use crate::flower::{FlowerSpec, rad};
 use crate::organs::Seat;
-
-/// How the flowers of a cluster stand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Cluster {
-    /// Its kind.
-    pub form: ClusterForm,
-    /// Length of the axis that bears a raceme or a spike, metres, default 0.
-    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
-    pub axis_m: f64,
-    /// Length of the stalk of one flower, metres; 0, the default, for one that fits the flower.
-    #[schemars(range(min = 0.0, max = 2.0), extend("x-unit" = "m"))]
-    pub pedicel_m: f64,
-    /// Widest angle of the stalks of flowers to the axis, degrees, 0 to 150, default 75.
-    #[schemars(range(min = 0.0, max = 150.0), extend("x-unit" = "deg"))]
-    pub spread_deg: f64,
-    /// Days from the first flower that opens to the last, 0 to 60, default 0. The days of opening and wilting are those
-    /// of the cluster.
-    #[schemars(range(min = 0.0, max = 60.0), extend("x-unit" = "d"))]
-    pub spread_days: f64,
-    /// How far flowers all turn to the front, 0 evenly round to 1, default 0.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub sided: f64,
-    /// How far the axis arches over, degrees, 0 to 120, default 0.
-    #[schemars(range(min = 0.0, max = 120.0), extend("x-unit" = "deg"))]
-    pub arch_deg: f64,
-}
-
-/// Kinds of clusters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ClusterForm {
-    /// All stalks from one place; outer flowers open first.
-    #[default]
-    Umbel,
-    /// Flowers along an axis, each on a stalk; lower ones open first.
-    Raceme,
-    /// Flowers along an axis, without stalks.
-    Spike,
-}
-
-impl Default for Cluster {
-    /// An umbel whose flowers open together.
-    fn default() -> Self {
-        Self {
-            form: ClusterForm::Umbel,
-            axis_m: 0.0,
-            pedicel_m: 0.0,
-            spread_deg: 75.0,
-            spread_days: 0.0,
-            sided: 0.0,
-            arch_deg: 0.0,
-        }
-    }
-}
-
-/// How far bud and wilted flower nod, as shares of the angle of the open one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Nods {
-    /// Of the bud, 0 to 40, default 0.35.
-    #[schemars(range(min = 0.0, max = 40.0))]
-    pub bud: f64,
-    /// Of the wilted flower, 0 to 40, default 1.6.
-    #[schemars(range(min = 0.0, max = 40.0))]
-    pub wilted: f64,
-}
-
-impl Default for Nods {
-    /// Buds stand, wilted heads hang.
-    fn default() -> Self {
-        Self { bud: 0.35, wilted: 1.6 }
-    }
-}
+use crate::parts::ClusterForm;
+use crate::wanted::{FlowerSpec, rad};
 
 /// Where a flower sits and how it is turned.
 pub(crate) struct Place {

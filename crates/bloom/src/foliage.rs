@@ -3,115 +3,12 @@
 use base::{Draw, Seed, ops, turn};
 use glam::{DQuat, DVec3};
 use plant::{FlowerId, Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, Sheet, Venation};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::cluster::Stalk;
-use crate::flower::{FlowerSpec, rad};
 use crate::organs::{Grid, Seat};
-
-/// Leaves of one kind.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Foliage {
-    /// How many, 1 to 200, default 3.
-    #[schemars(range(min = 1, max = 200))]
-    pub count: u32,
-    /// Leaves at one node, 1 to 12, default 1.
-    #[schemars(range(min = 1, max = 12))]
-    pub at_node: u32,
-    /// Angle from one node to the next about the stalk, degrees, default 137.5.
-    #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg"))]
-    pub divergence_deg: f64,
-    /// Turn of the first about the stalk, degrees, default 0.
-    #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg"))]
-    pub phase_deg: f64,
-    /// Place of the lowest on the stalk as a share of its length, 0 to 1, default 0.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub from: f64,
-    /// Place of the highest, 0 to 1, default 0.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub to: f64,
-    /// Length of the blade, or of a leaflet, metres, default 0.08.
-    #[schemars(range(min = 1e-3, max = 5.0), extend("x-unit" = "m"))]
-    pub length_m: f64,
-    /// Greatest width, metres, default 0.03.
-    #[schemars(range(min = 1e-4, max = 5.0), extend("x-unit" = "m"))]
-    pub width_m: f64,
-    /// Length of the stalk of the leaf, metres, default 0. Of a compound leaf: of the part that bears leaflets too.
-    #[schemars(range(min = 0.0, max = 2.0), extend("x-unit" = "m"))]
-    pub petiole_m: f64,
-    /// Leaflets of a pinnate leaf, 1 to 21, default 1: a simple leaf.
-    #[schemars(range(min = 1, max = 21))]
-    pub leaflets: u32,
-    /// Place of the greatest width along the blade, 0.1 to 0.9, default 0.4.
-    #[schemars(range(min = 0.1, max = 0.9))]
-    pub widest: f64,
-    /// Width at the base as a share of the greatest, 0 to 1, default 0.1.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub base: f64,
-    /// How pointed the tip is, 0 round to 1, default 0.9.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub point: f64,
-    /// How far the blade reaches back on both sides of its stalk, as a share of the length, 0 to 0.6, default 0.
-    #[schemars(range(min = 0.0, max = 0.6))]
-    pub heart: f64,
-    /// Lobes or teeth of a side, 0 to 20, default 0.
-    #[schemars(range(min = 0, max = 20))]
-    pub lobes: u32,
-    /// Their depth as a share of half the width, 0 to 0.9, default 0.
-    #[schemars(range(min = 0.0, max = 0.9))]
-    pub lobe_depth: f64,
-    /// Angle to the stalk at base, middle and tip, degrees.
-    #[schemars(inner(range(min = -90.0, max = 270.0)), extend("x-unit" = "deg"))]
-    pub angle_deg: [f64; 3],
-    /// How much steeper the last ones stand, as a share, 0 to 1, default 0.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub steeper: f64,
-    /// How much smaller the last ones are, as a share, 0 to 0.9, default 0.
-    #[schemars(range(min = 0.0, max = 0.9))]
-    pub smaller: f64,
-    /// Distance of one to the next within it where several stand at one place, metres, default 0.
-    #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "m"))]
-    pub gap_m: f64,
-    /// How far both halves are raised, degrees, -60 to 80, default 12.
-    #[schemars(range(min = -60.0, max = 80.0), extend("x-unit" = "deg"))]
-    pub fold_deg: f64,
-    /// Linear colour.
-    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
-    pub color: [f32; 3],
-}
-
-impl Default for Foliage {
-    /// Three lance-shaped leaves at the foot.
-    fn default() -> Self {
-        Self {
-            count: 3,
-            at_node: 1,
-            divergence_deg: 137.5,
-            phase_deg: 0.0,
-            from: 0.0,
-            to: 0.0,
-            length_m: 0.08,
-            width_m: 0.03,
-            petiole_m: 0.0,
-            leaflets: 1,
-            widest: 0.4,
-            base: 0.1,
-            point: 0.9,
-            heart: 0.0,
-            lobes: 0,
-            lobe_depth: 0.0,
-            angle_deg: [35.0, 55.0, 80.0],
-            steeper: 0.0,
-            smaller: 0.0,
-            gap_m: 0.0,
-            fold_deg: 12.0,
-            color: [0.055, 0.15, 0.03],
-        }
-    }
-}
+use crate::parts::Foliage;
+use crate::wanted::{FlowerSpec, rad};
 
 /// Half columns of a leaf, and rows.
 const HALF: u32 = 4;

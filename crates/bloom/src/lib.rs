@@ -17,10 +17,11 @@
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
 //! | `motion` | [`Motion`]: the shape at any day |
-//! | `flower`, `species` | [`FlowerSpec`]: whole flowers that open and wilt, day -> `Plant` |
+//! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]: what can be asked |
+//! | `flower`, `species` | whole flowers that open and wilt, day -> `Plant` |
 //! | `whorl`, `petal` | [`Whorl`]: rings of petals, nested within one another |
-//! | `centre` | [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`] |
-//! | `cluster`, `foliage`, `organs` | [`Cluster`], [`Foliage`]: where flowers and leaves stand; petals on the ground |
+//! | `centre` | stamens, pistil, disc and fruit on a day |
+//! | `cluster`, `foliage`, `organs` | where flowers and leaves stand; petals on the ground |
 //! | `overlap` | [`part_overlap`]: do parts pass through one another |
 //! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
@@ -42,6 +43,7 @@ mod motion;
 mod obb;
 mod organs;
 mod overlap;
+mod parts;
 mod petal;
 mod plot;
 mod pose;
@@ -50,15 +52,12 @@ mod segment;
 mod species;
 mod thin;
 mod trial;
+mod wanted;
 mod whorl;
 
-pub use centre::{Achenes, Disc, Fruit, Stamens};
 pub use clean::{CleanSpec, Cleaned, clean};
-pub use cluster::{Cluster, ClusterForm, Nods};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
-pub use flower::{FlowerSpec, PetalMesh};
-pub use foliage::Foliage;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_sizes, fit_stages};
@@ -67,10 +66,12 @@ pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
 pub use organs::Seat;
 pub use overlap::{PartTriangle, crossed, overlap_share, part_overlap, part_triangles};
+pub use parts::{Achenes, Cluster, ClusterForm, Disc, Foliage, Fruit, Nods, Stamens};
 pub use plot::plot_svg;
 pub use pose::{OrganStep, PoseStep, RigidMotion, Settled, settle};
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};
 pub use species::{preset, preset_text};
 pub use trial::{Rival, Trial, TrialRow, best_move, leave_one_out};
+pub use wanted::{FlowerSpec, PetalMesh};
 pub use whorl::{Aestivation, Fate, Guide, Innermost, Insertion, PetalForm, Whorl};

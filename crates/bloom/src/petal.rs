@@ -4,9 +4,9 @@ use base::{Seed, ops};
 use glam::DVec3;
 use plant::OrganKind;
 
-use crate::flower::{FlowerSpec, PetalMesh, rad};
 use crate::foliage::Ground;
 use crate::organs::{Bed, Grid};
+use crate::wanted::{FlowerSpec, PetalMesh, rad};
 use crate::whorl::{Aestivation, Fate, Whorl};
 use crate::{GrowthLaw, Quantity};
 

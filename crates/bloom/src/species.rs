@@ -1,6 +1,6 @@
 //! The flowers that come with the program.
 
-use crate::flower::FlowerSpec;
+use crate::wanted::FlowerSpec;
 
 macro_rules! species {
     ($($name:literal),*) => {

@@ -5,7 +5,8 @@ use glam::DVec3;
 use plant::{Chart, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
-use crate::spec::{LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
+use crate::spec::{LeafSpec, SurfaceKind, VeinParameters};
+use crate::thickness::ThicknessRule;
 
 /// A leaf as curves and a surface.
 ///

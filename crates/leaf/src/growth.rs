@@ -5,7 +5,8 @@ use glam::DVec3;
 
 use crate::blade::Leaf;
 use crate::marks::{FullMarks, FullRow, MARKS_A_ROW, MarksError};
-use crate::spec::{LeafSpec, ThicknessRule};
+use crate::spec::LeafSpec;
+use crate::thickness::ThicknessRule;
 
 /// A leaf measured on several days.
 ///

@@ -30,6 +30,7 @@ mod profile;
 mod rays;
 mod scan;
 mod spec;
+mod thickness;
 
 pub use blade::Leaf;
 pub use form::LeafForm;
@@ -40,4 +41,5 @@ pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};
 pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};
 pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};
-pub use spec::{LeafPaint, LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
+pub use spec::{LeafPaint, LeafSpec, SurfaceKind, VeinParameters};
+pub use thickness::ThicknessRule;

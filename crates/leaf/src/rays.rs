@@ -7,7 +7,7 @@ use geom::{NaturalCubic, SplineError, SplineSurface, subdivided};
 use glam::DVec3;
 use plant::{Chart, SplineBlade, Vein, VeinShade, Venation};
 
-use crate::spec::ThicknessRule;
+use crate::thickness::ThicknessRule;
 
 /// Lines of marks that all run from the base of the leaf towards its margin.
 ///

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::form::LeafForm;
 use crate::pose::Pose;
+use crate::thickness::ThicknessRule;
 
 /// Surface of a measured blade (Wang et al. 2011, section 2.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -35,17 +36,6 @@ impl SurfaceKind {
             Self::Nurbs => "nurbs",
         }
     }
-}
-
-/// What a measured thickness is to its vein's ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ThicknessRule {
-    /// A calliper's reading: the ball's diameter.
-    #[default]
-    Diameter,
-    /// The ball's radius, as the formulas take it.
-    Radius,
 }
 
 /// Which parameters an interpolating side vein has.

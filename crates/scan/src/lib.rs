@@ -23,10 +23,12 @@ mod scanner;
 mod stems;
 mod surface;
 mod tree;
+mod wanted;
 mod ways;
 
 pub use error::ScanTreeError;
 pub use ground::Ground;
 pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};
-pub use tree::{FoundTree, Tally, TreeScanSpec, find_tree};
+pub use tree::{FoundTree, find_tree};
+pub use wanted::{Tally, TreeScanSpec};

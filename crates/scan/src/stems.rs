@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::ScanTreeError;
 use crate::ground::Ground;
 use crate::levels::Rings;
-use crate::tree::{Tally, TreeScanSpec};
+use crate::wanted::{Tally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
 /// Where a tree stands: heights over the ground.

@@ -7,7 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spec::Colour;
 
-use crate::{BarkKind, Venation, Worn};
+use crate::Worn;
+use crate::natural::{BarkKind, Venation};
 
 /// How a plant is given its surface. Saved with the document.
 ///

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use burgeon::document::PlantId;
 use burgeon::plant::Plant;
 use burgeon::shape::{HandEdit, Thumb, Tool};
-
-use crate::CarriedPose;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// A gesture that is going on, or was and waits for its command.
 #[derive(Clone, Debug)]
@@ -36,4 +36,17 @@ pub(crate) struct Rows {
     pub(crate) mesh: u64,
     /// Part, first triangle, and the one after the last, of each range.
     pub(crate) ranges: Vec<[u32; 3]>,
+}
+
+/// How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct CarriedPose {
+    /// The name of the meshes of which [`Workspace::held_rows`](crate::Workspace::held_rows) are.
+    pub mesh: u64,
+    /// Where it began.
+    pub from: [f64; 3],
+    /// Where it begins now.
+    pub to: [f64; 3],
+    /// A unit quaternion: x, y, z, w.
+    pub turn: [f64; 4],
 }

@@ -3,40 +3,13 @@
 //! `most triangles + plants as they were made -> the finest levels that fit -> what the shell shows of them`
 
 use burgeon::document::PlantId;
-use burgeon::{LiteMap, PlantLevel, Run};
+use burgeon::{PlantLevel, Run};
 
 use crate::Workspace;
+use crate::shown::Shown;
 
 /// The coarsest level.
 const COARSEST: u32 = 6;
-
-/// Levels that are shown in the place of plants.
-#[derive(Debug, Default)]
-pub(crate) struct Levels {
-    most: Option<u64>,
-    shown: LiteMap<PlantId, Shown>,
-}
-
-#[derive(Debug)]
-struct Shown {
-    /// Of the meshes that it is a level of.
-    revision: u64,
-    level: u32,
-    made: PlantLevel,
-}
-
-impl Levels {
-    /// What is shown of a plant, if not its finest meshes.
-    pub(crate) fn of(&self, id: PlantId) -> Option<&PlantLevel> {
-        self.shown.get(&id).map(|s| &s.made)
-    }
-
-    /// The name of the meshes that are shown of a plant whose finest have this one.
-    pub(crate) fn name(&self, id: PlantId, revision: u64) -> u64 {
-        // Far above all revisions, and still whole in a number of JavaScript.
-        self.shown.get(&id).map_or(revision, |s| revision + (u64::from(s.level) << 48))
-    }
-}
 
 impl Workspace {
     /// From the next evaluation on shows at most so many triangles of all plants together, the largest coarser than the

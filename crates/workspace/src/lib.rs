@@ -10,7 +10,7 @@
 //! | `exported` | exports that are looked at before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
-//! | `levels` | levels of detail for shells that draw little |
+//! | `levels`, `shown` | levels of detail for shells that draw little |
 //! | `record` | what hands did, as a file, and again |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
@@ -32,6 +32,7 @@ mod looked;
 mod record;
 mod scatter;
 mod shaping;
+mod shown;
 mod state;
 mod view;
 mod workspace;
@@ -43,10 +44,11 @@ pub use error::{Refusal, WorkspaceError};
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
+pub use held::CarriedPose;
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter};
-pub use shaping::{CarriedPose, Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use shaping::{Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
     PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,

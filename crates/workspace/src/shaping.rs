@@ -16,7 +16,7 @@ use burgeon::shape::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::held::{Held, Rows};
+use crate::held::{CarriedPose, Held, Rows};
 use crate::view::{PREVIEW_DETAIL, coarser};
 use crate::{Workspace, WorkspaceError};
 
@@ -193,19 +193,6 @@ impl Grown {
         let per_metre = (branches > 0 && length > 0.0).then(|| branches as f64 / length);
         Self { rounds, branches, per_metre }
     }
-}
-
-/// How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct CarriedPose {
-    /// The name of the meshes of which [`Workspace::held_rows`] are.
-    pub mesh: u64,
-    /// Where it began.
-    pub from: [f64; 3],
-    /// Where it begins now.
-    pub to: [f64; 3],
-    /// A unit quaternion: x, y, z, w.
-    pub turn: [f64; 4],
 }
 
 impl Workspace {

@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::held::Held;
 use crate::kept::Kept;
-use crate::levels::Levels;
 use crate::looked::Looked;
+use crate::shown::Levels;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
 

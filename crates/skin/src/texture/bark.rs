@@ -6,56 +6,7 @@ use base::{Digest, Executor, ops};
 use super::noise::{Plates, gradient, octaves, strokes};
 use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, mix, shade};
-
-/// What bark is like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum BarkKind {
-    /// Ridges that part and meet again, broken across, with furrows between: oak, poplar, willow.
-    #[default]
-    Furrowed,
-    /// Closed and grey, with fine wrinkles across and eyes where branches have been: beech.
-    Smooth,
-    /// Plates of thin scales with deep cracks between: pine.
-    Plated,
-    /// White paper with lenticels across, which peels, and black rhombs: birch.
-    Birch,
-    /// Glossy bands with raised lenticels, which peels across: cherry.
-    Cherry,
-    /// Rings that fallen leaves have left: palm.
-    Ringed,
-    /// Smooth and jointed: bamboo.
-    Cane,
-    /// Young: fine wrinkles along it and small lenticels.
-    Twig,
-}
-
-impl BarkKind {
-    /// Every kind.
-    pub const ALL: [Self; 8] = [
-        Self::Furrowed,
-        Self::Smooth,
-        Self::Plated,
-        Self::Birch,
-        Self::Cherry,
-        Self::Ringed,
-        Self::Cane,
-        Self::Twig,
-    ];
-
-    /// Height of the relief over the width of a tile.
-    const fn depth(self) -> f64 {
-        match self {
-            Self::Furrowed => 0.030,
-            Self::Plated => 0.034,
-            Self::Birch | Self::Cherry => 0.010,
-            Self::Ringed => 0.024,
-            Self::Smooth => 0.007,
-            Self::Cane => 0.010,
-            Self::Twig => 0.016,
-        }
-    }
-}
+use crate::natural::BarkKind;
 
 /// A bark and its colour on the whole (sRGB, 0 to 1); of birch that of its white.
 ///

@@ -10,28 +10,7 @@ use super::noise::{Plates, gradient, octaves};
 use super::relief::{Sheet, Spot, Surface, surface};
 use super::{line, mix, shade, whole};
 use crate::BladeChart;
-
-/// How the veins of a leaf run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Venation {
-    /// A midrib with side veins, which end in the tips of lobes where there are any: oak, beech, lime.
-    #[default]
-    Pinnate,
-    /// One vein for each lobe from the end of the stalk: maple.
-    Palmate,
-    /// Side by side from root to tip: grasses, palms.
-    Parallel,
-    /// Of leaflets, each with a midrib of its own: ash, rose.
-    Compound,
-    /// None to be seen: needles and scales.
-    Needle,
-}
-
-impl Venation {
-    /// Every kind.
-    pub const ALL: [Self; 5] = [Self::Pinnate, Self::Palmate, Self::Parallel, Self::Compound, Self::Needle];
-}
+use crate::natural::Venation;
 
 /// Roughness of the glossiest leaf material; those of a surface are shares of it.
 pub(crate) const LEAF_ROUGHNESS: f32 = 0.7;

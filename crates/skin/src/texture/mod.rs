@@ -15,8 +15,6 @@ use std::sync::{Arc, OnceLock};
 use base::{Executor, map_indexed};
 use mesh::Texture;
 
-pub use bark::BarkKind;
-pub use foliage::Venation;
 pub use patterns::swatch;
 pub use veins::{LeafColours, vein_texture};
 
