@@ -917,6 +917,7 @@ export const en = {
   'field.profile': 'profile',
   'field.pull': 'pull along the stroke',
   'field.radii_m': 'half extents',
+  'field.radius': 'radius',
   'field.radius_m': 'radius',
   'field.rate_per_day': 'rate of growth per day',
   'field.reach_m': 'reach',

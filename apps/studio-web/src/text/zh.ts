@@ -907,6 +907,7 @@ export const zh: Record<TextKey, string> = {
   'field.profile': '轮廓线',
   'field.pull': '沿笔画的牵引',
   'field.radii_m': '半轴',
+  'field.radius': '半径',
   'field.radius_m': '半径',
   'field.rate_per_day': '每日生长速率',
   'field.reach_m': '影响范围',
