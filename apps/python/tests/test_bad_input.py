@@ -41,7 +41,7 @@ def test_unknown_fields_say_which_is_meant():
     "call, words",
     [
         (lambda: bg.grow("ok"), "there is no preset"),
-        (lambda: bg.bloom("dandelion"), "there is no flower"),
+        (lambda: bg.bloom("hyacinth"), "there is no flower"),
         (lambda: bg.grow("oak", age=float("nan")), "age must be a finite number"),
         (lambda: bg.grow("oak", age="old"), "age"),
         (lambda: bg.grow("oak", seed=-1), "seed must be a whole number"),
