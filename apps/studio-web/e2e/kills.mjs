@@ -27,6 +27,13 @@ function random() {
   return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
 }
 
+// A page that is killed while it opens may be told of by the browser after Playwright has forgotten it.
+process.on('uncaughtException', (e) => {
+  if (e.message.startsWith('Cannot find parent object page@')) return;
+  console.error(e);
+  process.exit(1);
+});
+
 const url = await serve(burgeon, folder);
 const profile = mkdtempSync(join(tmpdir(), 'burgeon-kills-'));
 process.on('exit', () => rmSync(profile, { recursive: true, force: true, maxRetries: 5 }));
