@@ -5,7 +5,7 @@
 
 use std::collections::BinaryHeap;
 
-use geom::{KdTree, Voxels};
+use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
 use crate::BloomError;
@@ -158,24 +158,10 @@ fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
     Ok(ways)
 }
 
-#[derive(PartialEq)]
-struct Step(f64, usize);
-impl Eq for Step {}
-impl PartialOrd for Step {
-    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Step {
-    fn cmp(&self, other: &Self) -> core::cmp::Ordering {
-        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
-    }
-}
-
 impl Ways {
     /// Dijkstra 1959 from cubes whose way is known.
     fn spread(&mut self, from: &[usize]) {
-        let mut heap: BinaryHeap<Step> = from.iter().map(|&c| Step(self.way[c], c)).collect();
+        let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c], c)).collect();
         let mut near = Vec::new();
         while let Some(Step(way, c)) = heap.pop() {
             if way > self.way[c] {

@@ -14,7 +14,7 @@
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
-//! | `kd`, `cubes`, `voxels` | neighbours; few points for many |
+//! | `kd`, `cubes`, `voxels`, `step` | neighbours; few points for many; shortest ways |
 //! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (Wang et al. 2011) |
 
@@ -32,6 +32,7 @@ mod pca;
 mod polygon;
 mod polyline;
 mod spline;
+mod step;
 mod triangulate;
 mod vector;
 mod voxels;
@@ -60,6 +61,7 @@ pub use spline::{
     Ball, BallBSpline, BallTubeSpec, Basis, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule,
     SplineError, SplineSurface, SurfacePoint, Tube, Weights, chord_parameters, subdivided,
 };
+pub use step::Step;
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
 pub use voxels::Voxels;
 pub use wheel::{Spoke, Wheel, wheels};

@@ -2,7 +2,7 @@
 
 use std::collections::BinaryHeap;
 
-use geom::{KdTree, Voxels};
+use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
 /// No cube.
@@ -20,20 +20,6 @@ pub(crate) struct Ways {
     pub(crate) parent: Vec<u32>,
     /// The plant that each cube was reached by.
     pub(crate) plant: Vec<u32>,
-}
-
-#[derive(PartialEq)]
-struct Step(f64, u32);
-impl Eq for Step {}
-impl PartialOrd for Step {
-    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Step {
-    fn cmp(&self, other: &Self) -> core::cmp::Ordering {
-        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
-    }
 }
 
 impl Ways {
@@ -83,7 +69,7 @@ impl Ways {
 
     /// Shortest ways from cubes whose way is known (Dijkstra 1959), over cubes for which `open` is true.
     pub(crate) fn spread(&mut self, from: &[u32], open: impl Fn(usize) -> bool) {
-        let mut heap: BinaryHeap<Step> = from.iter().map(|&c| Step(self.way[c as usize], c)).collect();
+        let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c as usize], c)).collect();
         let mut near = Vec::new();
         while let Some(Step(way, at)) = heap.pop() {
             let c = at as usize;
