@@ -16,6 +16,10 @@ fn main() -> io::Result<()> {
         collect(&page.canonicalize()?, "", &mut files)?;
     }
     files.sort();
+    // A file that is there packed as well goes in so, and is unpacked for the few that cannot do it themselves.
+    let packed: Vec<String> =
+        files.iter().filter_map(|(name, _)| name.strip_suffix(".br")).map(str::to_owned).collect();
+    files.retain(|(name, _)| !packed.contains(name));
     let out = folder("OUT_DIR")?;
     let mut source = String::from("&[\n");
     for (k, (name, path)) in files.iter().enumerate() {

@@ -1,5 +1,7 @@
 import { createHash } from 'node:crypto';
-import { existsSync, readdirSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { brotliCompressSync, constants } from 'node:zlib';
 import { defineConfig, type Plugin } from 'vite';
 
 /** Pictures of species that are there: the page shows the name alone where one is missing. */
@@ -49,9 +51,39 @@ self.addEventListener('fetch', (e) => {
   };
 }
 
+/** Files below this many bytes travel in one packet or two, whatever is done to them. */
+const WORTH_PACKING = 2048;
+
+/** Writes each large file of text or code a second time, packed by Brotli: what `burgeon studio` and good hosts send. */
+function packed(): Plugin {
+  let folder = '';
+  return {
+    name: 'packed',
+    apply: 'build',
+    enforce: 'post',
+    configResolved(config) {
+      // A page for tests is thrown away: it is not worth the seconds that this takes.
+      folder = config.mode === 'test' ? '' : config.build.outDir;
+    },
+    closeBundle() {
+      const files = folder === '' ? [] : readdirSync(folder, { recursive: true, encoding: 'utf8' });
+      for (const name of files.filter((f) => /\.(?:js|css|html|svg|json|wasm)$/.test(f))) {
+        const path = join(folder, name);
+        const bytes = readFileSync(path);
+        if (bytes.length < WORTH_PACKING) continue;
+        const params = {
+          [constants.BROTLI_PARAM_LGWIN]: 24,
+          [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+        };
+        writeFileSync(`${path}.br`, brotliCompressSync(bytes, { params }));
+      }
+    },
+  };
+}
+
 export default defineConfig({
   base: './',
-  plugins: [offline()],
+  plugins: [offline(), packed()],
   define: { PRESET_PICTURES: JSON.stringify(pictures.map((f) => f.slice(0, -4))) },
   worker: { format: 'es' },
   build: {

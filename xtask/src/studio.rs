@@ -40,8 +40,8 @@ pub(crate) fn build(tools: &Tools, release: bool) -> Outcome {
     packages()?;
     let wasm = build_wasm(tools, release)?;
     bindgen(tools, &wasm, "web", &folder().join("src/wasm"))?;
-    let to = if release { "dist" } else { "dist-test" };
-    npm(&["run", "--silent", "build", "--", "--logLevel", "warn", "--outDir", to])?;
+    let (to, mode) = if release { ("dist", "production") } else { ("dist-test", "test") };
+    npm(&["run", "--silent", "build", "--", "--logLevel", "warn", "--outDir", to, "--mode", mode])?;
     if release { renew_program() } else { Ok(()) }
 }
 

@@ -1,8 +1,7 @@
 // node e2e/bench.mjs CHROMIUM BURGEON : measures the Studio as built in dist/, in a real browser against the real server.
 // ONLY=many measures that part alone: start, pen, tree, first, many, project or memory.
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { extname } from 'node:path';
-import { gzipSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { serve } from './server.mjs';
@@ -58,8 +57,9 @@ if (wanted('start')) {
   await context.close();
   const bytes = [...fetched]
     .filter((path) => ['.html', '.js', '.css', '.wasm'].includes(extname(path)))
-    .reduce((sum, path) => sum + gzipSync(readFileSync(`dist${path}`), { level: 9 }).length, 0);
-  row('transfer at the start without samples, gzip', `${(bytes / 1e6).toFixed(3)} MB`, '< 2 MB');
+    .map((path) => (existsSync(`dist${path}.br`) ? `dist${path}.br` : `dist${path}`))
+    .reduce((sum, path) => sum + statSync(path).size, 0);
+  row('transfer at the start without samples', `${(bytes / 1e6).toFixed(3)} MB`, '< 2 MB');
   const [paints, usable] = [[], []];
   for (let i = 0; i < 5; i += 1) {
     const { context, page } = await fresh();

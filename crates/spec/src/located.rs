@@ -370,10 +370,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        match &self.node.kind {
-            Kind::List(all) => self.list(all, visitor),
-            _ => self.deserialize_map(visitor),
-        }
+        // Never as a list of values without names, which nobody writes: that would be as much code again for each type.
+        self.deserialize_map(visitor)
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {

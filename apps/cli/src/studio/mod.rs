@@ -148,7 +148,23 @@ mod tests {
     fn the_page_in_the_program_is_whole_or_not_there() {
         let has = |name: &str| PAGE.iter().any(|f| f.0 == name);
         assert_eq!(has("index.html"), !PAGE.is_empty(), "the page itself");
-        let wasm = |f: &(&str, &[u8])| f.0.ends_with(".wasm") && f.1.starts_with(b"\0asm");
-        assert_eq!(PAGE.iter().any(wasm), !PAGE.is_empty(), "the core");
+        let site = Site::new(Page::Inside(PAGE), 1, None).unwrap();
+        let wasm = PAGE.iter().map(|f| f.0.trim_end_matches(".br")).find(|name| name.ends_with(".wasm"));
+        let asks = |name: &str, more: &str| {
+            let head = format!("GET /{name} HTTP/1.1\r\nHost: localhost:1{more}");
+            let peer = Ipv4Addr::LOCALHOST.into();
+            let asked = site.asked(head.as_bytes(), peer).unwrap();
+            site.answer(head.as_bytes(), &asked, &[], peer)
+        };
+        if let Some(name) = wasm {
+            assert!(asks(name, "").body.starts_with(b"\0asm"), "the core");
+            let packed = asks(name, "\r\nAccept-Encoding: gzip, br");
+            assert!(
+                packed.head.contains("Content-Encoding: br") && packed.body.len() < 2_000_000,
+                "{}",
+                packed.head
+            );
+        }
+        assert_eq!(wasm.is_some(), !PAGE.is_empty(), "the core");
     }
 }

@@ -42,6 +42,8 @@ pub(crate) struct Asked {
     pub(crate) key: Option<String>,
     /// The version of the file that is to be replaced.
     pub(crate) known: Option<String>,
+    /// Whether the browser unpacks what Brotli packed.
+    pub(crate) unpacks: bool,
 }
 
 /// What a server answers to.
@@ -77,7 +79,7 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
         return Err((505, "only HTTP/1.1 is spoken here"));
     }
     let (mut host, mut origin, mut site, mut mode) = (None, None, None, None);
-    let (mut length, mut cookies, mut known) = (None, None, None);
+    let (mut length, mut cookies, mut known, mut unpacks) = (None, None, None, false);
     for line in lines {
         let (name, value) = line.split_once(':').ok_or((400, "a header is broken"))?;
         let value = value.trim();
@@ -92,6 +94,10 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
             "content-length" => &mut length,
             "cookie" => &mut cookies,
             "if-match" => &mut known,
+            "accept-encoding" => {
+                unpacks |= takes_brotli(value);
+                continue;
+            }
             "transfer-encoding" | "upgrade" => return Err((413, "nothing is taken in here")),
             _ => continue,
         };
@@ -129,7 +135,16 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
     let cookie = pairs.filter(|(name, _)| *name == COOKIE).map(|(_, value)| value.to_owned()).next();
     let query = target.split_once('?').map_or("", |(_, query)| query).split('#').next().unwrap_or_default();
     let key = query.split('&').find_map(|pair| pair.strip_prefix("key=")).map(str::to_owned);
-    Ok(Asked { method, target: target_is, length, cookie, key, known: known.map(str::to_owned) })
+    Ok(Asked { method, target: target_is, length, cookie, key, known: known.map(str::to_owned), unpacks })
+}
+
+/// Whether Brotli is among these encodings, and not with a weight of nothing (RFC 9110, 12.5.3).
+fn takes_brotli(encodings: &str) -> bool {
+    encodings.split(',').any(|one| {
+        let (name, weight) = one.split_once(';').unwrap_or((one, "q=1"));
+        let weight = weight.trim().strip_prefix("q=").and_then(|q| q.parse::<f64>().ok());
+        name.trim().eq_ignore_ascii_case("br") && weight.is_some_and(|q| q > 0.0)
+    })
 }
 
 /// What a target names.

@@ -151,7 +151,7 @@ impl Site {
         let answer = match asked.method {
             Method::Enter => self.enter(body, peer),
             Method::Save => self.save(asked, body),
-            Method::Read => self.file(&asked.target).unwrap_or_else(|| refusal(404, NO_FILE)),
+            Method::Read => self.file(asked).unwrap_or_else(|| refusal(404, NO_FILE)),
         };
         answer.to(head)
     }
@@ -258,8 +258,8 @@ impl Site {
         }
     }
 
-    fn file(&self, target: &Target) -> Option<Answer> {
-        match target {
+    fn file(&self, asked: &Asked) -> Option<Answer> {
+        match &asked.target {
             Target::Door => Some(doorway("")),
             Target::Opened(name) => {
                 let path = self.is_opened(name)?;
@@ -277,7 +277,17 @@ impl Site {
                 let extension = Path::new(path).extension()?.to_str()?;
                 let kind = TYPES.iter().find(|t| t.0 == extension)?.1;
                 // Built files bear their content in their name.
-                Some(given(kind, path.starts_with("assets/"), self.bytes(path)?))
+                let forever = path.starts_with("assets/");
+                let packed = self.bytes(&format!("{path}{PACKED}"));
+                let Some(packed) = packed else { return Some(given(kind, forever, self.bytes(path)?)) };
+                if asked.unpacks {
+                    let mut answer = given(kind, forever, packed);
+                    answer.head =
+                        answer.head.replacen("Cache-Control:", "Content-Encoding: br\r\nCache-Control:", 1);
+                    return Some(answer);
+                }
+                let body = self.bytes(path).or_else(|| unpacked(&packed).map(Cow::Owned));
+                Some(given(kind, forever, body?))
             }
         }
     }
@@ -295,11 +305,20 @@ impl Site {
     }
 }
 
+/// Ends the name of a file of the page that Brotli packed.
+const PACKED: &str = ".br";
+
+fn unpacked(mut packed: &[u8]) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    brotli_decompressor::BrotliDecompress(&mut packed, &mut bytes).ok()?;
+    Some(bytes)
+}
+
 fn given(kind: &str, forever: bool, body: Cow<'static, [u8]>) -> Answer {
     let cache = if forever { "public, max-age=31536000, immutable" } else { "no-cache" };
     let head = format!(
         "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: {cache}\r\n\
-         Content-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
+         Vary: Accept-Encoding\r\nContent-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
         body.len()
     );
     Answer { status: 200, head, body }
@@ -454,6 +473,42 @@ mod tests {
         }
         assert_eq!(get(&inside, "GET / HTTP/1.1", "\r\nOrigin: http://evil.example").status, 403);
         assert_eq!(plain(&inside, b"GET / HTTP/1.1\r\nHost: evil.example").status, 421);
+        fs::remove_dir_all(base).unwrap();
+    }
+
+    /// `leaf ` eight times, packed.
+    const LEAVES: &[u8] =
+        &[27, 39, 0, 248, 141, 148, 110, 222, 180, 4, 41, 99, 171, 48, 179, 104, 39, 10, 232, 9];
+
+    #[test]
+    fn packed_files_are_sent_packed_to_those_who_can_unpack() {
+        let (folder, base) = site("packed");
+        fs::write(base.join("dist/assets/b-1.js.br"), LEAVES).unwrap();
+        let files: Files = &[("assets/b-1.js.br", LEAVES)];
+        let inside = Site::new(Page::Inside(files), 7734, None).unwrap();
+        let plain = "leaf ".repeat(8);
+        for site in [&folder, &inside] {
+            for (takes, packed) in [
+                ("", false),
+                ("\r\nAccept-Encoding: gzip, deflate", false),
+                ("\r\nAccept-Encoding: gzip, br;q=0", false),
+                ("\r\nAccept-Encoding: brx, *", false),
+                ("\r\nAccept-Encoding: gzip, deflate, br, zstd", true),
+                ("\r\naccept-encoding: gzip\r\naccept-encoding: BR ; q=0.5", true),
+            ] {
+                let answer = get(site, "GET /assets/b-1.js HTTP/1.1", takes);
+                let body = if packed { LEAVES } else { plain.as_bytes() };
+                assert_eq!((answer.status, &*answer.body), (200, body), "{takes}");
+                assert_eq!(answer.head.contains("Content-Encoding: br\r\n"), packed, "{takes}");
+                assert!(answer.head.contains(&format!("Content-Length: {}\r\n", body.len())), "{takes}");
+                assert!(
+                    answer.head.contains("Vary: Accept-Encoding") && answer.head.contains("text/javascript")
+                );
+            }
+            assert_eq!(get(site, "GET /assets/b-1.js.br HTTP/1.1", "").status, 404, "no type of its own");
+        }
+        let broken = Site::new(Page::Inside(&[("a.js.br", b"no Brotli")]), 7734, None).unwrap();
+        assert_eq!(get(&broken, "GET /a.js HTTP/1.1", "").status, 404);
         fs::remove_dir_all(base).unwrap();
     }
 
