@@ -122,3 +122,29 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
     `| ${preset} | ${triangles} | ${least(grown)} | ${least(moves)} | ${moves[moves.length >> 1].toFixed(1)} ms | ${least(wholes)} |`,
   );
 }
+
+console.log('\n| flower | triangles | another day on the slider, least | median |\n|---|---|---|---|');
+for (const preset of ['rose', 'peony', 'cherry-blossom', 'dandelion', 'orchid', 'lily']) {
+  const session = new StudioSession();
+  session.act(JSON.stringify({ add: { name: preset, maker: { flower: preset } } }));
+  let [triangles, plant] = [0, 0];
+  const shown = () => {
+    const { id, parts, item } = JSON.parse(session.evaluate()).plants.at(-1);
+    [plant, triangles] = [id, item.counts.triangles];
+    parts.forEach((_, p) => {
+      for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p);
+    });
+  };
+  shown();
+  const days = [];
+  for (let k = 0; k < 24; k += 1) {
+    const start = performance.now();
+    // From bud to wilted, at no day that a preset starts with.
+    session.run(JSON.stringify({ flower: [plant, { 'set-day': 0.013 + (9 * k) / 24 }] }));
+    shown();
+    days.push(performance.now() - start);
+  }
+  days.sort((a, b) => a - b);
+  console.log(`| ${preset} | ${triangles} | ${days[0].toFixed(1)} ms | ${days[12].toFixed(1)} ms |`);
+  session.free();
+}
