@@ -84,13 +84,13 @@ struct MotionReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     aligned: Option<ErrorReport>,
     /// How plant and organs moved between scans.
-    poses: Vec<poses::Told>,
+    poses: Vec<poses::PoseReport>,
     /// What the registration of each organ left.
     residuals: Vec<ResidualReport>,
     /// Share of petal triangles that cross another petal, at each frame of a flower.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     overlap: Vec<f64>,
-    stages: Vec<stages::Told>,
+    stages: Vec<stages::StageReport>,
 }
 
 pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
@@ -237,12 +237,12 @@ fn run(args: &BloomRunArgs) -> Outcome {
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     head.items[0].warnings.extend(no_pace(args, &made.law));
-    let told = Told {
+    let told = BloomReport {
         head,
         residuals: made.residuals(),
         error: errors.map(|e| e.0),
         aligned: errors.map(|e| e.1),
-        poses: made.settled.steps.iter().map(poses::Told::from).collect(),
+        poses: made.settled.steps.iter().map(poses::PoseReport::from).collect(),
         stages: loaded.told.clone(),
         lattice: Some(args.lattice),
         times: [read_ms, fit_ms, write_ms],
@@ -341,18 +341,18 @@ fn compared(
 }
 
 /// Everything that the report of `run` is made of, beside what was written.
-struct Told {
+struct BloomReport {
     head: RunReport,
     residuals: Vec<ResidualReport>,
     error: Option<ErrorReport>,
     aligned: Option<ErrorReport>,
-    poses: Vec<poses::Told>,
-    stages: Vec<stages::Told>,
+    poses: Vec<poses::PoseReport>,
+    stages: Vec<stages::StageReport>,
     lattice: Option<[usize; 3]>,
     times: [f64; 3],
 }
 
-impl Told {
+impl BloomReport {
     fn of_flower(head: RunReport, times: [f64; 3]) -> Self {
         let (residuals, poses, stages) = (vec![], vec![], vec![]);
         Self { head, residuals, error: None, aligned: None, poses, stages, lattice: None, times }
@@ -362,7 +362,7 @@ impl Told {
 fn tell(
     args: &BloomRunArgs,
     machine: &Machine,
-    mut told: Told,
+    mut told: BloomReport,
     written: Written,
     outputs: Outputs,
 ) -> Outcome {
@@ -409,7 +409,7 @@ fn tell(
                 e.mean_mm, e.back_mean_mm
             ));
         }
-        report.poses.iter().flat_map(poses::Told::lines).for_each(|l| say::line(&l));
+        report.poses.iter().flat_map(poses::PoseReport::lines).for_each(|l| say::line(&l));
         let frames = say::counted(u64::from(report.frames), "shape", "shapes");
         let points = say::counted(item.counts.vertices, "point", "points");
         say::line(&format!(
@@ -588,7 +588,7 @@ fn drawn_flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [read_ms, made_ms, write_ms];
-    let told = Told::of_flower(head, times);
+    let told = BloomReport::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 
@@ -658,7 +658,7 @@ fn flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [0.0, 0.0, write_ms];
-    let told = Told::of_flower(head, times);
+    let told = BloomReport::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 

@@ -10,7 +10,7 @@ pub(crate) enum Failure {
     /// Bad usage or bad input: exit status 2.
     Bad(String),
     /// The outcome was told already (a batch with failing drawings): exit status 2, nothing more to say.
-    Told,
+    Reported,
     /// The user pressed Ctrl-C, or the program was asked to end: exit status 130.
     Cancelled,
     /// Our own bug: exit status 1.
@@ -69,7 +69,7 @@ impl Failure {
                 crate::say::error(&burgeon::brief(&crate::say::short(line)));
                 ExitCode::from(2)
             }
-            Self::Told => ExitCode::from(2),
+            Self::Reported => ExitCode::from(2),
             Self::Cancelled => {
                 crate::say::error(
                     "stopped; files that were written are whole, nothing half-written was left",

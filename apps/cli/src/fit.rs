@@ -107,9 +107,9 @@ struct FitReport {
     #[serde(flatten)]
     run: RunReport,
     laws: Vec<LawReport>,
-    stages: Vec<stages::Told>,
+    stages: Vec<stages::StageReport>,
     /// How plant and organs moved between scans.
-    poses: Vec<poses::Told>,
+    poses: Vec<poses::PoseReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     leave_one_out: Option<Vec<TrialReport>>,
 }
@@ -118,8 +118,8 @@ struct FitReport {
 struct Fitted {
     law: GrowthLaw,
     warnings: Vec<String>,
-    stages: Vec<stages::Told>,
-    poses: Vec<poses::Told>,
+    stages: Vec<stages::StageReport>,
+    poses: Vec<poses::PoseReport>,
     trials: Option<Vec<Trial>>,
     offset_m: Option<[f64; 3]>,
     read_ms: f64,
@@ -170,7 +170,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     if !machine.quiet {
         fitted.warnings.iter().for_each(|w| say::warning(w));
         report.stages.iter().for_each(|t| say::line(&t.line()));
-        report.poses.iter().flat_map(poses::Told::lines).for_each(|l| say::line(&l));
+        report.poses.iter().flat_map(poses::PoseReport::lines).for_each(|l| say::line(&l));
         tell_laws(law);
         fitted.trials.iter().flatten().for_each(tell_trial);
         say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
@@ -211,7 +211,7 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
         warnings: loaded.warnings,
         offset_m: loaded.origin.told(&loaded.axes),
         stages: loaded.told,
-        poses: settled.steps.iter().map(poses::Told::from).collect(),
+        poses: settled.steps.iter().map(poses::PoseReport::from).collect(),
         trials: trials.transpose().map_err(Failure::bloom(&args.input))?,
         read_ms,
         fit_ms,

@@ -47,7 +47,7 @@ impl From<&OrganStep> for OrganTold {
 
 /// What happened from one scan to the next.
 #[derive(Debug, Serialize)]
-pub(crate) struct Told {
+pub(crate) struct PoseReport {
     from_day: f64,
     to_day: f64,
     /// Of the whole plant about its foot; none where fewer than two organs are on both days.
@@ -57,7 +57,7 @@ pub(crate) struct Told {
     vanished: Vec<String>,
 }
 
-impl From<&PoseStep> for Told {
+impl From<&PoseStep> for PoseReport {
     fn from(s: &PoseStep) -> Self {
         Self {
             from_day: s.from_day,
@@ -70,7 +70,7 @@ impl From<&PoseStep> for Told {
     }
 }
 
-impl Told {
+impl PoseReport {
     /// Lines for people: one for the plant, one an organ.
     pub(crate) fn lines(&self) -> Vec<String> {
         let mut head = format!("day {} to {}", self.from_day, self.to_day);

@@ -38,7 +38,7 @@ pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     } else {
         machine.with_progress("drawing to plant", |_| job.one(&machine))?
     };
-    if report.failed > 0 { Err(Failure::Told) } else { Ok(()) }
+    if report.failed > 0 { Err(Failure::Reported) } else { Ok(()) }
 }
 
 /// Fails on options that nothing uses.
@@ -462,7 +462,7 @@ impl Done {
                 }
             }
             Err(Failure::Bug(line)) => self.bug = Some(format!("{place}: {line}")),
-            Err(Failure::Told | Failure::Cancelled) => {}
+            Err(Failure::Reported | Failure::Cancelled) => {}
         }
     }
 }

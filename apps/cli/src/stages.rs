@@ -72,7 +72,7 @@ struct StageEntry {
 
 /// What was done to a scan.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Told {
+pub(crate) struct StageReport {
     file: String,
     day: f64,
     points: usize,
@@ -84,7 +84,7 @@ pub(crate) struct Told {
     organs: Vec<OrganTold>,
 }
 
-impl Told {
+impl StageReport {
     /// One line for people.
     pub(crate) fn line(&self) -> String {
         let organs: Vec<String> = self.organs.iter().map(|o| format!("{} {}", o.name, o.points)).collect();
@@ -110,7 +110,7 @@ struct OrganTold {
 pub(crate) struct Loaded {
     pub(crate) name: String,
     pub(crate) stages: Vec<Stage>,
-    pub(crate) told: Vec<Told>,
+    pub(crate) told: Vec<StageReport>,
     pub(crate) warnings: Vec<String>,
     /// Faces of the first shape, where it is a model.
     pub(crate) mesh: Option<TriMesh>,
@@ -203,13 +203,13 @@ fn prepare(
     seed: Seed,
     machine: &Machine,
     out: &mut Loaded,
-) -> Outcome<(Vec<DVec3>, Option<TriMesh>, Told)> {
+) -> Outcome<(Vec<DVec3>, Option<TriMesh>, StageReport)> {
     machine.cancel.check()?;
     let Loaded { warnings, origin, .. } = out;
     let (points, mesh) = read_any(path, axes, origin, warnings)?;
     // The box to keep is given in the coordinates of the file.
     let spec = spec.map(|s| CleanSpec { crop: s.crop.map(|c| c.map(|p| origin.place(p))), ..*s });
-    let mut told = Told {
+    let mut told = StageReport {
         file: path.display().to_string(),
         day,
         points: points.len(),
