@@ -402,7 +402,8 @@ async function seasons({ page, url, shot }) {
   await slide(1);
   await changed(page, falling, 'bare');
   assert.ok((await count(page, 'triangles')) < fewer);
-  // Each is a step of undo, and what is written is what is seen.
+  // Each is a step of undo, by the keys too while the slider has them, and what is written is what is seen.
+  await page.locator('[data-path=season]').focus();
   await page.keyboard.press('Control+z');
   await page.waitForFunction((d) => document.body.dataset.digest === d, falling);
   await page.keyboard.press('Control+k');
