@@ -46,6 +46,13 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let mut spec = spec?;
     let leaves = ["leaf_keep", "leaf_template"];
     args.given.only_if(!spec.bare, &leaves, "trees with leaves", "this one is bare")?;
+    let sheds = !spec.bare && spec.look.autumn_color.is_some();
+    args.given.only_if(
+        sheds,
+        &["season"],
+        "trees that shed their leaves",
+        "this one is bare or an evergreen",
+    )?;
     let leaf = leaf_of(args, &mut spec, &machine)?;
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     outputs.check()?;
@@ -194,6 +201,7 @@ fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Tre
         spec.leaves.leaf_keep = keep;
     }
     spec.age = args.growth.age.or(spec.age);
+    spec.look.season = args.growth.season.unwrap_or(spec.look.season);
     Ok(spec)
 }
 

@@ -447,6 +447,7 @@ const LINES: [(&str, &[&str]); 6] = [
             "--kill",
             "--age",
             "--leaf-keep",
+            "--season",
             "--lods",
             "--method",
             "--obstacle",

@@ -373,6 +373,14 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     assert_ne!(digest(&[]), digest(&["--seed", "2"]));
     let nodes = |args: &[&str]| item(&at, &[&["bush.toml"], args].concat())["growth"]["nodes"].as_u64();
     assert!(nodes(&["--age", "6"]) < nodes(&[]));
+    // What sheds no leaves has no season.
+    spec(&at, "deciduous.toml", &format!("{SMALL}[look]\nautumn_color = \"#d9a437\"\n"));
+    let left =
+        |season: &str| item(&at, &["deciduous.toml", "--season", season])["growth"]["leaves_kept"].clone();
+    assert_eq!((left("0"), left("0.5"), left("1")), (all.into(), all.into(), 0.into()));
+    for args in [&["bush.toml", "--season", "0.5"][..], &["deciduous.toml", "--season", "1.5"]] {
+        assert!(bad(&at, &[&["grow"], args, &["--json"]].concat()).contains("season"), "{args:?}");
+    }
     // Levels of detail stand beside the model, each smaller.
     let args = ["grow", "bush.toml", "-o", "bush.glb", "--lods", "2", "--json"];
     let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();

@@ -76,6 +76,7 @@ const VALUES: &[(&str, &str)] = &[
     ("rows", "4"),
     ("save", "saved.burgeon"),
     ("schema", "schema.json"),
+    ("season", "0.5"),
     ("seconds", "2"),
     ("side-veins", "3"),
     ("sides", "5"),
@@ -169,7 +170,10 @@ fn inputs(dir: &Path) {
     write("materials.toml", &format!("[leaf]\n{shaded}\n[petal]\n{shaded}\n"));
     write("small.toml", SMALL);
     write("bare.toml", &format!("bare = true\n{SMALL}"));
-    write("light.toml", "name = \"light\"\n[method]\nkind = \"self-organizing\"\nyears = 3\n");
+    write(
+        "light.toml",
+        "name = \"light\"\n[method]\nkind = \"self-organizing\"\nyears = 3\n[look]\nautumn_color = \"#d9a437\"\n",
+    );
     write("box.obj", BOX);
     let points: Vec<String> = (0..200)
         .map(|i| {

@@ -1,5 +1,5 @@
 // node e2e/bench.mjs CHROMIUM BURGEON : measures the Studio as built in dist/, in a real browser against the real server.
-// ONLY=many measures that part alone: start, pen, tree, first, many, project or memory.
+// ONLY=many measures that part alone: start, pen, tree, first, usd, many, project or memory.
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { extname } from 'node:path';
 import { chromium } from 'playwright-core';
@@ -179,6 +179,29 @@ for (const species of wanted('first') ? ['oak', 'birch', 'spruce'] : []) {
     `${species}: from its picture to a first look at it, and to the whole`,
     `${ms(seen)}, ${ms(whole)}`,
     '<= 1000 ms',
+  );
+  await context.close();
+}
+
+// A birch as USD, from the button to the file.
+if (wanted('usd')) {
+  const { context, page } = await fresh();
+  await page.click('#b-add');
+  await page.click('[data-add=tree]');
+  await page.click('dialog [data-preset=birch]');
+  await page.waitForFunction(() => {
+    const { current, triangles, revision, wanted: asked } = document.body.dataset;
+    return current === 'tree' && Number(triangles) > 0 && revision === asked;
+  });
+  await page.click('#b-export');
+  await page.click('[data-format=usda]');
+  const start = performance.now();
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
+  const bytes = readFileSync(await download.path()).length;
+  row(
+    `birch as USD (${(bytes / 1e6).toFixed(1)} MB), from the button to the file`,
+    ms(performance.now() - start),
+    '<= 3000 ms',
   );
   await context.close();
 }

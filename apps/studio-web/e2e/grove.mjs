@@ -374,7 +374,53 @@ async function seen({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, oak);
 }
 
+/** From summer to winter and back: leaf by leaf, seen before it is exported; an evergreen has no autumn. */
+async function seasons({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel');
+  const summer = await settled(page);
+  const all = await count(page, 'triangles');
+  const slide = (to) =>
+    page.locator('[data-path=season]').evaluate((e, x) => {
+      e.value = String(x);
+      e.dispatchEvent(new Event('input', { bubbles: true }));
+      e.dispatchEvent(new Event('change', { bubbles: true }));
+    }, to);
+  const word = page.locator('label:has([data-path=season]) output');
+  assert.equal(await word.textContent(), 'summer');
+  await slide(0.5);
+  const autumn = await changed(page, summer, 'autumn');
+  assert.equal(await count(page, 'triangles'), all, 'no leaf has fallen');
+  assert.equal(await word.textContent(), 'autumn');
+  await page.waitForTimeout(900);
+  await shot('grove-autumn');
+  await slide(0.8);
+  const falling = await changed(page, autumn, 'leaves fall');
+  const fewer = await count(page, 'triangles');
+  assert.ok(fewer < all, `${fewer} of ${all}`);
+  await slide(1);
+  await changed(page, falling, 'bare');
+  assert.ok((await count(page, 'triangles')) < fewer);
+  // Each is a step of undo, by the keys too while the slider has them, and what is written is what is seen.
+  await page.locator('[data-path=season]').focus();
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, falling);
+  await page.keyboard.press('Control+k');
+  await page.locator('.palette input').waitFor();
+  await page.click('#p-export-view');
+  const lent = page.locator('#b-exportview [data-path=season]');
+  await lent.waitFor();
+  await slide(0.5);
+  await page.waitForFunction((d) => document.body.dataset.digest === d, autumn);
+  await page.click('#b-exportview-close');
+  await page.locator('#b-maker [data-path=season]').waitFor();
+  await add(page, 'tree', 'spruce');
+  await page.waitForFunction(() => document.querySelector('#b-maker [data-path=season]')?.disabled);
+}
+
 export const grove = [
+  ['grove: seasons', seasons, WIDE],
   ['grove: a large tree is seen before it is whole', seen, WIDE],
   ['grove: copies share one plant', copies, WIDE],
   ['grove: gizmos by keys', gizmos, WIDE],

@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { type CommandId, commandOf, COMMANDS, keyOf, keySheet, type Page } from './commands';
-import { commandFor, type Pressed } from './keyboard';
+import { commandFor, isTheirs, type Pressed } from './keyboard';
 import { en, type TextKey } from './text/en';
 import { zh } from './text/zh';
 
@@ -164,6 +164,20 @@ describe('a key', () => {
       [{ 'move-strokes': [[3], [-10, 0]] }],
       [{ 'move-strokes': [[3], [0, 50]] }],
     ]);
+  });
+
+  it('is left to a field that writes, and taken from one that does not', () => {
+    for (const field of ['text', 'number', 'search', 'textarea'])
+      for (const key of ['t', 'Ctrl+z', 'Delete'])
+        expect(isTheirs(field, press(key)), `${field} ${key}`).toBe(true);
+    for (const key of ['t', 'Ctrl+z', 'Ctrl+k', 'Escape'])
+      for (const field of ['range', 'checkbox', 'color'])
+        expect(isTheirs(field, press(key)), `${field} ${key}`).toBe(false);
+    expect(isTheirs('range', press('ArrowLeft'))).toBe(true);
+    expect(isTheirs('range', press('Delete'))).toBe(true);
+    expect(isTheirs('checkbox', press(' '))).toBe(true);
+    expect(isTheirs('select', press('t'))).toBe(true);
+    expect(isTheirs('select', press('Ctrl+z'))).toBe(false);
   });
 
   it('is shown to people as the first of a command’s keys', () => {

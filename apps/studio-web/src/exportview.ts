@@ -42,7 +42,7 @@ export class ExportPreview {
   });
   private readonly table = el('div', { class: 'figures', 'aria-live': 'polite' });
   private readonly rows = el('div', { class: 'settings' });
-  private readonly agePlace = el('div', { class: 'lent' });
+  private readonly lent = el('div', { class: 'lent' });
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   private shown: Exported | undefined;
   private wanted = 0;
@@ -73,7 +73,7 @@ export class ExportPreview {
       el('header', {}, el('h2', {}, t('exported.title')), close),
       el('p', { class: 'muted' }, t('exported.hint')),
       this.rows,
-      this.agePlace,
+      this.lent,
       this.table,
       el('div', { class: 'row' }, el('span', { class: 'space' }), write),
     );
@@ -158,17 +158,21 @@ export class ExportPreview {
     );
   }
 
-  /** The document changed: the age of a tree is lent by its panel, and what is seen is out of date. */
+  /** The document changed: age and season of a tree are lent by its panel, and what is seen is out of date. */
   follow(): void {
     if (this.several !== this.isSeveral) this.fill();
-    const old = this.agePlace.querySelector<HTMLElement>('[data-path="age"]');
-    const own = document.querySelector<HTMLElement>('#b-maker [data-path="age"]');
-    if (this.page.session.plant?.maker !== 'tree') this.agePlace.replaceChildren();
-    else if (own) {
-      const focused = old !== null && document.activeElement === old;
-      this.agePlace.replaceChildren(own.closest('label')!);
-      if (focused) own.focus();
+    if (this.page.session.plant?.maker !== 'tree') {
+      this.lent.replaceChildren();
+      return;
     }
+    const own = ['age', 'season'].map((path) =>
+      document.querySelector<HTMLElement>(`#b-maker [data-path="${path}"]`),
+    );
+    if (own.includes(null)) return;
+    const focused =
+      this.lent.contains(document.activeElement) && document.activeElement?.getAttribute('data-path');
+    this.lent.replaceChildren(...own.map((slider) => slider!.closest('label')!));
+    if (focused) this.lent.querySelector<HTMLElement>(`[data-path="${focused}"]`)?.focus();
   }
 
   /** The plants were made again. */
@@ -274,7 +278,7 @@ export class ExportPreview {
     this.element.remove();
     this.page.view.setStandIn(undefined);
     void this.page.session.engine.ask({ kind: 'unlook' }).catch(() => undefined);
-    // The age goes back to its panel.
+    // Age and season go back to their panel.
     this.page.closed();
   }
 }

@@ -40,11 +40,30 @@ export function commandFor(page: Page, e: Pressed): PageCommand | undefined {
   return found(true) ?? found(false);
 }
 
+/** Fields in which nothing is written, with the keys that are theirs. */
+const FIELDS: Record<string, RegExp> = {
+  range: /^(Arrow.*|Home|End|Page.*|Delete|Backspace|Tab)$/,
+  checkbox: /^( |Delete|Backspace|Tab)$/,
+  radio: /^( |Arrow.*|Delete|Backspace|Tab)$/,
+  color: /^( |Enter|Delete|Backspace|Tab)$/,
+};
+
+/**
+ * Whether a key is for the field that has it: all are where text is written, and letters in a list; a slider that was just
+ * moved is no reason to take undo away. `field`: the type of an input, or the name of the element.
+ */
+export function isTheirs(field: string, e: Pressed): boolean {
+  if (field === 'select') return !e.ctrlKey && !e.metaKey;
+  return FIELDS[field]?.test(e.key) ?? true;
+}
+
 /** Listens for keys, but not where text is written or a dialog is open. */
 export function listenForKeys(page: Page): void {
   document.addEventListener('keydown', (e) => {
     const target = e.target as HTMLElement;
-    if (target.matches('input, select, textarea') || document.querySelector('dialog[open]')) return;
+    const field = target instanceof HTMLInputElement ? target.type : target.localName;
+    if (target.matches('input, select, textarea') && isTheirs(field, e)) return;
+    if (document.querySelector('dialog[open]')) return;
     const command = commandFor(page, e);
     if (!command) return;
     e.preventDefault();

@@ -93,6 +93,13 @@ const LEAF_FORM = ['length_m', 'width', 'widest', 'veins', 'vein_angle_deg', 'lo
 );
 const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
 
+/** The season of leaves, 0 to 1, in a word. */
+function seasonOf(x: number): string {
+  if (x <= 0) return t('tree.season.summer');
+  if (x >= 1) return t('tree.season.bare');
+  return t(x < 0.45 ? 'tree.season.turning' : x <= 0.55 ? 'tree.season.autumn' : 'tree.season.falling');
+}
+
 /** A shape that did not come by then will not. */
 const PATIENCE_MS = 4000;
 
@@ -274,6 +281,16 @@ export class MakerPanel {
       tree: [plant.id, { 'set-field': ['/age', x >= most ? null : x] }],
     }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
+    const look = spec['look'] as Fields | undefined;
+    const season = Number(look?.['season'] ?? 0);
+    const seasons = this.slider('season', t('tree.season'), 0, 1, 0.01, season, (x) => {
+      seasons.querySelector('output')!.textContent = seasonOf(x);
+      return { tree: [plant.id, { 'set-field': ['/look/season', x] }] };
+    });
+    const sheds = (look?.['autumn_color'] ?? null) !== null && spec['bare'] !== true;
+    seasons.querySelector('output')!.textContent = sheds ? seasonOf(season) : t('tree.season.none');
+    seasons.querySelector('input')!.disabled = !sheds;
+    seasons.title = t(sheds ? 'tree.season.hint' : 'tree.season.none.hint');
     const shown = `${plant.id} ${tree.preset} ${ownPresets().map((p) => p.name)}`;
     // Kept while it shows the same: it has a place to which it was scrolled.
     if (this.species?.key !== shown) {
@@ -291,6 +308,7 @@ export class MakerPanel {
       this.section(
         t('tree.main'),
         ages,
+        seasons,
         this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({
           tree: [plant.id, { 'set-field': ['/leaves/leaf_keep', x] }],
         })),

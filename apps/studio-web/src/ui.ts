@@ -214,6 +214,16 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
   const place = (): void => {
     const box = anchor.getBoundingClientRect();
     const [w, h] = [p.offsetWidth, p.offsetHeight];
+    // Beside a column of tools, so that it covers none.
+    const tools = anchor.closest('[role=toolbar]')?.getBoundingClientRect();
+    if (tools && tools.height > tools.width) {
+      const right = tools.right + 8 + w <= innerWidth - 8 ? tools.right + 8 : tools.left - 8 - w;
+      if (right >= 8) {
+        p.style.top = `${Math.max(8, Math.min(box.top, innerHeight - h - 8))}px`;
+        p.style.left = `${right}px`;
+        return;
+      }
+    }
     const below = box.bottom + 6 + h <= innerHeight - 8;
     const beside = !below && box.left - w - 8 >= 8;
     // At the foot of the page it stands above its button.

@@ -44,6 +44,8 @@ pub enum Draw {
     Scatter = 16,
     /// In what a tree differs from others of its kind.
     Habit = 17,
+    /// When a leaf turns and falls in autumn.
+    Season = 18,
 }
 
 /// A 64-bit seed from which independent streams and child seeds are derived.

@@ -148,11 +148,29 @@ pub struct Look {
     pub twig_color: Colour,
     /// Colour of leaves.
     pub leaf_color: Colour,
-    /// Colour towards which single leaves vary (autumn, young growth); default that of leaves.
+    /// Colour towards which single leaves vary (young growth); default that of leaves.
     pub leaf_color_to: Option<Colour>,
     /// How far they vary, 0 to 1, default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_variation: f64,
+    /// The season, 0 to 1, default 0: leaves as in summer; 0.5: all in the colours of autumn; 1: all fallen. Evergreens
+    /// stay as they are.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub season: f64,
+    /// Colour of leaves in autumn; default none: an evergreen.
+    pub autumn_color: Option<Colour>,
+    /// Colour towards which single leaves vary in autumn; default `autumn_color`.
+    pub autumn_color_to: Option<Colour>,
+    /// Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'.
+    /// Default false.
+    pub autumn_outside: bool,
+}
+
+impl Look {
+    /// The season of its leaves, 0 to 1: that of summer for an evergreen.
+    pub fn leaf_season(&self) -> f64 {
+        self.autumn_color.map_or(0.0, |_| self.season)
+    }
 }
 
 impl Default for Look {
@@ -166,6 +184,10 @@ impl Default for Look {
             leaf_color: Colour([0x56, 0x7d, 0x2f]),
             leaf_color_to: None,
             leaf_variation: 0.5,
+            season: 0.0,
+            autumn_color: None,
+            autumn_color_to: None,
+            autumn_outside: false,
         }
     }
 }

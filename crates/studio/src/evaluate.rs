@@ -20,6 +20,7 @@ use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
+use crate::trees::coarser;
 
 /// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
 /// the viewer.
@@ -81,6 +82,15 @@ pub struct Evaluator {
 
 /// How true a plant of more strokes is to its drawing may be measured after the plant was seen.
 const MANY: usize = 512;
+
+/// A preview has so many organs at most: a crown of more is shown with fewer and larger leaves until the pen is lifted.
+const SEEN_AT_ONCE: usize = 2_500;
+
+/// A coarser copy of a plant of very many organs, and how to skin it: for a preview.
+fn coarse_look(plant: &Plant, skin: &SkinSpec) -> Option<(Plant, SkinSpec)> {
+    let level = plant.organs.len().div_ceil(SEEN_AT_ONCE).next_power_of_two().ilog2();
+    (level > 0).then(|| coarser(plant, skin, level))
+}
 
 /// What a drawing of one plant was read as.
 #[derive(Clone, Copy, Debug)]
@@ -352,10 +362,13 @@ impl Evaluator {
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
         let mut shapes = core::mem::take(&mut self.shapes);
-        let meshed = self.plant().map(|plant| {
+        let coarse = self.plant().filter(|_| self.preview).and_then(|plant| coarse_look(plant, skin));
+        let plant = coarse.as_ref().map(|(copy, _)| copy).or_else(|| self.plant());
+        let drawn = coarse.as_ref().map_or(skin, |(_, coarser)| coarser);
+        let meshed = plant.map(|plant| {
             let pictures = Pictures { traced: traced.as_ref(), ..Pictures::default() };
             let model = report.stage("mesh", run.clock, |_| {
-                skin::skin_laid_out(plant, skin, pictures, Some(&mut shapes), run)
+                skin::skin_laid_out(plant, drawn, pictures, Some(&mut shapes), run)
             });
             model.map(|(model, layout)| (Model { name: plant.name.clone(), ..model }, layout))
         });

@@ -8,8 +8,7 @@ use burgeon::ink::Drawing;
 use burgeon::{Evaluator, Run, Seed, SketchOptions};
 
 fn drawing(name: &str) -> Drawing {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fixtures/sketches/table1/{name}.svg"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fixtures/sketches/{name}.svg"));
     let bytes = std::fs::read(path).expect("a fixture");
     let read = read_drawings(bytes.as_slice(), DrawingFormat::Svg, name).next();
     read.expect("one drawing").expect("a sound drawing").drawing
@@ -18,7 +17,7 @@ fn drawing(name: &str) -> Drawing {
 #[test]
 fn a_drawing_that_changes_gives_what_a_fresh_start_gives() {
     for name in ["a", "d", "g"] {
-        let whole = drawing(name);
+        let whole = drawing(&format!("table1/{name}"));
         let mut kept = Evaluator::default();
         let mut options = SketchOptions::default();
         let mut check = |drawing: &Drawing, options: &SketchOptions, what: &str| {
@@ -41,6 +40,26 @@ fn a_drawing_that_changes_gives_what_a_fresh_start_gives() {
         check(&moved, &options, "and taken away");
         options.skin.detail = 0.4;
         check(&moved, &options, "coarser");
+    }
+}
+
+#[test]
+fn a_preview_of_a_crown_is_coarse_and_what_follows_is_whole() {
+    let (options, seed, run) = (SketchOptions::default(), Seed::new(1), Run::plain());
+    for name in ["bush", "oak", "tulip"] {
+        let drawing = drawing(&format!("gallery/{name}"));
+        let mut look = Evaluator::previewing();
+        look.update(&drawing, &options, seed, &run).expect("a plant");
+        let mut whole = Evaluator::default();
+        whole.update(&drawing, &options, seed, &run).expect("a plant");
+        // The plant is the same; only what is seen of a large one is coarser, as large as it is.
+        assert_eq!(look.plant().map(|p| &p.organs), whole.plant().map(|p| &p.organs), "{name}");
+        let [coarse, fine] = [&look, &whole].map(|e| e.model().expect("a model"));
+        assert_eq!(coarse.validate().next(), None);
+        let share = coarse.triangle_count() as f64 / fine.triangle_count() as f64;
+        assert!(if name == "tulip" { share > 0.999 } else { share < 0.25 }, "{name}: {share}");
+        let [small, large] = [coarse, fine].map(|m| m.bounds().max - m.bounds().min);
+        assert!((small / large - 1.0).abs().max_element() < 0.15, "{name}: {small} of {large}");
     }
 }
 

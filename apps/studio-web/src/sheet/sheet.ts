@@ -2,13 +2,11 @@
 import { inkOf } from '../colours';
 import type { StrokePoints } from '../protocol';
 import type { PhotoState, SketchCommand, SketchState, StrokeMode } from '../wire';
-import { dragged, type Frame, frameOf, type Handle, HALF, handleAt, handlesOf } from './frame';
+import { dragged, type Frame, frameOf, type Handle, handleAt } from './frame';
 import {
   boxOf,
-  centreline,
   distance,
   fitted,
-  outline,
   toDrawing,
   toScreen,
   united,
@@ -16,6 +14,7 @@ import {
   type Box,
   type Viewport,
 } from './geometry';
+import { drawFrame, drawGrid, drawLine, INK, LEAST_INK, type Line, lineThrough } from './ink';
 import { Pen } from './pen';
 
 export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'pull';
@@ -35,14 +34,6 @@ export interface SheetEvents {
   viewport(): void;
 }
 
-/** A line in pixels from the drawing's origin: filled within its outline, or stroked along it. */
-interface Line {
-  path: Path2D;
-  filled: boolean;
-  /** Pixels. */
-  wide: number;
-}
-
 interface Stroke {
   id: number;
   mode: StrokeMode;
@@ -59,12 +50,6 @@ interface Stroke {
   free: boolean;
   line: (Line & { scale: number }) | undefined;
 }
-
-/** Width of a line, pixels, at half the pressure of a pen, or without any. */
-const INK = 2.6;
-
-/** A thinner line is not seen. */
-const LEAST_INK = 0.8;
 
 /** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
 const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
@@ -86,28 +71,6 @@ type Act =
   | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
   | { kind: 'photo'; place: PhotoState['place']; from: [number, number]; moved: boolean }
   | { kind: 'pan'; x: number; y: number };
-
-/**
- * The line through rows of `step` numbers: x and y first, the pressure last. With `pressed` its width follows the
- * pressure, where the device told one.
- */
-function lineThrough(points: Float64Array, step: number, scale: number, pressed: boolean, wide = INK): Line {
-  const path = new Path2D();
-  const n = Math.floor(points.length / step);
-  const rows = new Float64Array(3 * n);
-  let told = false;
-  for (let i = 0; i < n; i += 1) {
-    const pressure = points[step * i + step - 1]!;
-    told ||= Number.isFinite(pressure);
-    rows[3 * i] = points[step * i]! * scale;
-    rows[3 * i + 1] = -points[step * i + 1]! * scale;
-    rows[3 * i + 2] = 0.5 * wide * (Number.isFinite(pressure) ? 0.4 + 1.3 * pressure : 1);
-  }
-  const filled = pressed && told;
-  if (filled) outline(path, rows);
-  else centreline(path, rows);
-  return { path, filled, wide };
-}
 
 export class Sheet {
   readonly element = document.createElement('div');
@@ -676,7 +639,7 @@ export class Sheet {
     const c = this.clear(this.base);
     if (!c) return;
     this.under(c);
-    this.grid(c);
+    drawGrid(c, this.view, this.seen(), this.dark);
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
     for (const s of this.order) {
       c.globalAlpha = gone?.has(s.id) ? 0.15 : s.doubtful ? DOUBT : 1;
@@ -695,13 +658,19 @@ export class Sheet {
     for (const s of this.strokes) {
       if (!this.selection.has(s.id)) continue;
       c.globalAlpha = 0.3;
-      this.draw(c, lineThrough(s.points, 3, this.view.scale, false), this.accent(), 8 + this.lineOf(s).wide);
+      drawLine(
+        c,
+        this.view,
+        lineThrough(s.points, 3, this.view.scale, false),
+        this.accent(),
+        8 + this.lineOf(s).wide,
+      );
       c.globalAlpha = 1;
       this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
     }
     // While it is dragged, the strokes show what comes of it.
     const box = this.tool === 'select' && !this.act ? this.selectedBox() : undefined;
-    if (box) this.drawFrame(c, box);
+    if (box) drawFrame(c, frameOf(this.view, box), [this.accent(), this.dark ? '#20261f' : '#ffffff']);
     if (live) {
       const { pen, mode } = live;
       const inked = (samples: Float64Array): void =>
@@ -734,27 +703,6 @@ export class Sheet {
     }
   }
 
-  private drawFrame(c: CanvasRenderingContext2D, box: Box): void {
-    const frame = frameOf(this.view, box);
-    const handles = handlesOf(frame);
-    const [, x, y] = handles[0]!;
-    c.strokeStyle = this.accent();
-    c.lineWidth = 1;
-    c.strokeRect(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
-    c.beginPath();
-    c.moveTo(x, frame.top);
-    c.lineTo(x, y);
-    c.stroke();
-    c.fillStyle = this.dark ? '#20261f' : '#ffffff';
-    for (const [handle, hx, hy] of handles) {
-      c.beginPath();
-      if (handle === 'turn') c.arc(hx, hy, HALF, 0, 2 * Math.PI);
-      else c.rect(hx - HALF, hy - HALF, 2 * HALF, 2 * HALF);
-      c.fill();
-      c.stroke();
-    }
-  }
-
   private accent(): string {
     return this.dark ? '#8ecbff' : '#1769aa';
   }
@@ -783,25 +731,6 @@ export class Sheet {
     }
   }
 
-  /** Dots at a step of the drawing that is 24 to 60 pixels wide. */
-  private grid(c: CanvasRenderingContext2D): void {
-    let step = 10 ** Math.floor(Math.log10(60 / this.view.scale));
-    for (const f of [5, 2])
-      if (step * f * this.view.scale <= 60) {
-        step *= f;
-        break;
-      }
-    const { left, right, top, bottom } = this.seen();
-    c.fillStyle = this.dark ? 'rgba(255,255,255,0.10)' : 'rgba(60,50,30,0.13)';
-    if (((right - left) / step) * ((top - bottom) / step) > 12_000) return;
-    for (let x = Math.ceil(left / step) * step; x <= right; x += step) {
-      for (let y = Math.ceil(bottom / step) * step; y <= top; y += step) {
-        const [sx, sy] = toScreen(this.view, x, y);
-        c.fillRect(sx - 0.75, sy - 0.75, 1.5, 1.5);
-      }
-    }
-  }
-
   private ink(
     c: CanvasRenderingContext2D,
     line: Line,
@@ -813,21 +742,8 @@ export class Sheet {
       mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
     if (mode !== 'parts') c.setLineDash([9, 7]);
     const own = this.ownColours ? color : undefined;
-    this.draw(c, line, own ?? inkOf(organ ?? fallback, this.dark), line.wide);
+    drawLine(c, this.view, line, own ?? inkOf(organ ?? fallback, this.dark), line.wide);
     c.setLineDash([]);
-  }
-
-  private draw(c: CanvasRenderingContext2D, { path, filled }: Line, color: string, width: number): void {
-    c.translate(this.view.x, this.view.y);
-    if (filled) {
-      c.fillStyle = color;
-      c.fill(path);
-    } else {
-      c.strokeStyle = color;
-      c.lineWidth = width;
-      c.stroke(path);
-    }
-    c.translate(-this.view.x, -this.view.y);
   }
 
   /** Pixels; a wide pen is as wide as it is in the drawing, but never so thin that it is not seen. */

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import type { ExportedArrays, SentExport } from '../protocol';
 import type { Looks } from './plant';
-import type { StandIn } from './view';
+import type { StandIn } from './plants';
 import { blown, type Gust, gustOf } from './wind';
 
 /** The strongest wind moves the top so far, in heights of the plant. */

@@ -1,6 +1,6 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
-import { texturesOf, type Sent } from '../protocol';
+import type { Sent } from '../protocol';
 import type { MirrorPlane } from './mirror';
 import type {
   CarriedPose,
@@ -15,67 +15,39 @@ import type { HeldRows } from './carry';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import { onScreen, pointerOf, reachOf } from './aim';
+import { bonesOf } from './bones';
 import { Rig, type Side } from './camera';
-import type { Handles } from './gizmo';
+import { Frames } from './frames';
 import { type Guide, Guides } from './guides';
+import { immerse, type Within } from './immersion';
 import type { StageSetting } from './moods';
 import { dragObstacles, obstacleAround } from './obstacles';
-import { fillShapes, Looks, PlantMeshes, type Shapes } from './plant';
+import { listenForClicks, Picker } from './picker';
+import { Placer } from './placer';
+import { Looks, type PlantMeshes } from './plant';
+import { Plants, type StandIn } from './plants';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
 import { cameraFor, type ShotSize, shoot } from './shot';
+import { snapshotOf } from './snapshot';
 import { Stage } from './stage';
 import type { WalkMode } from './walk';
 
-/** Colours of axes by order: 0, 1, 2, 3 and more; each shows on light and dark sky. */
-const ORDERS = [0x8a4b14, 0xc0600f, 0x1f8a55, 0x2079c0, 0x8a4fb5].map((c) => new THREE.Color(c));
-/** Leaves and petals among the axes. */
-const BLADES = [0x3f9a3a, 0xd0407a].map((c) => new THREE.Color(c));
-
 /** Height of the strip of tools with its options, pixels. */
 const STRIP = 116;
-/** A pointer that moved no further than this, pixels, clicked. */
-const CLICK = 5;
-
-/** Least time between pictures that the processor draws. */
-const SLOW_MS = 300;
-/** Its pixels for each of the screen's: at rest, and while pictures follow one another. */
-const GRAIN = { rest: 0.75, moving: 0.45 } as const;
 /** Edge of the shadow map, pixels. */
 const SHADOW = { fast: 512, fine: 2048 } as const;
 /** Eyes of a walker, metres, and between which heights of the stage they stay. */
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
-/** Further away, in sizes of the stage, a ray that glances over the ground says nothing. */
-const FAR = 60;
-/** What a gizmo snaps to: metres, degrees, sizes. */
-const SNAP = { m: 0.25, deg: 15, size: 0.1 } as const;
 /** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
 const SUNK = 0.06;
-
-/** Meshes in the place of the plants, by the plants' names. */
-export interface StandIn {
-  readonly groups: ReadonlyMap<number, THREE.Group>;
-  /** It is drawn again and again. */
-  readonly moves: boolean;
-  tick(seconds: number): void;
-  /** Takes its materials anew. */
-  relook(): void;
-  dispose(): void;
-}
 
 export class PlantView {
   readonly element = document.createElement('div');
   private readonly renderer: THREE.WebGLRenderer;
   private readonly stage: Stage;
   private readonly looks: Looks;
-  private readonly plants = new Map<number, PlantMeshes>();
-  /** What copies share, by the name that the core gives to the meshes. */
-  private shapes = new Map<number, Shapes>();
-  /** A model that is viewed instead of the scene. */
-  private guest: PlantMeshes | undefined;
-  private standIn: StandIn | undefined;
-  private states: PlantState[] = [];
-  private current: number | null = null;
+  private readonly plants: Plants;
   /** Holds what is shown of the plant, at the size of the stage. */
   private readonly holder = new THREE.Group();
   private bones: THREE.LineSegments | undefined;
@@ -93,11 +65,7 @@ export class PlantView {
   private fine: boolean | undefined;
   /** The plant keeps its size, whatever it becomes. */
   private held = false;
-  private handles: Handles | undefined;
-  private gizmo: Gizmo | undefined;
-  /** Gizmos go by steps; while Shift is held, the other way. */
-  private snaps = false;
-  private shifted = false;
+  private readonly placer: Placer;
   private dragging = false;
   private boned = false;
   private scale = 1;
@@ -107,13 +75,7 @@ export class PlantView {
   private sheetSeen: Box | undefined;
   private follow = true;
   private readonly slow: boolean;
-  /** See `spare`. */
-  private grain: number = GRAIN.rest;
-  private drawn = -Infinity;
-  private rest = 0;
-  private frame = 0;
-  private last = 0;
-  private rendered = 0;
+  private readonly frames: Frames;
   /** A tool is in the hand: the first button is the tool's, the second turns the view. */
   private hands = false;
   /** A headset shows the scene. */
@@ -123,7 +85,7 @@ export class PlantView {
   private wanted = 0;
   /** Pixels at the foot that something else covers. */
   private low = 0;
-  private readonly caster = new THREE.Raycaster();
+  private readonly picker = new Picker(this.element, () => this.camera, this.holder);
   /** A plant was clicked. */
   onPick: (plant: number) => void = () => {};
   /** A picture was drawn: what lies over it may have to move. */
@@ -140,6 +102,19 @@ export class PlantView {
   constructor(label: string) {
     this.slow = drawnBySoftware();
     this.looks = new Looks(this.slow);
+    this.plants = new Plants(this.looks, this.holder);
+    this.frames = new Frames(this.slow, {
+      // A headset asks for its pictures itself.
+      away: () => this.immersing,
+      isLed: () => this.rig.isLed,
+      draw: (ms) => {
+        const there = this.rig.glide(1 - Math.exp(-Math.min(ms, 400) / 120));
+        this.rig.update();
+        this.render();
+        return !there || (this.plants.standIn?.moves ?? false);
+      },
+      grained: (grain) => this.renderer.setPixelRatio(grain),
+    });
     this.renderer = new THREE.WebGLRenderer({ antialias: !this.slow, powerPreference: 'high-performance' });
     this.renderer.shadowMap.enabled = true;
     // The light stands still: its shadows change with the plant only.
@@ -156,10 +131,7 @@ export class PlantView {
     dragObstacles(canvas, {
       at: (x, y) => this.obstacleAt(x, y),
       over: (x, y) => this.obstacleUnder(x, y) !== undefined,
-      ray: (x, y) => {
-        this.aim(x, y);
-        return this.caster.ray;
-      },
+      ray: (x, y) => this.picker.ray(x, y),
       hold: (on) => {
         this.dragging = on;
         if (!on) this.fitStage();
@@ -169,7 +141,7 @@ export class PlantView {
         this.redraw();
       },
       moved: (row, by) => {
-        if (this.current !== null) this.onObstacle(this.current, row, by);
+        if (this.plants.current !== null) this.onObstacle(this.plants.current, row, by);
       },
     });
     this.setLabel(label);
@@ -185,16 +157,33 @@ export class PlantView {
       }),
       walked: (mode) => this.onWalk(mode),
     });
+    this.placer = new Placer(this.rig.far, canvas, this.stage.scene, {
+      begin: () => {
+        this.dragging = true;
+        this.rig.controls.enabled = false;
+        this.onPlaceBegin();
+      },
+      moved: () => this.moved(),
+      end: () => {
+        this.dragging = false;
+        this.rig.controls.enabled = true;
+        this.onPlaceEnd();
+      },
+      redraw: () => this.redraw(),
+    });
     canvas.addEventListener('pointerdown', (e) => {
       if (!this.hands) this.taken(e.button === 0);
       else if (e.button !== 0) this.taken(e.button === 2);
     });
-    this.listenForClicks(canvas);
-    const shift = (e: PointerEvent): void => {
-      this.shifted = e.shiftKey;
-    };
-    canvas.addEventListener('pointerdown', shift, { capture: true });
-    canvas.addEventListener('pointermove', shift, { capture: true });
+    listenForClicks(
+      canvas,
+      () => !this.hands && !this.dragging,
+      (x, y) => {
+        if (this.dragging || this.plants.guest) return;
+        const plant = this.plantAt(x, y);
+        if (plant !== undefined && plant !== this.plants.current) this.onPick(plant);
+      },
+    );
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
     canvas.addEventListener('webglcontextlost', (e) => {
       e.preventDefault();
@@ -225,18 +214,7 @@ export class PlantView {
     }
     this.boned = pairs !== undefined;
     if (pairs) {
-      const n = pairs.length / 4;
-      const [positions, colors] = [new Float32Array(3 * n), new Float32Array(3 * n)];
-      for (let i = 0; i < n; i += 1) {
-        positions.set(pairs.subarray(4 * i, 4 * i + 3), 3 * i);
-        const kind = pairs[4 * i + 3]!;
-        const { r, g, b } = kind >= 100 ? BLADES[kind - 100]! : ORDERS[Math.min(kind, ORDERS.length - 1)]!;
-        colors.set([r, g, b], 3 * i);
-      }
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-      geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
-      this.bones = new THREE.LineSegments(geometry, this.boneLook);
+      this.bones = bonesOf(pairs, this.boneLook);
       (this.chosen?.place ?? this.holder).add(this.bones);
     }
     this.stand();
@@ -246,38 +224,10 @@ export class PlantView {
 
   /** A small picture of another plant from where this one is seen. */
   snapshot(sent: Sent, width: number, height: number): HTMLCanvasElement {
-    const group = this.looks.build(sent);
-    const [min, max] = [new THREE.Vector3(...sent.view.min), new THREE.Vector3(...sent.view.max)];
-    const size = max.clone().sub(min);
-    const scale = 1 / Math.max(size.x, size.y, size.z, 1e-9);
-    group.scale.setScalar(scale);
-    group.position.y = Math.max(0, -min.y * scale);
-    const camera = new THREE.PerspectiveCamera(this.rig.far.fov, width / height, 0.01, 200);
-    const target = min
-      .clone()
-      .add(max)
-      .multiplyScalar(scale / 2);
-    target.y += group.position.y;
-    const distance =
-      (size.length() * scale * 0.48) /
-      Math.sin(THREE.MathUtils.degToRad(camera.fov / 2)) /
-      Math.min(1, width / height);
-    camera.position.copy(this.rig.far.position).sub(this.rig.controls.target).setLength(distance).add(target);
-    camera.lookAt(target);
-    const { scene } = this.stage;
+    const { renderer, stage, looks } = this;
+    const eye = [this.rig.far, this.rig.controls.target] as const;
     this.holder.visible = this.guides.group.visible = false;
-    this.stage.setFlat(false);
-    this.stage.prepare(true, width / height, group);
-    scene.add(group);
-    this.renderer.setPixelRatio(1);
-    this.renderer.setSize(width, height, false);
-    this.renderer.shadowMap.needsUpdate = true;
-    this.renderer.render(scene, camera);
-    const canvas = document.createElement('canvas');
-    [canvas.width, canvas.height] = [width, height];
-    canvas.getContext('2d')?.drawImage(this.renderer.domElement, 0, 0);
-    scene.remove(group);
-    for (const mesh of group.children) (mesh as THREE.Mesh).geometry.dispose();
+    const canvas = snapshotOf(sent, { renderer, stage, looks }, eye, [width, height]);
     this.holder.visible = this.guides.group.visible = true;
     this.stage.setFlat(this.front);
     this.stage.touch();
@@ -288,7 +238,7 @@ export class PlantView {
 
   setWire(wire: boolean): void {
     this.looks.setWire(wire);
-    this.standIn?.relook();
+    this.plants.standIn?.relook();
     this.redraw();
   }
 
@@ -296,11 +246,11 @@ export class PlantView {
   forget(): void {
     this.setStandIn(undefined);
     this.looks.forget();
-    this.shapes.clear();
+    this.plants.forget();
   }
 
   private get chosen(): PlantMeshes | undefined {
-    return this.guest ?? (this.current === null ? undefined : this.plants.get(this.current));
+    return this.plants.chosen;
   }
 
   /** The plant whose front view is shown. */
@@ -309,34 +259,7 @@ export class PlantView {
   }
 
   update(view: SceneView, fresh: Sent[]): void {
-    this.looks.keep(texturesOf(view.guest ? [view.guest, ...view.plants] : view.plants));
-    for (const { textures } of fresh) for (const texture of textures) this.looks.addTexture(texture);
-    const meshes = new Map(fresh.map((sent) => [sent.view.id, sent]));
-    const before = new Set(this.all.map((p) => p.shapes));
-    const take = (known: PlantMeshes | undefined, seen: Seen): PlantMeshes => {
-      const plant = known ?? new PlantMeshes(this.looks);
-      if (!known) this.holder.add(plant.place);
-      plant.view = seen;
-      const sent = meshes.get(seen.id);
-      if (sent) {
-        plant.update(seen, this.shapesFor(plant, sent, view));
-        plant.setObstacles(seen.obstacles, sent.obstacles);
-      }
-      return plant;
-    };
-    if (view.guest) this.guest = take(this.guest, view.guest);
-    else if (this.guest) {
-      this.guest.dispose();
-      this.guest = undefined;
-    }
-    const there = new Set(view.plants.map((p) => p.id));
-    for (const [id, plant] of this.plants) {
-      if (there.has(id)) continue;
-      plant.dispose();
-      this.plants.delete(id);
-    }
-    for (const seen of view.plants) this.plants.set(seen.id, take(this.plants.get(seen.id), seen));
-    this.sweep(before, view);
+    this.plants.update(view, fresh);
     this.stand();
     this.fitStage();
     this.showHandles();
@@ -347,19 +270,7 @@ export class PlantView {
 
   /** Shows plants much coarser until they are whole: with shapes of their own, which the next view replaces. */
   coarse(fresh: Sent[]): void {
-    const before = new Set(this.all.map((p) => p.shapes));
-    for (const sent of fresh) {
-      const { id } = sent.view;
-      const plant = this.plants.get(id) ?? new PlantMeshes(this.looks);
-      this.plants.set(id, plant);
-      this.holder.add(plant.place);
-      plant.view = { ...sent.view, obstacles: plant.view?.obstacles ?? [] };
-      const shapes: Shapes = new Map();
-      fillShapes(shapes, sent.view, sent.parts ?? []);
-      plant.update(plant.view, shapes);
-    }
-    const plants = this.all.flatMap((p) => (p.view ? [p.view] : []));
-    this.sweep(before, { revision: 0, guest: null, plants });
+    this.plants.coarse(fresh);
     this.stand();
     this.fitStage();
     this.stage.touch();
@@ -367,39 +278,10 @@ export class PlantView {
     this.redraw();
   }
 
-  private get all(): PlantMeshes[] {
-    return [...this.plants.values(), ...(this.guest ? [this.guest] : [])];
-  }
-
-  /** What a plant is shown with: shapes that are there already, or its own with what was sent. */
-  private shapesFor(plant: PlantMeshes, { view: { mesh }, view, parts }: Sent, scene: SceneView): Shapes {
-    const known = mesh === null ? undefined : this.shapes.get(mesh);
-    if (!parts) return known ?? new Map();
-    // What a copy is shown with, or will be, is not written over.
-    const names = new Set(scene.plants.filter((p) => p.id !== view.id).map((p) => p.mesh));
-    const wanted = [...this.shapes].some(([name, s]) => s === plant.shapes && names.has(name));
-    const shared = this.all.some((p) => p !== plant && p.shapes === plant.shapes);
-    const shapes: Shapes = wanted || shared ? new Map() : plant.shapes;
-    fillShapes(shapes, view, parts);
-    for (const [name, s] of this.shapes) if (s === shapes) this.shapes.delete(name);
-    if (mesh !== null) this.shapes.set(mesh, shapes);
-    return shapes;
-  }
-
-  /** Gives back what nothing shows any more. */
-  private sweep(before: ReadonlySet<Shapes>, { plants }: SceneView): void {
-    const shown = new Set(this.all.map((p) => p.shapes));
-    for (const shapes of before)
-      if (!shown.has(shapes)) for (const geometry of shapes.values()) geometry.dispose();
-    const names = new Set(plants.map((p) => p.mesh));
-    for (const name of this.shapes.keys()) if (!names.has(name)) this.shapes.delete(name);
-  }
-
   /** Where the plants stand, which are hidden, which is chosen. */
   setPlaces(states: PlantState[], current: number | null): void {
-    this.states = states;
-    const other = current !== this.current;
-    this.current = current;
+    const other = current !== this.plants.current;
+    this.plants.setStates(states, current);
     if (other && this.bones && this.chosen) this.chosen.place.add(this.bones);
     this.stand();
     this.fitStage();
@@ -407,19 +289,13 @@ export class PlantView {
     this.stage.touch();
     this.lay();
     // A plant that is not there yet comes in a moment: one picture of a large scene can take the processor seconds.
-    const whole = states.every(({ id }) => this.plants.has(id));
+    const whole = states.every(({ id }) => this.plants.named.has(id));
     if (whole || !this.slow) this.redraw();
   }
 
   /** What stands in the place of plants from now on; none shows the plants again. It is given what they look like. */
   setStandIn(make: ((looks: Looks) => StandIn) | undefined): void {
-    this.standIn?.dispose();
-    this.standIn = make?.(this.looks);
-    if (this.guest) {
-      const other = this.standIn?.groups.get(this.guest.view?.id ?? -1);
-      if (other) this.guest.place.add(other);
-      this.guest.group.visible = !other;
-    }
+    this.plants.setStandIn(make);
     this.stand();
     this.stage.touch();
     this.redraw();
@@ -432,54 +308,29 @@ export class PlantView {
   }
 
   private stand(): void {
-    const alone = this.front || this.guest !== undefined;
-    for (const [id, plant] of this.plants) {
-      const state = this.states.find((s) => s.id === id);
-      const mine = id === this.current;
-      plant.place.visible = this.guest === undefined && (mine || !alone) && !(state?.hidden ?? false);
-      const other = this.standIn?.groups.get(id);
-      if (other) {
-        plant.place.add(other);
-        other.visible = !(this.boned && mine);
-      }
-      plant.group.visible = !(this.boned && mine) && !other;
-      if (!state || (this.dragging && mine)) continue;
-      // The front view is the drawing, wherever the plant stands.
-      const [x, y, z] = this.front ? [0, 0, 0] : state.position;
-      plant.place.position.set(x, y, z);
-      plant.place.rotation.set(0, this.front ? 0 : THREE.MathUtils.degToRad(state.yaw_deg), 0);
-      plant.place.scale.setScalar(this.front ? 1 : state.scale);
-    }
-  }
-
-  /** The box around all that is seen, metres. */
-  private bounds(): THREE.Box3 {
-    const box = new THREE.Box3();
-    if (this.guest) box.union(this.guest.box());
-    else for (const plant of this.plants.values()) box.union(plant.box());
-    return box;
+    this.plants.stand({ front: this.front, boned: this.boned, dragging: this.dragging });
   }
 
   /** Brings all that is seen to the size of the stage. */
   private fitStage(): void {
     this.shadeAll();
     // Under a hand that works on it a plant keeps its size.
-    if (this.dragging || this.held || (this.hands && this.fitted === this.current)) return;
-    const box = this.bounds();
+    if (this.dragging || this.held || (this.hands && this.fitted === this.plants.current)) return;
+    const box = this.plants.bounds();
     const { min, max } = box;
     const size = max.clone().sub(min);
     const largest = Math.max(size.x, size.y, size.z);
     if (!(largest > 0)) return;
-    this.fitted = this.current;
+    this.fitted = this.plants.current;
     this.scale = 1 / largest;
     this.holder.scale.setScalar(this.scale);
     // One plant stands where it was drawn; several stand around the middle of the stage.
-    const several = this.plants.size > 1 && !this.front && !this.guest;
-    const [x, z] = several
-      ? [(min.x + max.x) / 2, (min.z + max.z) / 2]
-      : this.front || this.guest
-        ? [0, 0]
-        : this.only();
+    const alone = this.front || this.plants.guest !== undefined;
+    const [x, z] = alone
+      ? [0, 0]
+      : this.plants.named.size > 1
+        ? [(min.x + max.x) / 2, (min.z + max.z) / 2]
+        : this.plants.only;
     // Roots below the ground are shown: the ground sinks no plant. But the tip of a leaf may be in the grass.
     const sunk = this.stage.covers && -min.y < SUNK * size.y;
     const up = sunk ? 0 : Math.max(0, -min.y * this.scale);
@@ -495,7 +346,7 @@ export class PlantView {
 
   /** Whatever was moved off the stage keeps its shadow. */
   private shadeAll(): void {
-    const { min, max } = this.bounds();
+    const { min, max } = this.plants.bounds();
     if (min.x > max.x) return;
     const { x, z } = this.holder.position;
     const far = (low: number, high: number, at: number): number =>
@@ -503,130 +354,53 @@ export class PlantView {
     this.stage.shadeUpTo(Math.hypot(far(min.x, max.x, x), far(min.z, max.z, z)));
   }
 
-  private only(): [number, number] {
-    const [x, , z] = this.states[0]?.position ?? [0, 0, 0];
-    return [x, z];
-  }
-
   async setGizmo(mode: Gizmo | undefined): Promise<void> {
-    this.gizmo = mode;
-    if (mode && !this.handles) {
-      const { Handles } = await import('./gizmo');
-      this.handles ??= new Handles(this.rig.far, this.renderer.domElement, this.stage.scene, {
-        begin: () => {
-          this.dragging = true;
-          this.rig.controls.enabled = false;
-          this.onPlaceBegin();
-        },
-        moved: () => this.moved(),
-        end: () => {
-          this.dragging = false;
-          this.rig.controls.enabled = true;
-          this.onPlaceEnd();
-        },
-        redraw: () => this.redraw(),
-      });
-    }
+    await this.placer.take(mode);
     if (mode) this.setFront(false);
     this.showHandles();
     this.redraw();
   }
 
   setSnap(on: boolean): void {
-    this.snaps = on;
+    this.placer.snaps = on;
   }
 
   /** The gizmo goes along one axis only, or along all of them again. */
   setAxis(axis: 'x' | 'z' | undefined): void {
-    this.handles?.only(axis);
+    this.placer.only(axis);
     this.redraw();
   }
 
   private showHandles(): void {
     if (this.dragging) return;
-    const fixed = this.states.find((s) => s.id === this.current)?.fixed ?? false;
-    const plant = this.front || this.guest || fixed ? undefined : this.chosen;
-    this.handles?.show(plant?.place.visible ? plant.place : undefined, this.gizmo);
+    const fixed = this.plants.state?.fixed ?? false;
+    const plant = this.front || this.plants.guest || fixed ? undefined : this.chosen;
+    this.placer.show(plant?.place.visible ? plant.place : undefined);
   }
 
   private moved(): void {
     const place = this.chosen?.place;
-    if (!place || this.current === null) return;
-    const scale = Math.min(
-      1000,
-      Math.max(
-        0.001,
-        this.gizmo === 'scale' ? Math.max(place.scale.x, place.scale.y, place.scale.z) : place.scale.x,
-      ),
-    );
-    if (this.gizmo === 'scale') {
-      // Any handle sizes the whole.
-      const was = this.states.find((s) => s.id === this.current)?.scale ?? 1;
-      const parts = [place.scale.x, place.scale.y, place.scale.z];
-      const to = parts.reduce((a, b) => (Math.abs(b - was) > Math.abs(a - was) ? b : a));
-      place.scale.setScalar(Math.min(1000, Math.max(0.001, Math.abs(to))));
-    }
-    let yaw = THREE.MathUtils.radToDeg(new THREE.Euler().setFromQuaternion(place.quaternion, 'YXZ').y);
-    if (this.snaps !== this.shifted) {
-      const to = (x: number, step: number): number => Math.round(x / step) * step;
-      const { x, y, z } = place.position;
-      if (this.gizmo === 'translate') place.position.set(to(x, SNAP.m), y, to(z, SNAP.m));
-      if (this.gizmo === 'rotate') {
-        yaw = to(yaw, SNAP.deg);
-        place.rotation.set(0, THREE.MathUtils.degToRad(yaw), 0);
-      }
-      if (this.gizmo === 'scale') place.scale.setScalar(Math.max(SNAP.size, to(place.scale.x, SNAP.size)));
-    }
-    const round = (x: number): number => Math.round(x * 1000) / 1000;
-    this.onPlace(
-      this.current,
-      [round(place.position.x), round(place.position.y), round(place.position.z)],
-      Math.round(yaw * 10) / 10,
-      round(this.gizmo === 'scale' ? place.scale.x : scale),
-    );
+    if (!place || this.plants.current === null) return;
+    const was = this.plants.state?.scale ?? 1;
+    const { position, yaw, scale } = this.placer.placed(place, was);
+    this.onPlace(this.plants.current, position, yaw, scale);
     this.stage.touch();
     this.redraw();
   }
 
-  /** A click on a plant chooses it. */
-  private listenForClicks(canvas: HTMLCanvasElement): void {
-    let from: [number, number] | undefined;
-    canvas.addEventListener('pointerdown', (e) => {
-      from =
-        e.button === 0 && e.isPrimary && !this.hands && !this.dragging ? [e.clientX, e.clientY] : undefined;
-    });
-    canvas.addEventListener('pointerup', (e) => {
-      const still = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) <= CLICK;
-      from = undefined;
-      if (!still || this.dragging || this.guest) return;
-      const plant = this.plantAt(e.clientX, e.clientY);
-      if (plant !== undefined && plant !== this.current) this.onPick(plant);
-    });
-  }
-
   /** The plant under a point of the screen. */
   plantAt(x: number, y: number): number | undefined {
-    this.aim(x, y);
-    let best: { id: number; distance: number } | undefined;
-    for (const [id, plant] of this.plants) {
-      if (!plant.place.visible) continue;
-      plant.place.updateWorldMatrix(true, true);
-      const hit = this.caster.intersectObject(plant.group, true)[0];
-      if (hit && (!best || hit.distance < best.distance)) best = { id, distance: hit.distance };
-    }
-    return best?.id;
+    return this.picker.plant(x, y, this.plants.named);
   }
 
   /** The obstacle of the chosen plant under a point of the screen. */
   private obstacleUnder(x: number, y: number): THREE.Intersection | undefined {
     const { chosen } = this;
-    if (this.hands || this.guest || this.front || this.rig.walking || !chosen?.place.visible)
+    if (this.hands || this.plants.guest || this.front || this.rig.walking || !chosen?.place.visible)
       return undefined;
-    if (this.dragging || this.handles?.isUnderPointer || chosen.obstacles.children.length === 0)
+    if (this.dragging || this.placer.isUnderPointer || chosen.obstacles.children.length === 0)
       return undefined;
-    this.aim(x, y);
-    chosen.place.updateWorldMatrix(true, true);
-    return this.caster.intersectObject(chosen.obstacles, true)[0];
+    return this.picker.obstacle(x, y, chosen);
   }
 
   /** The same, if nothing of the plant lies before it. */
@@ -636,9 +410,7 @@ export class PlantView {
   ): { mesh: THREE.Mesh; place: THREE.Object3D; point: THREE.Vector3 } | undefined {
     const hit = this.obstacleUnder(x, y);
     const { chosen } = this;
-    if (!hit || !chosen) return undefined;
-    const before = this.caster.intersectObject(chosen.group, true)[0];
-    if (before && before.distance < hit.distance) return undefined;
+    if (!hit || !chosen || this.picker.isBehind(hit, chosen)) return undefined;
     return { mesh: hit.object as THREE.Mesh, place: chosen.place, point: hit.point.clone() };
   }
 
@@ -646,42 +418,23 @@ export class PlantView {
     return this.front && this.seen?.front ? this.flat : this.rig.far;
   }
 
-  private aim(x: number, y: number): void {
-    const box = this.element.getBoundingClientRect();
-    const { camera } = this;
-    camera.updateMatrixWorld();
-    this.caster.setFromCamera(
-      new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2),
-      camera,
-    );
-  }
-
   /** The place of the ground under a point of the screen: x and z, metres of the scene; none at or above the horizon. */
   groundAt(x: number, y: number): [number, number] | undefined {
-    this.aim(x, y);
-    const { position } = this.holder;
-    const ground = new THREE.Plane(new THREE.Vector3(0, 1, 0), -position.y);
-    const at = this.caster.ray.intersectPlane(ground, new THREE.Vector3());
-    if (!at || at.distanceTo(this.rig.far.position) > FAR) return undefined;
-    const round = (v: number): number => Math.round((v / this.scale) * 1000) / 1000;
-    return [round(at.x - position.x), round(at.z - position.z)];
+    return this.picker.ground(x, y);
   }
 
   /** So many metres on the ground under a point of the screen, in pixels. */
   groundPixels(x: number, y: number, metres: number): number {
     const share = this.reach(1);
-    this.aim(x, y);
-    const ground = new THREE.Plane(new THREE.Vector3(0, 1, 0), -this.holder.position.y);
-    const at = this.caster.ray.intersectPlane(ground, new THREE.Vector3());
-    if (!at) return 0;
-    const far = this.camera.position.distanceTo(at) / this.scale;
+    const far = this.picker.groundDistance(x, y);
+    if (far === undefined) return 0;
     return metres / Math.max(1e-9, share.metres + share.per_metre * far);
   }
 
   /** The crown of a plant seen from above, metres: how wide it is where it is widest; 0 before it is made. */
   widthOf(plant: number): number {
-    const seen = this.plants.get(plant)?.view;
-    const scale = this.states.find((s) => s.id === plant)?.scale ?? 1;
+    const seen = this.plants.named.get(plant)?.view;
+    const scale = this.plants.stateOf(plant)?.scale ?? 1;
     if (!seen || seen.parts.length === 0) return 0;
     return Math.max(seen.max[0] - seen.min[0], seen.max[2] - seen.min[2]) * scale;
   }
@@ -690,8 +443,7 @@ export class PlantView {
   pointer(x: number, y: number, pressure: number): ShapePointer | undefined {
     const place = this.chosen?.place;
     if (!place) return undefined;
-    this.aim(x, y);
-    return pointerOf(this.caster.ray, this.camera, place, pressure);
+    return pointerOf(this.picker.ray(x, y), this.camera, place, pressure);
   }
 
   /** So many pixels, in metres of the chosen plant. */
@@ -717,7 +469,7 @@ export class PlantView {
 
   /** What was carried is where it was. */
   putBack(): void {
-    for (const plant of this.all) plant.putBack();
+    for (const plant of this.plants.all) plant.putBack();
     this.redraw();
   }
 
@@ -725,7 +477,7 @@ export class PlantView {
 
   /** What a headset is to know of the stage: a metre of the plants, and half of their breadth, in its units. */
   get immersed(): { metre: number; reach: number } {
-    const size = this.bounds().getSize(new THREE.Vector3());
+    const size = this.plants.bounds().getSize(new THREE.Vector3());
     return { metre: this.scale, reach: (Math.max(0, size.x, size.z) * this.scale) / 2 };
   }
 
@@ -770,49 +522,26 @@ export class PlantView {
   }
 
   /**
-   * Gives its pictures to a headset, until its session ends: of the same scene, from `rig`, with `things` in it. `frame`
-   * is called before each picture. `through`: the room is seen behind the plants.
+   * Gives its pictures to a headset, until its session ends: of the same scene, from `rig`. `through`: the room is seen
+   * behind the plants.
    */
   async immerse(
     session: XRSession,
     floor: 'local-floor' | 'local',
     rig: THREE.Group,
     through: boolean,
-    { things, frame }: { things: THREE.Object3D[]; frame: (f: XRFrame, space: XRReferenceSpace) => void },
+    within: Within,
   ): Promise<void> {
-    const { renderer, stage } = this;
+    const { renderer, stage, holder: plants } = this;
     const { far } = this.rig;
     this.setFront(false);
     this.rig.stopWalking();
-    const [place, turn, lens] = [far.position.clone(), far.quaternion.clone(), far.fov];
-    const { xr } = renderer;
-    const left = (): void => {
-      renderer.setAnimationLoop(null);
-      xr.enabled = false;
+    const ended = (): void => {
       this.immersing = false;
-      rig.remove(far);
-      for (const thing of [rig, ...things]) thing.removeFromParent();
-      far.position.copy(place);
-      far.quaternion.copy(turn);
-      far.fov = lens;
-      stage.setBare(false);
       this.resize();
     };
-    session.addEventListener('end', left);
     this.immersing = true;
-    xr.enabled = true;
-    xr.setReferenceSpaceType(floor);
-    far.clearViewOffset();
-    rig.add(far);
-    stage.scene.add(rig, ...things);
-    stage.setBare(through);
-    await xr.setSession(session);
-    renderer.setAnimationLoop((_, f) => {
-      const space = xr.getReferenceSpace();
-      if (f && space) frame(f, space);
-      stage.prepare(true, far.aspect, this.holder);
-      renderer.render(stage.scene, far);
-    });
+    await immerse({ renderer, stage, far, plants, ended }, session, { floor, rig, through }, within);
   }
 
   /** Points of the chosen plant (x, y, z, radius) on the screen: x, y and width, pixels; width 0 behind the eye. */
@@ -868,7 +597,7 @@ export class PlantView {
   }
 
   private frameNowBox(): void {
-    this.look(this.bounds(), false);
+    this.look(this.plants.bounds(), false);
   }
 
   /** Leads the camera to a box of metres. */
@@ -925,8 +654,8 @@ export class PlantView {
     this.fine = fine;
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
-    for (const plant of this.all) plant.relook();
-    this.standIn?.relook();
+    for (const plant of this.plants.all) plant.relook();
+    this.plants.standIn?.relook();
     this.element.dataset['quality'] = fine ? 'fine' : 'fast';
   }
 
@@ -1023,7 +752,7 @@ export class PlantView {
 
   /** The picture as it is shown now, or would be at rest. */
   async picture(): Promise<Blob> {
-    if (this.slow) this.refine(GRAIN.rest);
+    this.frames.settle();
     this.render();
     const canvas = this.renderer.domElement;
     return new Promise((resolve, reject) => {
@@ -1069,7 +798,7 @@ export class PlantView {
   private resize(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
     if (w === 0 || h === 0 || this.immersing) return;
-    this.renderer.setPixelRatio(this.slow ? this.grain : Math.min(2, devicePixelRatio || 1));
+    this.renderer.setPixelRatio(this.slow ? this.frames.grain : Math.min(2, devicePixelRatio || 1));
     this.renderer.setSize(w, h, false);
     this.lay();
     if (this.follow) this.frameNowBox();
@@ -1077,58 +806,16 @@ export class PlantView {
   }
 
   private redraw(): void {
-    // A headset asks for its pictures itself.
-    if (this.frame || this.immersing) return;
-    if (!this.rig.isLed) this.last = performance.now();
-    // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
-    const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
-    if (wait > 0) {
-      this.frame = window.setTimeout(() => {
-        this.frame = 0;
-        this.rendered = 0;
-        this.redraw();
-      }, wait);
-      return;
-    }
-    this.frame = requestAnimationFrame(() => {
-      this.frame = 0;
-      const now = performance.now();
-      const there = this.rig.glide(1 - Math.exp(-Math.min(now - this.last, 400) / 120));
-      this.last = now;
-      this.rig.update();
-      if (this.slow) this.spare(now);
-      this.render();
-      this.rendered = performance.now();
-      if (!there || this.standIn?.moves) this.redraw();
-    });
-  }
-
-  /** Coarse pictures while they follow one another, a fine one when they have come to rest. */
-  private spare(now: number): void {
-    const moving = now - this.drawn < 3 * SLOW_MS;
-    this.drawn = now;
-    this.refine(moving ? GRAIN.moving : GRAIN.rest);
-    window.clearTimeout(this.rest);
-    if (moving)
-      this.rest = window.setTimeout(() => {
-        this.drawn = -Infinity;
-        this.redraw();
-      }, 2 * SLOW_MS);
-  }
-
-  private refine(grain: number): void {
-    if (grain === this.grain) return;
-    this.grain = grain;
-    this.renderer.setPixelRatio(grain);
+    this.frames.redraw();
   }
 
   private render(): void {
     if (this.immersing) return;
     const { camera, pipeline } = this;
     this.guides.face(camera);
-    this.standIn?.tick(performance.now() / 1000);
+    this.plants.standIn?.tick(performance.now() / 1000);
     // Shadows that move with it are for a graphics card.
-    if (this.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
+    if (this.plants.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
     const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));
     this.stage.prepare(!through, this.rig.far.aspect, this.holder);
     if (through) {

@@ -191,8 +191,12 @@ impl TreeEvaluator {
             return;
         }
         let mut grown = raw.grown.clone();
-        tint(&spec.look, &mut grown.plant, pictured, seed);
-        add_blossom(&spec.blossom, &mut grown.plant, obstacles, seed);
+        let fallen = tint(&spec.look, &mut grown.plant, pictured, seed);
+        (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - fallen, grown.leaves.fallen + fallen);
+        // Nothing flowers in autumn.
+        if spec.look.leaf_season() <= 0.0 {
+            add_blossom(&spec.blossom, &mut grown.plant, obstacles, seed);
+        }
         if let Some(height) = height {
             scale_to_height(&mut grown, height);
         }
@@ -269,10 +273,12 @@ impl TreeEvaluator {
     }
 
     fn item(&self, spec: &TreeSpec, options: &TreeOptions, report: &Report) -> ItemReport {
-        let (Some(raw), Some(plant), Some((_, model))) = (&self.grown, self.plant(), &self.model) else {
+        let (Some(raw), Some(dressed), Some(plant), Some((_, model))) =
+            (&self.grown, &self.dressed, self.plant(), &self.model)
+        else {
             return ItemReport::default(); // update fills all of them before it comes here
         };
-        let growth = GrowthReport::of(spec, &raw.grown, self.inside);
+        let growth = GrowthReport::of(spec, &dressed.grown, self.inside);
         // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;

@@ -1,28 +1,89 @@
-//! Colours of leaves and bark.
+//! Colours of leaves and bark, and the season.
 //!
-//! `Plant + Model + Look -> tinted leaves, the bark to paint, a dark foot`
+//! `Plant + Model + Look -> tinted leaves that have not fallen, the bark to paint, a dark foot`
 
 use base::ops;
 use base::{Draw, Seed};
+use glam::DVec3;
 use growth::{Bark, BladeForm, Look};
 use mesh::{MaterialKind, Model};
-use plant::{OrganKind, Paint, Plant};
+use plant::{Organ, OrganKind, Paint, Plant};
 use skin::{BarkKind, BarkSpec, SkinSpec, Venation};
 use spec::Colour;
 
-/// Gives each leaf its colour. Leaves that have a picture only vary in brightness.
-pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) {
-    let (mut from, mut to) =
-        (look.leaf_color.linear(), look.leaf_color_to.unwrap_or(look.leaf_color).linear());
-    if pictured {
-        (from, to) = ([1.0; 3], [0.8; 3]);
-    }
-    for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
+/// Gives each leaf its colour, and takes those that have fallen by the season; how many. Leaves that have a picture only
+/// vary in brightness.
+pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -> usize {
+    let pair = |from: Colour, to: Option<Colour>| [from.linear(), to.unwrap_or(from).linear()];
+    let plain = [[1.0; 3], [0.8; 3]];
+    let summer = if pictured { plain } else { pair(look.leaf_color, look.leaf_color_to) };
+    let autumn = look.autumn_color.filter(|_| look.season > 0.0).map(|color| {
+        let colours = if pictured { plain } else { pair(color, look.autumn_color_to) };
+        (colours, lateness(plant, look.autumn_outside, seed))
+    });
+    for (row, organ) in plant.organs.iter_mut().enumerate().filter(|(_, o)| o.kind == OrganKind::Leaf) {
         let share = look.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
+        let mixed = |[from, to]: [[f64; 3]; 2]| [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share));
+        let color = autumn.as_ref().map_or_else(
+            || mixed(summer),
+            |(colours, late)| {
+                let (green, gold) = (mixed(summer), mixed(*colours));
+                let turned = turned(look.season, late[row]);
+                if turned < 1.0 { [0, 1, 2].map(|i| ops::lerp(green[i], gold[i], turned)) } else { gold }
+            },
+        );
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-        let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
-        organ.paint = if pictured { Paint::Natural(mixed) } else { Paint::Tinted(mixed) };
+        let color = color.map(|c| c as f32);
+        organ.paint = if pictured { Paint::Natural(color) } else { Paint::Tinted(color) };
     }
+    let Some((_, late)) = autumn else { return 0 };
+    let before = plant.organs.len();
+    let mut late = late.into_iter();
+    plant.organs.retain(|o| {
+        let late = late.next().unwrap_or(0.0);
+        o.kind != OrganKind::Leaf || !has_fallen(look.season, late)
+    });
+    before - plant.organs.len()
+}
+
+/// How far the colour of a leaf is changed, 0 to 1: the last ones turn when the first are about to fall.
+fn turned(season: f64, late: f64) -> f64 {
+    if season >= 0.5 { 1.0 } else { ((season - 0.3 * late) / 0.2).clamp(0.0, 1.0) }
+}
+
+/// Whether a leaf is on the ground: what turned first falls first.
+fn has_fallen(season: f64, late: f64) -> bool {
+    season >= 1.0 || season - 0.5 > 0.5 * late
+}
+
+/// By organ: how late in autumn it turns and falls, 0 to below 1.
+///
+/// Trees of early successions turn from the inside of the crown outwards, others from its outside (Koike 1990); twigs and
+/// leaves differ beside that.
+fn lateness(plant: &Plant, outside: bool, seed: Seed) -> Vec<f64> {
+    let axis_of = |o: &Organ| o.bearer.map(|b| plant.nodes.axis[b.index()].index());
+    // Each crown by itself: bearers come before what they bear.
+    let mut tree: Vec<usize> = (0..plant.axes.len()).collect();
+    for (row, axis) in plant.axes.iter().enumerate() {
+        if let Some(bearer) = axis.bearer {
+            tree[row] = tree[plant.nodes.axis[bearer.index()].index()];
+        }
+    }
+    let mut crowns = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; plant.axes.len()];
+    let leaves = || plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+    for (axis, at) in leaves().filter_map(|o| Some((axis_of(o)?, o.frame.origin))) {
+        let [low, high] = &mut crowns[tree[axis]];
+        (*low, *high) = (low.min(at), high.max(at));
+    }
+    let late = |o: &Organ| {
+        let Some(axis) = axis_of(o) else { return 0.0 };
+        let [low, high] = crowns[tree[axis]];
+        let half = (0.5 * (high - low)).max(DVec3::splat(1e-9));
+        let out = ((o.frame.origin - 0.5 * (low + high)) / half).length().min(1.0);
+        let draw = |key: u64| seed.child(key).stream(Draw::Season).uniform();
+        0.45 * draw(o.key) + 0.2 * draw(plant.axes[axis].key) + 0.35 * if outside { 1.0 - out } else { out }
+    };
+    plant.organs.iter().map(|o| if o.kind == OrganKind::Leaf { late(o) } else { 0.0 }).collect()
 }
 
 /// A surface with the bark of a look, and leaves with the veins of their form.

@@ -61,6 +61,78 @@ fn a_tree_has_its_model_its_report_and_its_colours() {
     assert!((60..130).contains(&mean), "an alder's bark is dark: {mean}");
 }
 
+/// Keys of its leaves, and the share of them that are more red than green.
+fn leaves_in(spec: &TreeSpec, season: f64) -> (std::collections::BTreeSet<u64>, f64) {
+    let mut spec = spec.clone();
+    spec.look.season = season;
+    let made = plain(&spec);
+    assert_eq!(made.grown.plant.validate().next(), None);
+    let leaves = || made.grown.plant.organs.iter().filter(|o| o.kind == plant::OrganKind::Leaf);
+    let red = leaves().filter(|o| o.paint.rgb()[0] > o.paint.rgb()[1]).count();
+    let growth = made.item.growth.expect("the report's block");
+    assert_eq!(growth.leaves_kept, leaves().count() as u64);
+    (leaves().map(|o| o.key).collect(), red as f64 / leaves().count().max(1) as f64)
+}
+
+#[test]
+fn leaves_turn_and_fall_one_by_one_and_evergreens_keep_theirs() {
+    for key in ["hazel", "beech"] {
+        let spec = young(key);
+        let (all, red) = leaves_in(&spec, 0.0);
+        assert!(red < 0.05, "{key} is green in summer: {red}");
+        let (mut last, mut turned) = (all.clone(), red);
+        for season in [0.1, 0.2, 0.3, 0.4, 0.5] {
+            let (leaves, red) = leaves_in(&spec, season);
+            assert!(leaves == all && red >= turned, "{key} at {season}: {red} after {turned}");
+            turned = red;
+        }
+        assert!(turned > 0.99, "{key}: {turned}");
+        for season in [0.6, 0.75, 0.9] {
+            let (leaves, _) = leaves_in(&spec, season);
+            assert!(leaves.is_subset(&last) && !leaves.is_empty() && leaves.len() < last.len(), "{key}");
+            last = leaves;
+        }
+        assert!(leaves_in(&spec, 1.0).0.is_empty(), "{key} is bare in winter");
+    }
+    let mut spruce = young("spruce");
+    let summer = plain(&spruce).item.digest;
+    spruce.look.season = 0.9;
+    assert_eq!(plain(&spruce).item.digest, summer);
+    // What flowers in spring does not in autumn.
+    let mut rose = young("rose");
+    rose.look.season = 0.4;
+    let counts = plain(&rose).item.counts;
+    assert!(counts.flowers == Some(0) && counts.leaves > Some(100), "{counts:?}");
+}
+
+#[test]
+fn a_beech_turns_from_its_outside_and_a_birch_from_its_inside() {
+    // Mean distance from the trunk of the leaves that are left, over that of all.
+    let out = |key: &str, season: f64| {
+        let mut spec = young(key);
+        spec.look.season = season;
+        let made = plain(&spec);
+        let leaves = made.grown.plant.organs.iter().filter(|o| o.kind == plant::OrganKind::Leaf);
+        let away: Vec<f64> =
+            leaves.map(|o| DVec2::new(o.frame.origin.x, o.frame.origin.z).length()).collect();
+        away.iter().sum::<f64>() / away.len() as f64
+    };
+    let change = |key| out(key, 0.75) / out(key, 0.0);
+    let (beech, birch) = (change("beech"), change("birch"));
+    assert!(beech < 0.98 && birch > 1.02, "{beech}, {birch}");
+}
+
+#[test]
+fn a_season_grows_nothing_again() {
+    let (mut spec, options) = (young("hazel"), TreeOptions::default());
+    let mut evaluator = TreeEvaluator::default();
+    evaluator.update(&spec, Seed::new(1), &options, &Run::plain()).expect("sound");
+    spec.look.season = 0.7;
+    let item = evaluator.update(&spec, Seed::new(1), &options, &Run::plain()).expect("sound");
+    assert_eq!(evaluator.stages_done(), ["mesh"]);
+    assert_eq!(item, plain(&spec).item);
+}
+
 #[test]
 fn levels_of_detail_become_coarser_and_stay_sound() {
     let spec = young("hazel");

@@ -1,0 +1,81 @@
+/** When pictures are drawn: one after a change, more while something moves, few where the processor draws them. */
+
+/** Least time between pictures that the processor draws. */
+const SLOW_MS = 300;
+/** Its pixels for each of the screen's: at rest, and while pictures follow one another. */
+const GRAIN = { rest: 0.75, moving: 0.45 } as const;
+
+export interface Drawer {
+  /** No picture is wanted: another draws them. */
+  away(): boolean;
+  /** The camera is on a way of its own. */
+  isLed(): boolean;
+  /** Draws one, so many milliseconds after the one before; whether something still moves. */
+  draw(ms: number): boolean;
+  /** Another grain from now on. */
+  grained(grain: number): void;
+}
+
+export class Frames {
+  /** Pixels for each of the screen's, without a graphics card. */
+  grain: number = GRAIN.rest;
+  private drawn = -Infinity;
+  private rest = 0;
+  private frame = 0;
+  private last = 0;
+  private rendered = 0;
+
+  constructor(
+    private readonly slow: boolean,
+    private readonly drawer: Drawer,
+  ) {}
+
+  redraw(): void {
+    if (this.frame || this.drawer.away()) return;
+    if (!this.drawer.isLed()) this.last = performance.now();
+    // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
+    const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
+    if (wait > 0) {
+      this.frame = window.setTimeout(() => {
+        this.frame = 0;
+        this.rendered = 0;
+        this.redraw();
+      }, wait);
+      return;
+    }
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      const now = performance.now();
+      const since = now - this.last;
+      this.last = now;
+      if (this.slow) this.spare(now);
+      const moves = this.drawer.draw(since);
+      this.rendered = performance.now();
+      if (moves) this.redraw();
+    });
+  }
+
+  /** The next picture is as fine as those at rest. */
+  settle(): void {
+    if (this.slow) this.refine(GRAIN.rest);
+  }
+
+  /** Coarse pictures while they follow one another, a fine one when they have come to rest. */
+  private spare(now: number): void {
+    const moving = now - this.drawn < 3 * SLOW_MS;
+    this.drawn = now;
+    this.refine(moving ? GRAIN.moving : GRAIN.rest);
+    window.clearTimeout(this.rest);
+    if (moving)
+      this.rest = window.setTimeout(() => {
+        this.drawn = -Infinity;
+        this.redraw();
+      }, 2 * SLOW_MS);
+  }
+
+  private refine(grain: number): void {
+    if (grain === this.grain) return;
+    this.grain = grain;
+    this.drawer.grained(grain);
+  }
+}
