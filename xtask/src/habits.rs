@@ -38,6 +38,8 @@ pub(crate) fn check() -> Outcome {
         "--exclude",
         "burgeon-python",
         "--exclude",
+        "burgeon-npm",
+        "--exclude",
         "burgeon-bench",
         "--exclude",
         "xtask",

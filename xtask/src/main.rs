@@ -13,6 +13,7 @@ mod layers;
 mod made_drawings;
 mod made_strokes;
 mod native;
+mod npm;
 mod pixels;
 mod python;
 mod quickdraw;
@@ -39,7 +40,7 @@ cargo xtask COMMAND
                  Studio and opens it with the sample (not with --no-open, in CI, or where there is no screen)
   studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
-  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Python, Studio
+  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, npm, Python, Studio
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
@@ -55,6 +56,9 @@ cargo xtask COMMAND
   test-studio    the Studio part of `test` alone
   test-python    the Python part of `test` alone (docs/python.md)
   archive        one file to download: the command with the Studio in it, manual pages, completions (target/archives)
+  npm            builds the npm package as a tarball, target/npm, and says how large its cores are (docs/npm.md)
+  test-npm       the npm part of `test` alone
+  bench-npm      measures the npm package beside another maker of trees, in Node and in a browser
   wheel          builds the Python package for this system, target/wheels
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
   setup          installs the wasm32 target and the WASM tools only
@@ -85,6 +89,9 @@ fn main() -> ExitCode {
         Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools, false)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
         Some("archive") => archive::run(),
+        Some("npm") => web::setup().and_then(|tools| npm::pack(&tools)),
+        Some("test-npm") => web::setup().and_then(|tools| npm::test(&tools)),
+        Some("bench-npm") => web::setup().and_then(|tools| npm::bench(&tools)),
         Some("wheel") => python::wheel(),
         Some("test-python") => python::test(false),
         Some("setup") => web::setup().map(|_| ()),
@@ -141,7 +148,7 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
 
 /// The tests that compare schemas and TypeScript types write them, too.
 fn types() -> Outcome {
-    for (package, test) in [("burgeon", "schemas"), ("burgeon-workspace", "wire")] {
+    for (package, test) in [("burgeon", "schemas"), ("burgeon-workspace", "wire"), ("burgeon-npm", "types")] {
         let mut c = shell::prepare(shell::cargo_path(), &["test", "--package", package, "--test", test]);
         c.env("BURGEON_WRITE_TYPES", "1");
         shell::finish(c)?;
@@ -156,6 +163,7 @@ fn test() -> Outcome {
     // Built with the tests; the library as a program of its own uses it.
     cargo(&["run", "--quiet", "--package", "burgeon", "--example", "inventory"])?;
     web::test(&tools, true)?;
+    npm::test(&tools)?;
     python::test(true)?;
     studio::test(&tools, true)
 }

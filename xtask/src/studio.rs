@@ -110,7 +110,7 @@ pub(crate) fn bench(tools: &Tools) -> Outcome {
 }
 
 /// A Chromium: named, found, or installed where that needs no question.
-fn browser() -> Option<PathBuf> {
+pub(crate) fn browser() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("BURGEON_CHROMIUM") {
         return Some(named.into());
     }

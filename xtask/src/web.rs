@@ -88,13 +88,37 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     finish(c)
 }
 
+/// What is built for a browser.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Core {
+    /// That of the Studio and of the checks in Node.
+    Studio,
+    /// That of the npm package: with all makers, or of trees alone.
+    Npm {
+        /// All of them.
+        makers: bool,
+    },
+}
+
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
-    let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
+    build_core(tools, Core::Studio, release)
+}
+
+/// Builds a core and returns the file, which the next build of the same package replaces.
+pub(crate) fn build_core(tools: &Tools, core: Core, release: bool) -> Outcome<PathBuf> {
+    let package = match core {
+        Core::Studio => "burgeon-wasm",
+        Core::Npm { .. } => "burgeon-npm",
+    };
+    let mut args = vec!["build", "--package", package, "--target", TARGET];
     if release {
         args.push("--profile=web");
-    } else {
-        args.push("--features=checks");
+    }
+    match core {
+        Core::Studio if !release => args.push("--features=checks"),
+        Core::Npm { makers: false } => args.push("--no-default-features"),
+        _ => {}
     }
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);
@@ -111,7 +135,8 @@ pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
         WasmCargo::Debian => target_dir().join("debian"),
     };
     let profile = if release { "web" } else { "debug" };
-    Ok(built.join(TARGET).join(profile).join("burgeon_wasm.wasm"))
+    let name = format!("{}.wasm", package.replace('-', "_"));
+    Ok(built.join(TARGET).join(profile).join(name))
 }
 
 /// Makes the JavaScript package of a built core: `target` is `nodejs` or `web`.

@@ -506,9 +506,10 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
     let film = several && extension.is_some();
     given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
-    let mtg = extension.is_some_and(|e| e.eq_ignore_ascii_case("mtg"));
+    let structure = extension.and_then(PlantFormat::from_extension);
+    let structure = matches!(structure, Some(PlantFormat::Structure(_)));
     let users = "models of one shape (--day, or another format than .glb)";
-    given.only_if(!several && !mtg, &["lods"], users, "none is written")?;
+    given.only_if(!several && !structure, &["lods"], users, "none is written")?;
     given.only_if(
         extension.is_none(),
         &["format"],
@@ -773,9 +774,9 @@ fn write_one(
     Shown { plant, model, lods, .. }: &Shown,
     (axes, named): (&ExportSpec, &AxesArgs),
 ) -> Outcome {
-    if let (Some(plant), PlantFormat::Mtg) = (plant, files::plant_writable(path)?) {
+    if let (Some(plant), format @ PlantFormat::Structure(_)) = (plant, files::plant_writable(path)?) {
         let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
-        return files::write_plant(outputs, goal, (plant, model), PlantFormat::Mtg, named, cache).map(drop);
+        return files::write_plant(outputs, goal, (plant, model), format, named, cache).map(drop);
     }
     let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
     let format: ModelFormat = files::writable(path)?;

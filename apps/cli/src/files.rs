@@ -14,7 +14,7 @@ use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
 use serde::Deserialize;
 
-use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
+use crate::args::{AxesArgs, PlantFormat, StructureFormat, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 use crate::output::{self, Outputs};
@@ -355,11 +355,11 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
 /// The format of a plant's file name, if we write it.
 pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
     match extension(path).and_then(PlantFormat::from_extension) {
-        Some(PlantFormat::Mtg) => Ok(PlantFormat::Mtg),
+        Some(structure @ PlantFormat::Structure(_)) => Ok(structure),
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
         None => Err(Failure::at(
             path,
-            "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz or .mtg; end the name with one of them",
+            "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz, .mtg or .opf; end the name with one of them",
         )),
     }
 }
@@ -445,25 +445,28 @@ pub(crate) fn write_plant(
         PlantFormat::Model(format) => {
             write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache)
         }
-        PlantFormat::Mtg => {
-            write_mtg_file(outputs, goal.by, goal.path, plant, args)?;
+        PlantFormat::Structure(format) => {
+            write_structure(outputs, (goal.by, goal.path), plant, format, args)?;
             let mut report = Report::default();
-            warn_of_wind(model, "MTG", &mut report);
+            warn_of_wind(model, format.word(), &mut report);
             Ok(report.warnings)
         }
     }
 }
 
 /// Writes a plant's structure, with +Z up unless `args` say otherwise.
-pub(crate) fn write_mtg_file(
+pub(crate) fn write_structure(
     outputs: &mut Outputs,
-    by: &str,
-    path: &Path,
+    (by, path): (&str, &Path),
     plant: &Plant,
+    format: StructureFormat,
     args: &AxesArgs,
 ) -> Outcome {
     let axes = field_axes(args);
-    outputs.write(by, path, |out| write_mtg(plant, &axes, out))
+    outputs.write(by, path, |out| match format {
+        StructureFormat::Mtg => write_mtg(plant, &axes, out),
+        StructureFormat::Opf => burgeon::write_opf(plant, &axes, out),
+    })
 }
 
 /// Writes a plant's cylinders, with +Z up unless `args` say otherwise.
@@ -472,7 +475,7 @@ pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args:
     outputs.write("--qsm", path, |out| burgeon::formats::write_qsm(plant, &axes, out))
 }
 
-// The programs that read MTG and QSM files have Z upwards.
+// The programs that read MTG, OPF and QSM files have Z upwards.
 fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }

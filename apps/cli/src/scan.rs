@@ -9,7 +9,7 @@ use burgeon::skin::SkinSpec;
 use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
 use serde::Serialize;
 
-use crate::args::{PlantFormat, ScanArgs, Seen, UpWord};
+use crate::args::{PlantFormat, ScanArgs, Seen, StructureFormat, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::materials::Materials;
@@ -118,7 +118,8 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         files::write_qsm(&mut outputs, path, &made.plant, &args.axes)?;
     }
     if let Some(path) = &args.mtg {
-        files::write_mtg_file(&mut outputs, "--mtg", path, &made.plant, &args.axes)?;
+        let mtg = StructureFormat::Mtg;
+        files::write_structure(&mut outputs, ("--mtg", path), &made.plant, mtg, &args.axes)?;
     }
     if let Some(png) = &args.png {
         let view = args.picture.spec(args.seed);

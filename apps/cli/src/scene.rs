@@ -99,7 +99,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let model = scene_model(document.name(), &plants);
     let structure = || {
         let [only] = seen.as_slice() else {
-            return Err(Failure::at(path, "holds several plants; a structure (MTG, QSM) is of one"));
+            return Err(Failure::at(path, "holds several plants; a structure (MTG, OPF, QSM) is of one"));
         };
         let plant = scene.get(only.id()).and_then(|p| p.plant);
         plant.ok_or_else(|| Failure::Bug("no plant was made".into()))
@@ -109,7 +109,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     }
     if let Some((out, format)) = args.output.as_deref().zip(format) {
         let nothing = burgeon::plant::Plant::default();
-        let plant = if matches!(format, PlantFormat::Mtg) { structure()? } else { &nothing };
+        let plant = if matches!(format, PlantFormat::Structure(_)) { structure()? } else { &nothing };
         let goal = Goal::new("-o", out);
         let mut cache = PngCache::new();
         if matches!(format, PlantFormat::Model(ModelFormat::Glb)) {

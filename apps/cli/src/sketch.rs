@@ -94,7 +94,7 @@ impl<'a> Job<'a> {
                 p,
                 "-o",
                 model,
-                "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz or .mtg",
+                "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz, .mtg or .opf",
                 many,
             )
         });

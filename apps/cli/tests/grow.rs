@@ -537,12 +537,17 @@ fn structure_and_measures_are_written_for_programs_of_the_field() {
     good(&dir, &args);
     let mtg = fs::read_to_string(dir.join("palm.mtg")).unwrap();
     assert!(mtg.contains("CODE:\tFORM-A") && mtg.contains("\n/P1\n"), "no MTG");
+    good(&dir, &["grow", "palm", "-o", "palm.opf"]);
+    let opf = fs::read_to_string(dir.join("palm.opf")).unwrap();
     let table = fs::read_to_string(dir.join("palm.csv")).unwrap();
     let report: Value = serde_json::from_str(&fs::read_to_string(dir.join("palm.json")).unwrap()).unwrap();
     let plant = &report["items"][0]["plant"];
     let height = plant["height_m"].as_f64().unwrap();
     assert!((4.0..30.0).contains(&height), "a palm of {height} m");
     assert_eq!(plant["stems"], 1);
+    let leaves = opf.matches("<branch class=\"Leaf\"").count();
+    assert_eq!(leaves as u64, report["items"][0]["counts"]["leaves"].as_u64().unwrap());
+    assert!(opf.contains("metres, +Z up") && opf.ends_with("</topology>\n</opf>\n"), "no OPF");
     let column = |name: &str| table.lines().next().unwrap().split(',').position(|c| c == name).unwrap();
     let (radius, length) = (column("radius"), column("length"));
     let volume: f64 = (table.lines().skip(1))

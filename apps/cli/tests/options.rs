@@ -113,6 +113,7 @@ const USES: &[&[&str]] = &[
     &["sketch", "scene.burgeon", "-o", "o.obj"],
     &["grow", "small.toml", "-o", "o.glb", "--no-textures"],
     &["grow", "bare.toml", "-o", "o.mtg"],
+    &["grow", "bare.toml", "-o", "o.opf"],
     &["grow", "light.toml", "--png", "o.png", "--size", "40x30", "--no-textures"],
     &["leaf", "leaf.csv", "-o", "o.ply", "--texture", "plain"],
     &["leaf", "--template", "-o", "o.csv"],
@@ -311,7 +312,8 @@ fn ignored(dir: &Path, scratch: &Path, use_: &[&str]) -> Vec<String> {
         }
         let value = VALUES.iter().find(|(name, _)| *name == option).map(|(_, value)| *value);
         // The files of the field have +Z up already.
-        let field = use_.iter().any(|word| word.ends_with(".mtg") || *word == "--qsm");
+        let field =
+            use_.iter().any(|word| word.ends_with(".mtg") || word.ends_with(".opf") || *word == "--qsm");
         let value = if field && option == "up" { Some("y") } else { value };
         assert!(!takes_value || value.is_some(), "{use_:?}: no value for {long}");
         let mut args = use_.to_vec();

@@ -25,6 +25,8 @@ __all__ = [
     "BudgetError",
     "BurgeonError",
     "Cloud",
+    "Forest",
+    "ForestCloud",
     "Law",
     "Masks",
     "Model",
@@ -36,6 +38,7 @@ __all__ = [
     "SpecError",
     "bloom",
     "dataset",
+    "forest",
     "grow",
     "leaf",
     "open",
@@ -53,4 +56,10 @@ def __getattr__(name: str):
         import importlib
 
         return importlib.import_module(".dataset", __name__)
+    if name in ("Forest", "ForestCloud", "forest"):
+        import importlib
+
+        found = getattr(importlib.import_module("._forest", __name__), name)
+        globals()[name] = found
+        return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

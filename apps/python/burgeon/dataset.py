@@ -24,7 +24,9 @@ from ._files import write_whole
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
-FORMATS = ("glb", "mtg", "qsm", "burgeon", "cloud", "picture")
+MAKERS = ("grow", "bloom", "leaf", "forest")
+"""What makes the plants; a plant of ``forest`` is a tile of trees."""
+FORMATS = ("glb", "mtg", "opf", "qsm", "burgeon", "cloud", "picture")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``), picture with masks and depth
 (``.png``, ``.masks.npz``)."""
 
@@ -53,7 +55,7 @@ def generate(
 ) -> "Dict[str, Any]":
     """Makes ``n`` plants of different seeds; returns the manifest.
 
-    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom`` or ``leaf`` take (a preset, a TOML file, a dict);
+    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom``, ``leaf`` or ``forest`` take (a preset, a TOML file, a dict);
     ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``);
     ``vary``: arguments that differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a
     choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``formats``: of ``FORMATS``;
@@ -137,13 +139,14 @@ def _recipe(
     for name, value, least, most in (("n", n, 1, 10**9), ("shard", shard, 1, 10**6), ("seed", seed, 0, 2**64 - 1)):
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
             raise ValueError(f"{name} must be a whole number, {least} to {most}, not {value!r}")
-    if maker not in ("grow", "bloom", "leaf"):
-        raise ValueError(f"maker must be grow, bloom or leaf, not {maker!r}")
+    if maker not in MAKERS:
+        raise ValueError(f"maker must be one of {', '.join(MAKERS)}, not {maker!r}")
     if isinstance(formats, str):
         formats = (formats,)
-    unknown = [f for f in formats if f not in FORMATS]
+    known = ("glb", "cloud") if maker == "forest" else FORMATS
+    unknown = [f for f in formats if f not in known]
     if unknown or not formats:
-        raise ValueError(f"formats are {', '.join(FORMATS)}, not {unknown or 'none'}")
+        raise ValueError(f"formats are {', '.join(known)}, not {unknown or 'none'}")
     if isinstance(spec, (str, os.PathLike)) and os.fspath(spec).endswith(".toml"):
         # A cluster's machines need not have the file.
         spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}

@@ -108,19 +108,43 @@ def bloom(
     return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
 
 
+CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las")
+"""Files of points."""
+
+
 def leaf(
-    spec: Spec = None,
+    spec: "Union[Spec, np.ndarray]" = None,
     *,
+    venation: "Optional[str]" = None,
+    veins: "Optional[int]" = None,
+    length: "Optional[float]" = None,
+    depth: "Optional[float]" = None,
+    side_veins: "Optional[int]" = None,
+    unit: str = "m",
     seed: int = 1,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     **fields: Any,
 ) -> Plant:
-    """A leaf (``burgeon leaf``): of measured marks (``.csv``), of a vein graph (``.json``), or of numbers.
+    """A leaf (``burgeon leaf``): of measured marks or chief veins (``.csv``), of a vein graph (``.json``), of a scan
+    (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres), or of numbers.
 
+    ``venation``: ``palmate`` or ``parallel``, a leaf of chief veins that start together: how many ``veins`` (odd),
+    ``length`` in metres, of palmate leaves the ``depth`` of the notches (0 to 0.9), and ``side_veins`` (0 to 12);
     ``fields``: ``schema("leaf")``, docs/leaves.md; of a leaf of numbers ``form={"length_m": 0.08, "lobes": 0.4}``.
     """
     file, toml, own = None, None, {}
+    if hasattr(spec, "ndim") or isinstance(spec, list):
+        return _scanned("scan", None, spec, budget, fields)
+    numbers = {"veins": veins, "length_m": length, "depth": depth, "side_veins": side_veins}
+    if venation is not None:
+        if spec is not None and not isinstance(spec, Mapping):
+            raise ValueError("venation makes a leaf of numbers: leave the file out")
+        asked = _asked(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
+        return Plant(_burgeon.leaf_of_veins({"venation": venation, "file": None, **numbers}, asked))
+    given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
+    if given:
+        raise ValueError(f"{given[0].replace('_m', '')} is of leaves with venation='palmate' or 'parallel'")
     if isinstance(spec, Mapping):
         own = dict(spec)
     elif isinstance(spec, SpecText):
@@ -129,9 +153,38 @@ def leaf(
         path = os.fspath(spec)
         if path.endswith(".toml"):
             toml = _text(path)
+        elif os.path.splitext(path)[1].lower() in CLOUDS:
+            import builtins
+
+            name, extension = os.path.splitext(os.path.basename(path))
+            with builtins.open(path, "rb") as scan:
+                return _scanned(name, (scan.read(), extension[1:].lower(), unit), None, budget, fields)
         else:
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
+            if _burgeon.is_rays(file[1]):
+                asked = _asked(seed, budget, fields, {"wind": wind})
+                return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
     return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))
+
+
+def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
+    """The leaf of a cloud of points."""
+    import numpy as np
+
+    if fields:
+        raise ValueError(f"{next(iter(fields))} is of measured leaves; a leaf of a scan has no fields")
+    rows: "List[List[float]]" = []
+    if file is None:
+        array = np.asarray(points)
+        if array.dtype.kind not in "fiu":
+            raise TypeError(f"a scan is numbers, not {array.dtype}")
+        if array.ndim != 2 or array.shape[1] != 3:
+            raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
+        array = array.astype(np.float64)
+        if not np.isfinite(array).all():
+            raise ValueError("a scan must be finite numbers")
+        rows = array.tolist()
+    return Plant(_burgeon.leaf_of_scan(name, file, rows, float(budget)))
 
 
 def sketch(

@@ -338,22 +338,22 @@ class Plant:
         return read_mtg(text)
 
     def to_bytes(self, extension: str, unit: str = "m", up: "Optional[str]" = None) -> bytes:
-        """The file of a format: models, ``mtg``, ``qsm`` (cylinders as a table), ``burgeon`` (a project of the Studio)."""
+        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (cylinders as a table), ``burgeon`` (a project of the Studio)."""
         extension = extension.lower().lstrip(".")
-        if extension in ("mtg", "qsm"):
+        if extension in ("mtg", "opf", "qsm"):
             return bytes(self._raw.structure(extension, unit, up or "z"))
         if extension == "burgeon":
             return bytes(self._raw.project())
         return self.model.to_bytes(extension, unit, up or "y")
 
     def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "Optional[str]" = None) -> None:
-        """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``), its
+        """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``), its
         cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all."""
         folder, name = os.path.split(os.fspath(path))
         extension = os.path.splitext(name)[1][1:].lower()
         if name.lower().endswith(".qsm.csv"):
             extension = "qsm"
-        if extension in ("mtg", "qsm", "burgeon"):
+        if extension in ("mtg", "opf", "qsm", "burgeon"):
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
             self.model.save(path, unit, up or "y")

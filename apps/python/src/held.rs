@@ -6,7 +6,7 @@ use burgeon::document::{Document, Editor, Maker, PlantId};
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::Layout;
-use burgeon::{SceneEvaluator, ScenePlant, Seed};
+use burgeon::{ItemReport, MadePlant, SceneEvaluator, ScenePlant, Seed};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -19,6 +19,8 @@ pub(crate) struct Held {
     pub(crate) document: Document,
     pub(crate) id: PlantId,
     pub(crate) budget: f64,
+    /// In its place, a leaf that no document holds: of chief veins, or of a scan.
+    pub(crate) lone: Option<MadePlant>,
 }
 
 impl Held {
@@ -33,7 +35,7 @@ impl Held {
         if !(1.0..=1000.0).contains(&budget) {
             return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
         }
-        let mut held = Self { scene, document, id, budget };
+        let mut held = Self { scene, document, id, budget, lone: None };
         let made = compute(py, budget, |run| held.scene.update(id, &held.document, run).map(|()| held))?;
         let held = made.map_err(|e| refused(py, &e))?;
         let there = held.scene.get(id).is_some_and(|p| p.plant.is_some() && p.owners.is_some());
@@ -43,23 +45,42 @@ impl Held {
         Ok(Arc::new(held))
     }
 
+    /// A leaf that no document holds.
+    pub(crate) fn lone(made: MadePlant, budget: f64) -> Arc<Self> {
+        let (scene, document) = (SceneEvaluator::default(), Document::default());
+        Arc::new(Self { scene, document, id: PlantId(u32::MAX), budget, lone: Some(made) })
+    }
+
+    /// The entry of the report.
+    pub(crate) fn report(&self) -> Option<ItemReport> {
+        self.lone.as_ref().map(|l| l.item.clone()).or_else(|| self.shown().map(|p| p.report()))
+    }
+
     pub(crate) fn shown(&self) -> Option<ScenePlant<'_>> {
         self.scene.get(self.id)
     }
 
     pub(crate) fn model(&self) -> &Model {
         static NONE: std::sync::OnceLock<Model> = std::sync::OnceLock::new();
-        self.shown().map_or_else(|| NONE.get_or_init(Model::default), |p| p.model)
+        let made = self.lone.as_ref().map(|l| &l.model).or_else(|| self.shown().map(|p| p.model));
+        made.unwrap_or_else(|| NONE.get_or_init(Model::default))
     }
 
     pub(crate) fn plant(&self) -> &Plant {
         static NONE: std::sync::OnceLock<Plant> = std::sync::OnceLock::new();
-        self.shown().and_then(|p| p.plant).unwrap_or_else(|| NONE.get_or_init(Plant::default))
+        let made = self.lone.as_ref().map(|l| &l.plant).or_else(|| self.shown().and_then(|p| p.plant));
+        made.unwrap_or_else(|| NONE.get_or_init(Plant::default))
     }
 
     pub(crate) fn layout(&self) -> &Layout {
         static NONE: std::sync::OnceLock<Layout> = std::sync::OnceLock::new();
-        self.shown().and_then(|p| p.owners).unwrap_or_else(|| NONE.get_or_init(Layout::default))
+        let made = self.lone.as_ref().map(|l| &l.layout).or_else(|| self.shown().and_then(|p| p.owners));
+        made.unwrap_or_else(|| NONE.get_or_init(Layout::default))
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        let of_document = || self.document.plant(self.id).map_or("", |p| &*p.settings().name);
+        self.lone.as_ref().map_or_else(of_document, |l| &l.plant.name)
     }
 
     pub(crate) fn seed(&self) -> Seed {
@@ -70,12 +91,22 @@ impl Held {
         Some(&self.document.plant(self.id)?.settings().maker)
     }
 
+    /// What only plants of documents can do.
+    pub(crate) fn must_have_document(&self, py: Python<'_>) -> PyResult<()> {
+        if self.lone.is_none() {
+            return Ok(());
+        }
+        let line = "a leaf of chief veins or of a scan has no edits by hand, no other days and no project";
+        Err(unusable(py, &line))
+    }
+
     /// The plant after more commands.
     pub(crate) fn after(
         &self,
         py: Python<'_>,
         commands: impl IntoIterator<Item = burgeon::document::Command>,
     ) -> PyResult<Arc<Self>> {
+        self.must_have_document(py)?;
         let mut editor = Editor::new(self.document.clone());
         for command in commands {
             match editor.run(command) {

@@ -5,6 +5,7 @@
 //! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
 //! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
+//! | `forest` | plants that stand together |
 //! | `column` | memory of ours that `NumPy` shows without a copy |
 //! | `value` | what people write in Python -> JSON |
 //! | `compute` | threads, Ctrl-C, limits |
@@ -15,6 +16,7 @@
 mod column;
 mod compute;
 mod fault;
+mod forest;
 mod held;
 mod make;
 mod model;
@@ -29,7 +31,12 @@ mod _burgeon {
     #[pymodule_export]
     use crate::compute::set_threads;
     #[pymodule_export]
-    use crate::make::{RawLaw, bloom, grow, leaf, open_project, presets, schema, sketch};
+    use crate::forest::{RawForest, places};
+    #[pymodule_export]
+    use crate::make::{
+        RawLaw, bloom, grow, is_rays, leaf, leaf_of_scan, leaf_of_veins, open_project, presets, schema,
+        sketch,
+    };
     #[pymodule_export]
     use crate::model::{RawModel, png};
     #[pymodule_export]

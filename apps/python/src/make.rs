@@ -8,22 +8,24 @@ use burgeon::document::{
     Document, Editor, FlowerMaker, LeafData, LeafMaker, Maker, NewPlant, PlantId, SceneCommand, Settings,
     SketchCommand,
 };
-use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, ModelFormat};
+use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, MarksAxes, ModelFormat};
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{Drawing, StrokeClass};
-use burgeon::leaf::LeafSpec;
+use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
-use burgeon::{NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
+use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::Value;
 
+use crate::compute::compute;
 use crate::fault::{refused, unusable};
 use crate::held::Held;
+use crate::model::axes;
 use crate::plant::RawPlant;
-use crate::value::{json_of, merge};
+use crate::value::json_of;
 
 /// What all makers are asked for.
 #[derive(FromPyObject)]
@@ -97,11 +99,7 @@ impl Asked<'_> {
 
 /// A spec with some fields in the place of its own, all within their ranges.
 fn put<T: Spec>(py: Python<'_>, base: &T, fields: Value) -> PyResult<T> {
-    let mut all = burgeon::spec::to_json(base);
-    merge(&mut all, fields);
-    let spec = burgeon::spec::from_json::<T>(&all).map_err(|e| refused(py, &e))?;
-    burgeon::spec::check(&spec).map_err(|e| refused(py, &e))?;
-    Ok(spec)
+    burgeon::spec::with_fields(base, fields).map_err(|e| refused(py, &e))
 }
 
 /// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.
@@ -205,6 +203,133 @@ pub(crate) fn leaf(
     let (name, text) = file.unwrap_or_else(|| ("leaf".into(), String::new()));
     let data = LeafData { name: name.clone(), text: text.into() };
     asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind)
+}
+
+/// Chief veins that start together: of a kind, with numbers of it; or of a file, by its name and text.
+#[derive(FromPyObject)]
+pub(crate) struct Veins {
+    #[pyo3(item)]
+    venation: Option<String>,
+    #[pyo3(item)]
+    file: Option<(String, String)>,
+    #[pyo3(item)]
+    veins: Option<u32>,
+    #[pyo3(item)]
+    length_m: Option<f64>,
+    #[pyo3(item)]
+    depth: Option<f64>,
+    #[pyo3(item)]
+    side_veins: Option<u32>,
+}
+
+/// A number that may be left out, within its range.
+fn within(name: &str, value: Option<f64>, usual: f64, [least, most]: [f64; 2]) -> PyResult<f64> {
+    let value = value.unwrap_or(usual);
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(PyValueError::new_err(format!("{name} must be {least} to {most}, not {value}")))
+}
+
+impl Veins {
+    fn count(&self, usual: u32, most: u32) -> PyResult<u32> {
+        let veins = self.veins.unwrap_or(usual);
+        if veins % 2 == 1 && (3..=most).contains(&veins) {
+            return Ok(veins);
+        }
+        let line = format!("veins must be an odd number from 3 to {most}, not {veins}: one is the midrib");
+        Err(PyValueError::new_err(line))
+    }
+
+    fn rays(&self) -> PyResult<(&'static str, Rays)> {
+        let length = |usual| within("length", self.length_m, usual, [0.001, 10.0]);
+        match self.venation.as_deref() {
+            Some("palmate") => {
+                let usual = PalmateSpec::default();
+                let depth = within("depth", self.depth, usual.depth, [0.0, 0.9])?;
+                let veins = self.count(usual.veins, 11)?;
+                let spec = PalmateSpec { veins, length_m: length(usual.length_m)?, depth };
+                Ok(("palmate", Rays::palmate(&spec)))
+            }
+            Some("parallel") if self.depth.is_some() => {
+                Err(PyValueError::new_err("depth is of palmate leaves: leave it out"))
+            }
+            Some("parallel") => {
+                let usual = ParallelSpec::default();
+                let veins = self.count(usual.veins, 31)?;
+                Ok((
+                    "parallel",
+                    Rays::parallel(&ParallelSpec { veins, length_m: length(usual.length_m)?, ..usual }),
+                ))
+            }
+            other => {
+                let other = other.unwrap_or_default();
+                Err(PyValueError::new_err(format!("venation must be palmate or parallel, not {other:?}")))
+            }
+        }
+    }
+}
+
+/// A leaf of chief veins that start together.
+#[pyfunction]
+pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> PyResult<RawPlant> {
+    let mut spec = asked.spec(py, &LeafSpec::default())?;
+    let (_, wind) = asked.skin(py)?;
+    let (name, rays) = match &veins.file {
+        None => {
+            let (name, rays) = veins.rays()?;
+            (name.to_owned(), rays)
+        }
+        Some((name, text)) => {
+            let read = burgeon::formats::read_rays(text.as_bytes(), name, MarksAxes::default());
+            let read = read.map_err(|e| unusable(py, &format!("{name}: {e}")))?;
+            spec.thickness = spec.thickness.or(read.thickness);
+            (read.name, read.rays)
+        }
+    };
+    let usual = if veins.venation.as_deref() == Some("palmate") { 4 } else { 0 };
+    let side_veins = veins.side_veins.unwrap_or(usual);
+    if side_veins > 12 {
+        return Err(PyValueError::new_err(format!("side_veins must be 0 to 12, not {side_veins}")));
+    }
+    let skin = SkinSpec { wind, ..SkinSpec::default() };
+    let options = LeafOptions { spec, skin, side_veins, ..LeafOptions::default() };
+    let made = compute(py, asked.budget, |run| burgeon::make_ray_leaf(&name, &rays, &options, run))?;
+    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?, asked.budget)))
+}
+
+/// A leaf of a scan: points in metres, or the bytes of a file, its extension and its unit.
+#[pyfunction]
+pub(crate) fn leaf_of_scan(
+    py: Python<'_>,
+    name: &str,
+    file: Option<(Vec<u8>, String, String)>,
+    points: Vec<[f64; 3]>,
+    budget: f64,
+) -> PyResult<RawPlant> {
+    let points = match file {
+        None => points.into_iter().map(DVec3::from_array).collect(),
+        Some((bytes, extension, unit)) => {
+            let format = CloudFormat::from_extension(&extension);
+            let format = format
+                .ok_or_else(|| unusable(py, &format!("{name}: is no cloud (.xyz, .ply, .pcd, .las)")))?;
+            let axes = axes(&unit, "y")?;
+            let read = burgeon::formats::read_cloud(&*bytes, format, &axes, &mut Report::default());
+            read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points
+        }
+    };
+    if !(1.0..=1000.0).contains(&budget) {
+        return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
+    }
+    let spec = ScanSpec::default();
+    let made = compute(py, budget, |run| burgeon::make_leaf_from_scan(name, &points, &spec, run))?;
+    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?.0, budget)))
+}
+
+/// Whether the text of a file of marks tells chief veins that start together.
+#[pyfunction]
+pub(crate) fn is_rays(text: &str) -> bool {
+    burgeon::formats::is_rays(text.as_bytes())
 }
 
 /// Strokes of a drawing: the bytes of a file and its extension, or points.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
 use burgeon::plant::Organ;
-use burgeon::{SceneError, Seed, SurveySpec};
+use burgeon::{SceneError, Seed, SurveySpec, Surveyed};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -28,11 +28,26 @@ fn handle(raw: Option<u32>) -> i32 {
     raw.and_then(|r| i32::try_from(r).ok()).unwrap_or(burgeon::NOTHING)
 }
 
+/// The columns of a cloud by their names.
+pub(crate) fn cloud(py: Python<'_>, cloud: Surveyed) -> PyResult<Bound<'_, PyDict>> {
+    let dict = PyDict::new(py);
+    let put = |name: &str, column: Column| dict.set_item(name, Py::new(py, column)?);
+    put("points", Column::new(cloud.points))?;
+    put("normals", Column::new(cloud.normals))?;
+    put("part", Column::new(cloud.part))?;
+    put("axis", Column::new(cloud.axis))?;
+    put("organ", Column::new(cloud.organ))?;
+    put("order", Column::new(cloud.order))?;
+    put("station", Column::new(cloud.station))?;
+    put("distance", Column::new(cloud.distance))?;
+    Ok(dict)
+}
+
 #[pymethods]
 impl RawPlant {
     #[getter]
     fn name(&self) -> String {
-        self.0.document.plant(self.0.id).map_or_else(String::new, |p| p.settings().name.clone())
+        self.0.name().to_owned()
     }
 
     #[getter]
@@ -42,18 +57,17 @@ impl RawPlant {
 
     #[getter]
     fn maker(&self) -> &'static str {
-        self.0.maker().map_or("", Maker::word)
+        if self.0.lone.is_some() { "leaf" } else { self.0.maker().map_or("", Maker::word) }
     }
 
     /// The entry of the report, as JSON.
     fn report(&self) -> String {
-        let report = self.0.shown().map(|p| p.report());
-        report.and_then(|r| serde_json::to_string(&r).ok()).unwrap_or_default()
+        self.0.report().and_then(|r| serde_json::to_string(&r).ok()).unwrap_or_default()
     }
 
     #[getter]
     fn digest(&self) -> String {
-        self.0.shown().map_or_else(String::new, |p| p.report().digest)
+        self.0.report().map_or_else(String::new, |r| r.digest)
     }
 
     /// All that can be measured, as JSON.
@@ -122,6 +136,10 @@ impl RawPlant {
             return Err(PyValueError::new_err(format!("level must be 0 to 6, not {level}")));
         }
         let held = &self.0;
+        if let Some(lone) = &held.lone {
+            let made = compute(py, held.budget, |run| lone.at_level(level, run))?;
+            return Ok(RawModel::new(made.map_err(|e| refused(py, &SceneError::from(e)))?));
+        }
         let Some(plant) = held.document.plant(held.id) else { return Ok(self.model()) };
         let made = compute(py, held.budget, |run| held.scene.at_level(plant, &held.document, level, run))?;
         Ok(RawModel::new(made.map_err(|e: SceneError| refused(py, &e))?))
@@ -150,21 +168,10 @@ impl RawPlant {
             let of = (held.plant(), held.model(), held.layout());
             burgeon::survey(of, &spec, Seed::new(seed), run)
         })?;
-        let cloud = made.map_err(|e| refused(py, &e))?;
-        let dict = PyDict::new(py);
-        let put = |name: &str, column: Column| dict.set_item(name, Py::new(py, column)?);
-        put("points", Column::new(cloud.points))?;
-        put("normals", Column::new(cloud.normals))?;
-        put("part", Column::new(cloud.part))?;
-        put("axis", Column::new(cloud.axis))?;
-        put("organ", Column::new(cloud.organ))?;
-        put("order", Column::new(cloud.order))?;
-        put("station", Column::new(cloud.station))?;
-        put("distance", Column::new(cloud.distance))?;
-        Ok(dict)
+        cloud(py, made.map_err(|e| refused(py, &e))?)
     }
 
-    /// The structure as a file: `mtg` or `qsm`.
+    /// The structure as a file: `mtg`, `opf` or `qsm`.
     fn structure<'py>(
         &self,
         py: Python<'py>,
@@ -176,8 +183,11 @@ impl RawPlant {
         let mut bytes = Vec::new();
         let written = match format {
             "mtg" => py.detach(|| burgeon::formats::write_mtg(held.plant(), &spec, &mut bytes)),
+            "opf" => py.detach(|| burgeon::write_opf(held.plant(), &spec, &mut bytes)),
             "qsm" => py.detach(|| burgeon::formats::write_qsm(held.plant(), &spec, &mut bytes)),
-            other => return Err(PyValueError::new_err(format!("a structure is mtg or qsm, not {other:?}"))),
+            other => {
+                return Err(PyValueError::new_err(format!("a structure is mtg, opf or qsm, not {other:?}")));
+            }
         };
         written.map_err(|e| unusable(py, &e))?;
         Ok(PyBytes::new(py, &bytes))
@@ -198,6 +208,7 @@ impl RawPlant {
 
     /// The plant at a day: of flowers, and of drawings whose flowers open.
     fn at(&self, py: Python<'_>, day: f64) -> PyResult<Self> {
+        self.0.must_have_document(py)?;
         let id = self.0.id;
         let command = match self.0.maker() {
             Some(Maker::Flower(_)) => FlowerCommand::SetDay(day).of(id),
@@ -218,6 +229,7 @@ impl RawPlant {
 
     /// The plant as a project of the Studio.
     fn project<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.0.must_have_document(py)?;
         let bytes = burgeon::document::write_project(&self.0.document, burgeon::VERSION);
         Ok(PyBytes::new(py, &bytes.map_err(|e| unusable(py, &e))?))
     }

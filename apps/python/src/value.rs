@@ -62,26 +62,3 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     let kind = value.get_type();
     Err(PyTypeError::new_err(format!("{path}: a {} cannot be part of a spec", kind.name()?)))
 }
-
-/// Words by which forms are told apart: what belongs to one form does not fit another.
-const TAGS: [&str; 2] = ["kind", "shape"];
-
-/// Puts `fields` in the place of those of `into`, table by table; a table of another form replaces the one that is there.
-pub(crate) fn merge(into: &mut Value, fields: Value) {
-    match (into, fields) {
-        (Value::Object(old), Value::Object(new)) => {
-            let other = TAGS.iter().any(|t| new.get(*t).is_some_and(|tag| old.get(*t) != Some(tag)));
-            if other {
-                *old = new;
-                return;
-            }
-            for (name, value) in new {
-                match old.get_mut(&name) {
-                    Some(there) => merge(there, value),
-                    None => drop(old.insert(name, value)),
-                }
-            }
-        }
-        (into, fields) => *into = fields,
-    }
-}

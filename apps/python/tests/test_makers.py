@@ -48,6 +48,63 @@ def test_leaves_are_those_of_the_command_line(cli, root):
         assert bg.leaf(path).digest == cli("leaf", path, "--json")["digest"]
 
 
+@pytest.mark.parametrize("word, more", [("palmate", {"veins": 7, "depth": 0.4}), ("parallel", {"length": 0.2})])
+def test_leaves_of_chief_veins_are_those_of_the_command_line(cli, word, more, tmp_path):
+    args = [x for name, value in more.items() for x in (f"--{name}", value)]
+    made = bg.leaf(venation=word, **more)
+    assert made.digest == cli("leaf", "--venation", word, *args)["digest"]
+    assert made.maker == "leaf" and made.measures()["leaf_area_m2"] > 0
+    assert made.level(1).triangle_count < made.model.triangle_count
+    with pytest.raises(bg.SpecError, match="no project"):
+        made.save(tmp_path / "x.burgeon")
+
+
+def test_files_of_chief_veins_are_those_of_the_command_line(cli, program, tmp_path):
+    import subprocess
+
+    marks = tmp_path / "maple.csv"
+    subprocess.run([program, "leaf", "--venation", "palmate", "--marks", str(marks), "--quiet"], check=True)
+    assert bg.leaf(marks).digest == cli("leaf", marks)["digest"]
+
+
+def test_leaves_of_scans_are_those_of_the_command_line(cli, tmp_path):
+    v, u = np.meshgrid(np.linspace(0, 1, 60), np.linspace(-1, 1, 21), indexing="ij")
+    half = 0.25 * 70 * (1 - (2 * v - 1) ** 2) + 0.3
+    points = np.stack([u * half, v * 70, 0.002 * 70**2 * v * v * (1 - 0.2 * u * u)], -1).reshape(-1, 3)
+    scan = tmp_path / "scan.xyz"
+    np.savetxt(scan, points)
+    made = bg.leaf(scan, unit="mm")
+    assert made.digest == cli("leaf", "--scan", scan, "--unit", "mm")["digest"]
+    again = bg.leaf(points / 1000.0)
+    assert again.measures()["leaf_area_m2"] == pytest.approx(made.measures()["leaf_area_m2"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "how, words",
+    [
+        ({"venation": "pinnate"}, "palmate or parallel"),
+        ({"venation": "palmate", "veins": 4}, "odd number from 3 to 11"),
+        ({"venation": "palmate", "depth": 2}, "depth must be 0 to 0.9"),
+        ({"venation": "parallel", "depth": 0.5}, "of palmate leaves"),
+        ({"venation": "palmate", "length": float("nan")}, "length must be"),
+        ({"veins": 5}, "venation='palmate'"),
+        ({"spec": np.zeros((5, 2))}, "shape"),
+        ({"spec": np.full((9, 3), np.nan)}, "finite"),
+        ({"spec": np.zeros((3, 3))}, "."),
+        ({"spec": np.zeros((30, 3)), "curl": 0.3}, "of a scan has no fields"),
+    ],
+)
+def test_what_makes_no_leaf_is_told(how, words):
+    with pytest.raises(ValueError, match=words):
+        bg.leaf(**how)
+
+
+def test_structure_is_written_as_opf(small):
+    text = small.to_bytes("opf").decode()
+    leaves = sum(bg.PARTS[part] == "leaf" for part in small.organs.part)
+    assert text.count('class="Leaf"') == leaves > 0 and "+Z up" in text
+
+
 def test_a_spec_is_the_same_as_file_dict_and_keywords(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text('name = "mine"\nage = 5\n[leaves]\nleaf_keep = 0.5\n')

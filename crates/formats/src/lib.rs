@@ -2,7 +2,7 @@
 //!
 //! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
 //! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_mtg`],
-//! [`write_qsm`] -> bytes.
+//! [`write_opf`], [`write_qsm`] -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -32,5 +32,5 @@ pub use model::{
     write_glb_morph, write_glb_packed, write_glb_scene, write_glb_with, write_model, write_ply, write_png,
     write_stl,
 };
-pub use plant::{write_mtg, write_qsm};
+pub use plant::{write_mtg, write_opf, write_qsm};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

@@ -57,7 +57,7 @@ pub use tube::{TubeSpec, tube};
 
 use base::{Run, Stopped};
 use glam::DVec3;
-use mesh::Model;
+use mesh::{Model, TriMesh};
 use plant::{AxisKind, Plant};
 
 use crate::axes::Surface;
@@ -150,7 +150,7 @@ pub fn skin_laid_out(
         .map(|t| (slot_of(&t), vec![Piece::tube(&t.axes, t.mesh.triangles.len())], t.mesh))
         .map(|(slot, pieces, mesh)| (slot, mesh, pieces))
         .collect();
-    let wood = meshes.iter().map(|(_, m, _): &(Slot, mesh::TriMesh, _)| m.triangles.len()).sum();
+    let wood = meshes.iter().map(|(_, m, _): &(Slot, TriMesh, _)| m.triangles.len()).sum();
     meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
     Ok(parts::model(plant, meshes, spec, pictures, run.executor))
@@ -159,6 +159,12 @@ pub fn skin_laid_out(
 /// The vertices of each shape of a plant as [`skin()`] draws it, at scale 1; none of a shape that nothing uses.
 pub fn drawn_shapes(plant: &Plant, spec: &SkinSpec) -> Vec<Vec<DVec3>> {
     organs::vertices(plant, spec, &budget(plant, spec))
+}
+
+/// The mesh of each shape of a plant as [`skin()`] draws it, at scale 1 in the coordinates of its organs, its veins included;
+/// empty of a shape that nothing uses. No colours.
+pub fn shape_meshes(plant: &Plant, spec: &SkinSpec) -> Vec<TriMesh> {
+    organs::meshes(plant, spec, &budget(plant, spec))
 }
 
 /// What to do where there would be too many triangles.

@@ -130,6 +130,22 @@ pub(crate) fn organs(
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
+/// The mesh of each shape as it is drawn at scale 1, its veins included; empty of one that nothing uses.
+pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
+    let ground = Ground::new(plant, spec);
+    let drawn = |(shape, used): (&Shape, Option<Use>)| {
+        let made = used.map(|used| ground.wish(shape, used, budget).mesh(shape)).unwrap_or_default();
+        let mut all = TriMesh::default();
+        for mesh in [made.surface, made.veins] {
+            all.append(&TriMesh { uvs: Vec::new(), colors: Vec::new(), ..mesh.clone() });
+            all.uvs.extend_from_slice(&mesh.uvs);
+            all.uvs.resize(all.positions.len(), [0.0; 2]);
+        }
+        all
+    };
+    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+}
+
 /// The vertices of each shape as it is drawn at scale 1; none of one that nothing uses.
 pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
     let ground = Ground::new(plant, spec);

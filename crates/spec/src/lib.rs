@@ -24,7 +24,7 @@ pub mod through_json;
 pub use colour::Colour;
 pub use located::{Entry, Kind, Node, TextFault};
 pub use range::{RangeFault, check, range};
-pub use read::{SpecFault, from_json, from_toml, line_at, set, to_json};
+pub use read::{SpecFault, from_json, from_toml, line_at, set, to_json, with_fields};
 pub use schema::{Spec, kept_schema, made_schema};
 
 #[doc(hidden)]

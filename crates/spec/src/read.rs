@@ -136,6 +136,58 @@ pub fn set<T: Spec>(spec: &T, pointer: &str, value: Value) -> Result<T, SpecFaul
     Ok(spec)
 }
 
+/// Words by which forms are told apart: what belongs to one form does not fit another.
+const TAGS: [&str; 2] = ["kind", "shape"];
+
+/// Puts `fields` in the place of those of `into`, table by table; a table of another form replaces the one that is there.
+fn merge(into: &mut Value, fields: Value) {
+    match (into, fields) {
+        (Value::Object(old), Value::Object(new)) => {
+            let other = TAGS.iter().any(|t| new.get(*t).is_some_and(|tag| old.get(*t) != Some(tag)));
+            if other {
+                *old = new;
+                return;
+            }
+            for (name, value) in new {
+                match old.get_mut(&name) {
+                    Some(there) => merge(there, value),
+                    None => drop(old.insert(name, value)),
+                }
+            }
+        }
+        (into, fields) => *into = fields,
+    }
+}
+
+/// The spec with some fields in the place of its own, table by table: what programs ask for beside a preset. A table of
+/// another form (`kind`, `shape`) replaces the one that is there.
+///
+/// # Errors
+/// [`SpecFault`]: there is no such field, a value is of another kind, or one is out of range.
+///
+/// ```
+/// # #[derive(Clone, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
+/// # #[serde(deny_unknown_fields)]
+/// # struct Pot {
+/// #     #[schemars(range(min = 0.0, max = 2.0), extend("x-unit" = "m"))]
+/// #     height_m: f64,
+/// #     soil: String,
+/// # }
+/// # spec::schemas!(Pot);
+/// let pot = Pot { height_m: 1.0, soil: "loam".into() };
+/// let higher = spec::with_fields(&pot, serde_json::json!({ "height_m": 1.5 }))?;
+/// assert_eq!((higher.height_m, higher.soil.as_str()), (1.5, "loam"));
+/// assert!(spec::with_fields(&pot, serde_json::json!({ "width_m": 1.5 })).is_err());
+/// # Ok::<(), spec::SpecFault>(())
+/// ```
+pub fn with_fields<T: Spec>(spec: &T, fields: Value) -> Result<T, SpecFault> {
+    let mut all = to_json(spec);
+    merge(&mut all, fields);
+    let spec = from_json(&all)?;
+    check(&spec)?;
+    Ok(spec)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -31,6 +31,7 @@ mod scene;
 mod shaping;
 mod shoot;
 mod split;
+mod structure;
 mod survey;
 mod template;
 mod trees;
@@ -56,13 +57,16 @@ pub use report::{
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
     PlantLevel, SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema,
-    material_schema, scene_model, sketch_schema, skin_schema, standing, tree_settings, tree_spec,
+    material_schema, scene_model, sketch_schema, skin_schema, standing, standing_at, tree_settings,
+    tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
+pub use structure::write_opf;
 pub use survey::{
-    NOTHING, PARTS, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey, triangle_labels,
+    NOTHING, PARTS, Stood, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey,
+    survey_stand, triangle_labels,
 };
 pub use template::{LeafTemplate, TemplateError};
 

@@ -762,6 +762,11 @@ pub fn leaf_marks(
 /// A plant of a scene where it stands.
 pub fn standing<'a>(plant: &'a DocumentPlant, model: &'a Model) -> Standing<'a> {
     let Settings { name, placement, .. } = plant.settings();
+    standing_at(name, model, placement)
+}
+
+/// A model at a place.
+pub fn standing_at<'a>(name: &'a str, model: &'a Model, placement: &document::Placement) -> Standing<'a> {
     let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
     let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
     Standing { name, model, position: placement.position, turn, scale: placement.scale }

@@ -4,7 +4,7 @@
 
 use base::{Cancelled, Draw, Run, Seed};
 use glam::DVec3;
-use mesh::Model;
+use mesh::{Model, Standing};
 use plant::{AxisId, AxisKind, OrganKind, Plant};
 use render::{Hit, PictureSpec, View};
 use skin::{Layout, Owner};
@@ -147,6 +147,7 @@ struct Label {
     part: u8,
     axis: i32,
     organ: i32,
+    order: i32,
 }
 
 impl<'a> Owned<'a> {
@@ -171,13 +172,19 @@ impl<'a> Owned<'a> {
                 let found = self.plant.organs.get(organ.index())?;
                 let bearer = found.bearer.and_then(|n| self.plant.nodes.axis.get(n.index()));
                 let axis = bearer.map_or(NOTHING, |a| row(a.index()));
-                Label { part: part_of_organ(found.kind), axis, organ: row(organ.index()) }
+                let order = bearer.map_or(0, |a| self.order(*a));
+                Label { part: part_of_organ(found.kind), axis, organ: row(organ.index()), order }
             }
         })
     }
 
     fn of_axis(&self, axis: AxisId) -> Label {
-        Label { part: part_of_axis(self.plant.axis(axis).kind), axis: row(axis.index()), organ: NOTHING }
+        let (part, order) = (part_of_axis(self.plant.axis(axis).kind), self.order(axis));
+        Label { part, axis: row(axis.index()), organ: NOTHING, order }
+    }
+
+    fn order(&self, axis: AxisId) -> i32 {
+        self.plant.axes.get(axis.index()).map_or(0, |a| i32::try_from(a.order).unwrap_or(i32::MAX))
     }
 
     /// Of axes that are one tube, that whose line passes nearest.
@@ -241,6 +248,64 @@ pub fn survey(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<Surveyed, SurveyError> {
+    let owned = Owned::new(plant, layout);
+    let label = |hit: &Hit| Some((owned.label(hit.part, hit.triangle, hit.at)?, 0));
+    Ok(beams(model, spec, (seed, run), label)?.0)
+}
+
+/// A plant of a stand: where it stands, and what of it lies where in its model.
+#[derive(Clone, Copy, Debug)]
+pub struct Stood<'a> {
+    /// Where, and the model.
+    pub standing: Standing<'a>,
+    /// Its structure.
+    pub plant: &'a Plant,
+    /// Of this model.
+    pub layout: &'a Layout,
+}
+
+/// Scans a stand from stations around all of it, as [`survey`] scans a plant: plants hide one another. Labels are rows of
+/// the tables of each point's own plant.
+///
+/// Returns the cloud, and of each point the plant, by its place in the stand.
+///
+/// # Errors
+/// [`SurveyError`].
+pub fn survey_stand(
+    stand: &[Stood<'_>],
+    spec: &SurveySpec,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<(Surveyed, Vec<u32>), SurveyError> {
+    let standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
+    let model = crate::scene_model("stand", &standing);
+    let owned: Vec<Owned<'_>> = stand.iter().map(|s| Owned::new(s.plant, s.layout)).collect();
+    // The parts of the plants follow one another.
+    let mut first = 0;
+    let firsts: Vec<u32> = stand
+        .iter()
+        .map(|s| {
+            let own = first;
+            first += u32::try_from(s.standing.model.parts.len()).unwrap_or(u32::MAX);
+            own
+        })
+        .collect();
+    let label = |hit: &Hit| {
+        let row = firsts.partition_point(|f| *f <= hit.part).checked_sub(1)?;
+        let Standing { position, turn, scale, .. } = stand[row].standing;
+        let at = turn.inverse() * (hit.at - position) / scale;
+        Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, u32::try_from(row).ok()?))
+    };
+    beams(&model, spec, (seed, run), label)
+}
+
+/// What the beams of all stations meet of a model; `label` says what that is, and of which plant.
+fn beams(
+    model: &Model,
+    spec: &SurveySpec,
+    (seed, run): (Seed, &Run<'_>),
+    label: impl Fn(&Hit) -> Option<(Label, u32)>,
+) -> Result<(Surveyed, Vec<u32>), SurveyError> {
     spec.check()?;
     let wanted = spec.points as usize;
     // A fifth of the beams meet a plant of a dense crown, fewer a thin one: then the grid becomes finer.
@@ -262,25 +327,24 @@ pub fn survey(
     let all: Vec<(u8, Hit)> =
         (0_u8..).zip(hits).flat_map(|(k, hits)| hits.into_iter().map(move |h| (k, h))).collect();
     let chosen = sample(all.len(), wanted, seed);
-    let owned = Owned::new(plant, layout);
     let mut noise = seed.child(1).stream(Draw::Sampling);
-    let mut out = Surveyed::default();
+    let (mut out, mut plants) = (Surveyed::default(), Vec::new());
     for i in chosen {
         let (station, hit) = &all[i];
-        let Some(label) = owned.label(hit.part, hit.triangle, hit.at) else { continue };
+        let Some((label, plant)) = label(hit) else { continue };
         let off = if spec.noise_m > 0.0 { spec.noise_m * noise.normal() } else { 0.0 };
-        let order = usize::try_from(label.axis).ok().and_then(|a| plant.axes.get(a)).map_or(0, |a| a.order);
         out.points.push((hit.at + hit.beam * off).to_array());
         out.normals.push(hit.normal.as_vec3().to_array());
         out.part.push(label.part);
         out.axis.push(label.axis);
         out.organ.push(label.organ);
-        out.order.push(i32::try_from(order).unwrap_or(i32::MAX));
+        out.order.push(label.order);
+        plants.push(plant);
         out.station.push(*station);
         #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
         out.distance.push(hit.distance_m as f32);
     }
-    Ok(out)
+    Ok((out, plants))
 }
 
 /// A finer grid of beams would have more pixels than a picture may.
@@ -373,6 +437,37 @@ mod tests {
         let rms = (off.iter().map(|x| x * x).sum::<f64>() / off.len() as f64).sqrt();
         assert!((rms - 0.02).abs() < 0.002, "{rms}");
         assert_eq!((still.part, still.organ), (moved.part, moved.organ));
+    }
+
+    #[test]
+    fn trees_of_a_stand_hide_one_another_and_keep_their_labels() {
+        let tree = tree();
+        let (plant, model) = (tree.plant().expect("a plant"), tree.model().expect("a model"));
+        let layout = tree.layout().expect("a layout");
+        let spec = SurveySpec { points: 6000, ..SurveySpec::default() };
+        let at = |x: f64, scale: f64| {
+            let turn = glam::DQuat::from_xyzw(0.0, 0.6, 0.0, 0.8);
+            let standing =
+                Standing { position: DVec3::X * x, scale, turn, ..Standing::home("a tree", model) };
+            Stood { standing, plant, layout }
+        };
+        let alone = Stood { standing: Standing::home("a tree", model), plant, layout };
+        let (same, plants) = survey_stand(&[alone], &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        assert_eq!(same, scanned(&tree, &spec));
+        assert!(plants.iter().all(|p| *p == 0));
+        let stand = [at(-2.0, 1.0), at(0.0, 0.7), at(2.0, 1.2)];
+        let (cloud, plants) = survey_stand(&stand, &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        assert_eq!((cloud.points.len(), plants.len()), (6000, 6000));
+        for (k, p) in cloud.points.iter().enumerate().filter(|(k, _)| cloud.organ[*k] != NOTHING) {
+            let Stood { standing, .. } = stand[plants[k] as usize];
+            let organ = &plant.organs[usize::try_from(cloud.organ[k]).expect("a row")];
+            let root = standing.turn * (organ.frame.origin * standing.scale) + standing.position;
+            let reach = standing.scale * organ.scale * plant.shapes[organ.shape.index()].reach();
+            assert!(DVec3::from_array(*p).distance(root) <= 1.5 * reach + 1e-3);
+        }
+        let of = |row: u32| plants.iter().filter(|p| **p == row).count();
+        // The small one stands in the middle.
+        assert!(of(1) > 0 && of(1) < of(0).min(of(2)), "{} {} {}", of(0), of(1), of(2));
     }
 
     #[test]

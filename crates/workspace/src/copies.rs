@@ -4,7 +4,7 @@ use burgeon::Draw;
 use burgeon::document::{CommandError, DocumentPlant, Placement, PlantCommand, PlantId, SceneCommand};
 use burgeon::glam::{DVec2, DVec3};
 
-use crate::scatter::places;
+use crate::scatter::{places, turned};
 use crate::{Scatter, Workspace, WorkspaceError};
 
 impl Workspace {
@@ -36,11 +36,7 @@ impl Workspace {
         }
         self.editor.begin_gesture("scatter")?;
         for (k, at) in places.into_iter().enumerate() {
-            let place = Placement {
-                position: DVec3::new(at.x, position.y, at.y),
-                yaw_deg: (stream.range(0.0, 3600.0)).round() / 10.0,
-                scale: (scale * stream.range(1.0 - vary, 1.0 + vary) * 1000.0).round() / 1000.0,
-            };
+            let place = turned(at, position.y, scale, vary, &mut stream);
             let kind = stream.below(wanted.kinds.max(1) as usize) as u64;
             let own = (wanted.kinds > 0).then(|| seed.child(kind + 1));
             match self.copy_to(wanted.plant, place, own.map(PlantCommand::SetSeed)) {

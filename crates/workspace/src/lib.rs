@@ -47,7 +47,7 @@ pub use files::{FileKind, Opened};
 pub use held::CarriedPose;
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
-pub use scatter::{Ground, Scatter};
+pub use scatter::{Ground, Scatter, stand};
 pub use shaping::{Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,

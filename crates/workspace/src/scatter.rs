@@ -1,9 +1,9 @@
 //! Where copies of a plant stand: along a line, in an area, under a brush.
 
-use burgeon::Stream;
-use burgeon::document::PlantId;
+use burgeon::document::{Placement, PlantId};
 use burgeon::geom;
-use burgeon::glam::DVec2;
+use burgeon::glam::{DVec2, DVec3};
+use burgeon::{Draw, Seed, Stream};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +45,30 @@ const MISSES: usize = 400;
 /// As many places as a scene may have plants.
 const MOST: usize = 200;
 
+/// Places all over an outline with at least `spacing_m` between them, at most `most`, each turned by chance and up to a
+/// share of `vary` (0 to 0.9) smaller or larger: what shells stand plants at that are in no document.
+///
+/// The same places for the same seed; outlines and numbers as in [`Scatter`]. Cost: quadratic in places.
+pub fn stand(outline: &[[f64; 2]], spacing_m: f64, vary: f64, most: usize, seed: Seed) -> Vec<Placement> {
+    let spacing = if spacing_m.is_finite() { spacing_m.clamp(1e-3, 1e4) } else { 1.0 };
+    let vary = if vary.is_finite() { vary.clamp(0.0, 0.9) } else { 0.0 };
+    let outline: Vec<DVec2> =
+        outline.iter().map(|&p| DVec2::from(p)).filter(|p| p.abs().max_element() <= 1e5).collect();
+    let mut stream = seed.stream(Draw::Scatter);
+    let within = |p| geom::contains(&outline, p);
+    let found = darts((&outline, 0.0), spacing, (&[], most), &mut stream, within);
+    found.into_iter().map(|at| turned(at, 0.0, 1.0, vary, &mut stream)).collect()
+}
+
+/// A place on the ground, turned and sized by chance.
+pub(crate) fn turned(at: DVec2, height_m: f64, scale: f64, vary: f64, stream: &mut Stream) -> Placement {
+    Placement {
+        position: DVec3::new(at.x, height_m, at.y),
+        yaw_deg: (stream.range(0.0, 3600.0)).round() / 10.0,
+        scale: (scale * stream.range(1.0 - vary, 1.0 + vary) * 1000.0).round() / 1000.0,
+    }
+}
+
 /// Places with at least `spacing` between them and from those that are taken.
 pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mut Stream) -> Vec<DVec2> {
     let finite = |points: &[[f64; 2]]| -> Vec<DVec2> {
@@ -54,13 +78,13 @@ pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mu
         Ground::Line(line) => row(&finite(line), spacing, taken),
         Ground::Area(outline) => {
             let outline = finite(outline);
-            darts(&outline, 0.0, spacing, taken, stream, |p| geom::contains(&outline, p))
+            darts((&outline, 0.0), spacing, (taken, MOST), stream, |p| geom::contains(&outline, p))
         }
         Ground::Brush { path, radius_m } => {
             let (path, radius) =
                 (finite(path), if radius_m.is_finite() { radius_m.clamp(0.0, 1e5) } else { 0.0 });
             let near = |p| geom::distance_to_polyline(&path, p).is_some_and(|d| d <= radius);
-            darts(&path, radius, spacing, taken, stream, near)
+            darts((&path, radius), spacing, (taken, MOST), stream, near)
         }
     }
 }
@@ -86,10 +110,9 @@ fn row(line: &[DVec2], spacing: f64, taken: &[DVec2]) -> Vec<DVec2> {
 
 /// Poisson-disc samples by darts (Cook 1986): each falls anywhere in the box and stays where it has room.
 fn darts(
-    around: &[DVec2],
-    margin: f64,
+    (around, margin): (&[DVec2], f64),
     spacing: f64,
-    taken: &[DVec2],
+    (taken, most): (&[DVec2], usize),
     stream: &mut Stream,
     within: impl Fn(DVec2) -> bool,
 ) -> Vec<DVec2> {
@@ -97,7 +120,7 @@ fn darts(
     let (low, high) = (low - margin, high + margin);
     let mut out: Vec<DVec2> = Vec::new();
     let mut misses = 0;
-    while misses < MISSES && out.len() < MOST && low.cmple(high).all() {
+    while misses < MISSES && out.len() < most && low.cmple(high).all() {
         let at = DVec2::new(stream.range(low.x, high.x), stream.range(low.y, high.y));
         let free = within(at) && taken.iter().chain(&out).all(|t| t.distance(at) >= spacing);
         misses = if free { 0 } else { misses + 1 };

@@ -85,7 +85,7 @@ impl Seen {
     pub(crate) fn new(plant: Option<PlantFormat>, png: Option<&PathBuf>, common: &CommonArgs) -> Self {
         let model = match plant {
             Some(PlantFormat::Model(format)) => Some(format),
-            Some(PlantFormat::Mtg) | None => None,
+            Some(PlantFormat::Structure(_)) | None => None,
         };
         Self { model, picture: png.is_some(), report: common.reports() }
     }

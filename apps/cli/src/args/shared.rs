@@ -148,11 +148,11 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and coordinates given as options; glTF is
-    /// always +Y [default: y; z for MTG and QSM].
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF and QSM files, clouds, and coordinates given as options; glTF is
+    /// always +Y [default: y; z for MTG, OPF and QSM].
     #[arg(long, value_enum)]
     pub(crate) up: Option<UpWord>,
-    /// Unit of length in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and lengths said to be in --unit; glTF is always
+    /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF and QSM files, clouds, and lengths said to be in --unit; glTF is always
     /// in metres.
     #[arg(long, value_enum, default_value_t = UnitWord::M)]
     pub(crate) unit: UnitWord,
@@ -274,6 +274,8 @@ pub(crate) enum PlantFormatWord {
     Usdz,
     /// Multiscale tree graph: axes, nodes and organs as text
     Mtg,
+    /// Open Plant Format: axes, internodes and organs with their meshes
+    Opf,
 }
 
 impl PlantFormatWord {
@@ -284,7 +286,8 @@ impl PlantFormatWord {
             Self::Ply => PlantFormat::Model(ModelFormat::Ply),
             Self::Usda => PlantFormat::Model(ModelFormat::Usda),
             Self::Usdz => PlantFormat::Model(ModelFormat::Usdz),
-            Self::Mtg => PlantFormat::Mtg,
+            Self::Mtg => PlantFormat::Structure(StructureFormat::Mtg),
+            Self::Opf => PlantFormat::Structure(StructureFormat::Opf),
         }
     }
 
@@ -296,6 +299,7 @@ impl PlantFormatWord {
             Self::Usda => "usda",
             Self::Usdz => "usdz",
             Self::Mtg => "mtg",
+            Self::Opf => "opf",
         }
     }
 }
@@ -359,8 +363,26 @@ fn range<T: Spec>(field: &str) -> [f64; 2] {
 pub(crate) enum PlantFormat {
     /// Its meshes.
     Model(ModelFormat),
-    /// Its structure, as a multiscale tree graph.
+    /// Its structure.
+    Structure(StructureFormat),
+}
+
+/// What the structure of a plant is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StructureFormat {
+    /// A multiscale tree graph.
     Mtg,
+    /// Open Plant Format.
+    Opf,
+}
+
+impl StructureFormat {
+    pub(crate) const fn word(self) -> &'static str {
+        match self {
+            Self::Mtg => "MTG",
+            Self::Opf => "OPF",
+        }
+    }
 }
 
 impl PlantFormat {
@@ -370,8 +392,10 @@ impl PlantFormat {
     }
 
     pub(crate) fn from_extension(extension: &str) -> Option<Self> {
-        if extension.eq_ignore_ascii_case("mtg") {
-            return Some(Self::Mtg);
+        for structure in [StructureFormat::Mtg, StructureFormat::Opf] {
+            if extension.eq_ignore_ascii_case(structure.word()) {
+                return Some(Self::Structure(structure));
+            }
         }
         ModelFormat::from_extension(extension).map(Self::Model)
     }

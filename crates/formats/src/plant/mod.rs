@@ -1,9 +1,11 @@
-//! [`plant::Plant`] -> bytes: the two text formats in which the field keeps the structure of plants.
+//! [`plant::Plant`] -> bytes: the text formats in which the field keeps the structure of plants.
 
 mod mtg;
+mod opf;
 mod qsm;
 
 pub use mtg::write_mtg;
+pub use opf::write_opf;
 pub use qsm::write_qsm;
 
 use base::{Unit, UpAxis};
@@ -62,6 +64,31 @@ fn standing_on(plant: &Plant, mut node: NodeId) -> NodeId {
             Some(bearer) if axis.nodes.start as usize == node.index() => node = bearer,
             _ => return node,
         }
+    }
+}
+
+/// What each node bears, in order: rows of axes and of organs.
+struct Borne {
+    axes: Vec<(NodeId, AxisId)>,
+    organs: Vec<(NodeId, usize)>,
+}
+
+impl Borne {
+    fn of(plant: &Plant) -> Self {
+        let axes =
+            numbered(plant).filter_map(|(id, _)| Some((standing_on(plant, plant.axis(id).bearer?), id)));
+        let organs = plant.organs.iter().enumerate();
+        let organs = organs.filter_map(|(i, o)| Some((standing_on(plant, o.bearer?), i)));
+        let (mut axes, mut organs): (Vec<_>, Vec<_>) = (axes.collect(), organs.collect());
+        // Stable: in the order of the plant at each node.
+        base::sort_by_key(&mut axes, |(node, _)| *node);
+        base::sort_by_key(&mut organs, |(node, _)| *node);
+        Self { axes, organs }
+    }
+
+    fn on<T: Copy>(list: &[(NodeId, T)], node: NodeId) -> impl Iterator<Item = T> + '_ {
+        let from = list.partition_point(|(n, _)| *n < node);
+        list[from..].iter().take_while(move |(n, _)| *n == node).map(|(_, x)| *x)
     }
 }
 

@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use glam::DVec3;
-use plant::{AxisId, AxisKind, NodeId, Organ, OrganKind, Plant, Shape};
+use plant::{AxisId, AxisKind, Organ, OrganKind, Plant, Shape};
 
-use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
+use super::{Borne, decimal, length, micrometres, numbered, place, turn};
 use crate::{ExportSpec, WriteError};
 
 /// Symbols of what nodes bear: nodes and the kinds of organs.
@@ -69,31 +69,6 @@ pub fn write_mtg(plant: &Plant, spec: &ExportSpec, out: impl Write) -> Result<()
         writer.organ(1, "^/", i, organ)?;
     }
     Ok(())
-}
-
-/// What each node bears, in order: rows of axes and of organs.
-struct Borne {
-    axes: Vec<(NodeId, AxisId)>,
-    organs: Vec<(NodeId, usize)>,
-}
-
-impl Borne {
-    fn of(plant: &Plant) -> Self {
-        let axes =
-            numbered(plant).filter_map(|(id, _)| Some((standing_on(plant, plant.axis(id).bearer?), id)));
-        let organs = plant.organs.iter().enumerate();
-        let organs = organs.filter_map(|(i, o)| Some((standing_on(plant, o.bearer?), i)));
-        let (mut axes, mut organs): (Vec<_>, Vec<_>) = (axes.collect(), organs.collect());
-        // Stable: in the order of the plant at each node.
-        base::sort_by_key(&mut axes, |(node, _)| *node);
-        base::sort_by_key(&mut organs, |(node, _)| *node);
-        Self { axes, organs }
-    }
-
-    fn on<T: Copy>(list: &[(NodeId, T)], node: NodeId) -> impl Iterator<Item = T> + '_ {
-        let from = list.partition_point(|(n, _)| *n < node);
-        list[from..].iter().take_while(move |(n, _)| *n == node).map(|(_, x)| *x)
-    }
 }
 
 /// The features of one line; empty where there is nothing to say.

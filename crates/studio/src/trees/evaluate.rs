@@ -260,7 +260,10 @@ impl TreeEvaluator {
     }
 
     /// As [`Self::at_level`], also with the coarser plant and what of it lies where in the model.
-    pub(crate) fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<Option<LaidOut>, TreeError> {
+    ///
+    /// # Errors
+    /// [`TreeError`].
+    pub fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<Option<LaidOut>, TreeError> {
         let (Some(raw), Some(plant), Some((from, _))) = (&self.grown, self.plant(), &self.model) else {
             return Ok(None);
         };
@@ -322,7 +325,7 @@ impl TreeEvaluator {
     }
 
     /// What lies where in the model of the last update; none where that is of another plant by now.
-    pub(crate) fn layout(&self) -> Option<&Layout> {
+    pub fn layout(&self) -> Option<&Layout> {
         self.model.as_ref().filter(|_| !self.stale).map(|_| &self.layout)
     }
 

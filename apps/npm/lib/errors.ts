@@ -1,0 +1,47 @@
+/** What is wrong with what was asked for. */
+import type { Refusal } from './wire.js';
+
+/** Names the field, its value and its range where they are what is wrong. */
+export class BurgeonError extends Error {
+  /** A word in kebab-case that never changes its meaning, such as `field-range`. */
+  readonly code: string;
+  /** Names and values of the sentence. */
+  readonly fields: Readonly<Record<string, string>>;
+  /** The field that is wrong, such as `leaves.leaf_keep`. */
+  readonly field: string | undefined;
+  /** Its value. */
+  readonly value: string | undefined;
+  /** What it may be: a range, or the words that are known. */
+  readonly range: string | undefined;
+
+  constructor(refusal: Refusal) {
+    super(refusal.message);
+    this.name = 'BurgeonError';
+    this.code = refusal.code;
+    this.fields = refusal.fields;
+    const { field, path, name, value, range, choices } = refusal.fields;
+    this.field = field ?? ([path, refusal.code === 'spec-unknown' ? name : ''].filter(Boolean).join('.') || undefined);
+    this.value = value ?? (refusal.code === 'spec-choice' ? name : undefined);
+    this.range = range ?? choices;
+  }
+}
+
+/** An error of the core; anything else is a fault of ours and stays what it is. */
+export function refusedBy(thrown: unknown): unknown {
+  if (typeof thrown !== 'string') return thrown;
+  try {
+    return new BurgeonError(JSON.parse(thrown) as Refusal);
+  } catch {
+    return new Error(thrown);
+  }
+}
+
+/** What is wrong with an argument, before it goes to the core. */
+export function wrong(field: string, value: unknown, range: string): BurgeonError {
+  const shown = typeof value === 'string' ? JSON.stringify(value) : String(value);
+  return new BurgeonError({
+    code: 'field-range',
+    fields: { field, value: shown, range },
+    message: `${field} must be ${range}, not ${shown}`,
+  });
+}

@@ -1,0 +1,203 @@
+/** What is asked for -> plants. The same specs, ranges and defaults as the command line has. */
+import type { Engine } from './engine.js';
+import { wrong } from './errors.js';
+import { findThree, Plant } from './plant.js';
+import type { Asking } from './protocol.js';
+import type { FLOWERS, FlowerSpec, LeafSpec, SketchSpec, SkinSpec, TREES, TreeSpec } from './spec.js';
+import type { Asked, FlowerAsked, Json, LeafAsked, SketchAsked, TreeAsked } from './wire.js';
+
+/** Fields that may be left out, at any depth. */
+export type Fields<T> = T extends readonly unknown[]
+  ? T
+  : T extends object
+    ? { readonly [K in keyof T]?: Fields<T[K]> }
+    : T;
+
+/** A species of a tree; other words are refused with a list of those that there are. */
+export type Tree = (typeof TREES)[number] | (string & {});
+/** A species of a flower. */
+export type Flower = (typeof FLOWERS)[number] | (string & {});
+
+/** What all makers take. */
+export interface Common {
+  /** A whole number from 0 to 2^64 - 1. Default 1. */
+  readonly seed?: number | bigint;
+  /** Columns that say how wind moves each vertex. Default true. */
+  readonly wind?: boolean;
+  /** Coarser copies to make as well, 0 to 6; `object3D` is a `THREE.LOD` then. Default 0. */
+  readonly lods?: number;
+  /** How many times the usual limits may be exceeded, 1 to 4. Default 1. */
+  readonly budget?: number;
+  /** Files to write as well. */
+  readonly files?: readonly ('glb' | 'mtg' | 'opf')[];
+  /** Whether `plant.measures` is wanted. Default false. */
+  readonly measures?: boolean;
+  /** Stops it. */
+  readonly signal?: AbortSignal;
+}
+
+/** How drawings and trees are meshed: fineness (`detail`, 0.1 to 8), `sides`, `textures`. */
+export interface SkinFields extends Fields<Pick<SkinSpec, 'detail' | 'sides' | 'textures'>> {
+  /** Pixels of a side of the textures of bark, and of the length of those of leaves, 64 to 4096. Default 512. */
+  readonly texture_size?: number;
+}
+
+/** Fields of a tree, by which those of the species are replaced. */
+export interface GrowOptions extends Common, SkinFields {
+  /** Scales the wood to this height, metres. */
+  readonly height_m?: number;
+  /** Fields of its spec: `{ age: 30, leaves: { leaf_keep: 0.5 } }`. */
+  readonly fields?: Fields<TreeSpec>;
+}
+
+export interface SketchOptions extends Common, SkinFields {
+  /** Its name; the extension tells the format of a file. Default `drawing`. */
+  readonly name?: string;
+  /** Whether y points up in strokes; on a screen it points down. Default true. */
+  readonly yUp?: boolean;
+  /** What strokes are, by number, such as `{ 0: 'axis' }`. */
+  readonly classes?: Readonly<Record<number, string>>;
+  /** Its flowers open: the day, 0 to 100. */
+  readonly day?: number;
+  readonly fields?: Fields<SketchSpec>;
+}
+
+export interface LeafOptions extends Common {
+  readonly name?: string;
+  readonly fields?: Fields<LeafSpec>;
+}
+
+export interface BloomOptions extends Common {
+  /** 0 is the bud; default full bloom. */
+  readonly day?: number;
+  readonly fields?: Fields<FlowerSpec>;
+}
+
+/** Strokes of points [x, y], or of x and y one after another. */
+export type Strokes = readonly (readonly (readonly [number, number])[] | Float32Array | Float64Array)[];
+
+/** What makes plants. */
+export interface Makers {
+  /** A tree of a species, of fields alone, or of the text of a TOML file (`burgeon grow`). */
+  grow(tree: Tree | { readonly toml: string } | null, options?: GrowOptions): Promise<Plant>;
+  /** The plant of a drawing: the bytes or the text of a file, or strokes (`burgeon sketch`). */
+  sketch(drawing: Strokes | Uint8Array | ArrayBuffer | string, options?: SketchOptions): Promise<Plant>;
+  /** A leaf of numbers, or of the text of a file of marks or veins (`burgeon leaf`). */
+  leaf(text?: string | null, options?: LeafOptions): Promise<Plant>;
+  /** A flower on a day (`burgeon bloom run`). */
+  bloom(flower?: Flower | { readonly toml: string } | null, options?: BloomOptions): Promise<Plant>;
+  /** The JSON Schema of what a maker can be asked for: meaning, unit (`x-unit`), range and default of each field. */
+  schema(maker: 'tree' | 'sketch' | 'leaf' | 'flower' | 'skin'): Promise<Record<string, Json>>;
+  /** Gives back the memory of the core; the next request starts it again. */
+  close(): void;
+}
+
+const SKIN = ['detail', 'sides', 'textures'] as const;
+
+function common(options: Common & SkinFields & { readonly fields?: object }): Asked {
+  const skin: Record<string, Json> = {};
+  for (const name of SKIN) if (options[name] !== undefined) skin[name] = options[name] as Json;
+  return {
+    fields: (options.fields ?? {}) as Record<string, Json>,
+    skin: {
+      wind: options.wind ?? true,
+      fields: skin,
+      texture_size: options.texture_size === undefined ? null : whole('texture_size', options.texture_size, 4096),
+    },
+    lods: whole('lods', options.lods ?? 0, 6),
+    ...(options.budget === undefined ? {} : { budget: options.budget }),
+    files: [...(options.files ?? [])],
+  };
+}
+
+function whole(name: string, value: number, most: number): number {
+  if (!Number.isInteger(value) || value < 0 || value > most) throw wrong(name, value, `a whole number, 0 to ${most}`);
+  return value;
+}
+
+function seedOf(seed: number | bigint = 1): bigint {
+  const whole = typeof seed === 'bigint' || Number.isSafeInteger(seed) ? BigInt(seed) : -1n;
+  if (whole < 0n || whole >= 1n << 64n) throw wrong('seed', seed, 'a whole number, 0 to 2^64 - 1');
+  return whole;
+}
+
+/** A number that is no number has no JSON: it would be taken for one that was left out. */
+function text(asked: object): string {
+  return JSON.stringify(asked, (key, value: unknown) => {
+    if (typeof value === 'number' && !Number.isFinite(value)) throw wrong(key, value, 'a finite number');
+    return value;
+  });
+}
+
+/** One point after another, y upwards, and how many each stroke has. */
+function points(strokes: Strokes, yUp: boolean): { points: Float64Array; counts: Uint32Array } {
+  const flat = strokes.map((stroke, row) => {
+    const numbers = ArrayBuffer.isView(stroke) ? Array.from(stroke as Float64Array) : stroke.flat();
+    if (numbers.length % 2 !== 0) throw wrong(`strokes[${row}]`, `${numbers.length} numbers`, 'pairs of x and y');
+    const odd = numbers.findIndex((x) => !Number.isFinite(x));
+    if (odd >= 0) throw wrong(`strokes[${row}][${odd >> 1}]`, numbers[odd], 'a finite number');
+    return numbers;
+  });
+  const counts = Uint32Array.from(flat, (numbers) => numbers.length / 2);
+  const all = Float64Array.from(flat.flat());
+  if (!yUp) for (let k = 1; k < all.length; k += 2) all[k] = -all[k]!;
+  return { points: all, counts };
+}
+
+/** The makers of a core. */
+export function makers(engine: Engine): Makers {
+  const make = async (asking: Omit<Asking, 'seed' | 'measures'>, options: Common): Promise<Plant> => {
+    const full: Asking = { ...asking, seed: seedOf(options.seed), measures: options.measures ?? false };
+    const [answer] = await Promise.all([engine.ask(full, options.signal), findThree()]);
+    if (typeof answer === 'string') throw new Error('a plant was asked for');
+    return new Plant(answer);
+  };
+  return {
+    async grow(tree, options = {}) {
+      const asked: TreeAsked = {
+        common: common(options),
+        preset: typeof tree === 'string' ? tree : null,
+        toml: typeof tree === 'object' && tree ? tree.toml : null,
+        height_m: options.height_m ?? null,
+      };
+      return make({ kind: 'grow', asked: text(asked) }, options);
+    },
+    async sketch(drawing, options = {}) {
+      const bytes =
+        typeof drawing === 'string'
+          ? new TextEncoder().encode(drawing)
+          : drawing instanceof ArrayBuffer
+            ? new Uint8Array(drawing)
+            : drawing instanceof Uint8Array
+              ? drawing
+              : undefined;
+      if (bytes && bytes.length === 0) throw wrong('drawing', '0 bytes', 'a file, or strokes');
+      const asked: SketchAsked = {
+        common: common(options),
+        name: options.name ?? 'drawing',
+        classes: { ...options.classes },
+        day: options.day ?? null,
+      };
+      const ink = bytes ? { file: bytes } : points(drawing as Strokes, options.yUp ?? true);
+      return make({ kind: 'sketch', asked: text(asked), ...ink }, options);
+    },
+    async leaf(file = '', options = {}) {
+      const asked: LeafAsked = { common: common(options), name: options.name ?? null, text: file ?? '' };
+      return make({ kind: 'leaf', asked: text(asked) }, options);
+    },
+    async bloom(flower = 'lily', options = {}) {
+      const asked: FlowerAsked = {
+        common: common(options),
+        preset: typeof flower === 'string' ? flower : null,
+        toml: typeof flower === 'object' && flower ? flower.toml : null,
+        day: options.day ?? null,
+      };
+      return make({ kind: 'bloom', asked: text(asked) }, options);
+    },
+    async schema(maker) {
+      const answer = await engine.ask({ kind: 'schema', asked: maker, seed: 0n, measures: false });
+      return JSON.parse(answer as string) as Record<string, Json>;
+    },
+    close: () => engine.close(),
+  };
+}

@@ -1,0 +1,25 @@
+/** The other end of a worker. */
+import { BurgeonError } from './errors.js';
+import type { Asking, Said } from './protocol.js';
+import { buffers, type Core, work } from './work.js';
+
+/** What a worker has of its global scope. */
+interface Scope {
+  onmessage: ((event: { data: { number: number; asking: Asking } }) => void) | null;
+  postMessage(said: Said, transfer?: ArrayBuffer[]): void;
+}
+
+/** Answers requests, one after another. */
+export function serve(core: Promise<Core>): void {
+  const scope = globalThis as unknown as Scope;
+  scope.onmessage = async ({ data: { number, asking } }) => {
+    try {
+      const answer = work(await core, asking);
+      scope.postMessage({ number, answer }, buffers(answer));
+    } catch (e) {
+      const refused =
+        e instanceof BurgeonError ? { code: e.code, fields: { ...e.fields }, message: e.message } : String(e);
+      scope.postMessage({ number, refused });
+    }
+  };
+}

@@ -1,0 +1,240 @@
+//! A plant that was made: its levels of detail as columns, its tables, its files.
+
+use std::sync::Arc;
+
+use burgeon::formats::{self, ExportSpec};
+use burgeon::mesh::{AlphaMode, Model, Part, Texture};
+use burgeon::plant::Plant;
+use burgeon::skin::{Layout, Owner};
+use burgeon::{ItemReport, TreeEvaluator, part_of_axis, part_of_organ};
+use wasm_bindgen::prelude::*;
+
+use crate::asked::{Asked, Refused};
+use crate::view::{LevelView, MaterialView, PartView, PlantView, TextureView};
+
+/// Meshes at one level of detail, with what of which plant lies where in them.
+#[derive(Debug)]
+pub(crate) struct Level {
+    pub(crate) model: Model,
+    pub(crate) owners: Option<(Plant, Layout)>,
+}
+
+/// A plant, until its columns were fetched.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Made {
+    view: PlantView,
+    levels: Vec<Level>,
+    plant: Plant,
+    textures: Vec<Arc<Texture>>,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+impl Made {
+    pub(crate) fn of_tree(
+        tree: TreeEvaluator,
+        (item, preset): (ItemReport, Option<&str>),
+        asked: &Asked,
+    ) -> Result<Self, Refused> {
+        let lost = || Refused::plain("internal", "internal error, a bug in burgeon: no tree was made".into());
+        let (model, plant) = tree.model().zip(tree.plant()).ok_or_else(lost)?;
+        let owners = tree.layout().map(|layout| (plant.clone(), layout.clone()));
+        let mut levels = vec![Level { model: model.clone(), owners }];
+        for level in 1..=asked.levels()? {
+            let (model, owners) = asked.run(|run| tree.laid_out_at(level, run))?.ok_or_else(lost)?;
+            levels.push(Level { model, owners: Some(owners) });
+        }
+        let plant = plant.clone();
+        drop(tree);
+        Self::new("tree", preset, item, (levels, plant), None, asked)
+    }
+
+    pub(crate) fn new(
+        maker: &'static str,
+        preset: Option<&str>,
+        report: ItemReport,
+        (levels, plant): (Vec<Level>, Plant),
+        days: Option<[f64; 2]>,
+        asked: &Asked,
+    ) -> Result<Self, Refused> {
+        let bounds = levels.first().map(|l| l.model.bounds()).filter(|b| !b.is_empty());
+        let (min, max) = bounds.map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
+        let mut textures: Vec<Arc<Texture>> = Vec::new();
+        let views = levels.iter().map(|l| LevelView {
+            parts: l.model.parts.iter().map(part_view).collect(),
+            materials: l.model.materials.iter().map(|m| material_view(m, &mut textures)).collect(),
+        });
+        let levels_view = views.collect();
+        let of_texture = |t: &Arc<Texture>| TextureView { width: t.width, height: t.height };
+        let view = PlantView {
+            name: report.name.clone(),
+            maker,
+            preset: preset.map(Into::into),
+            report,
+            days,
+            min,
+            max,
+            levels: levels_view,
+            textures: textures.iter().map(of_texture).collect(),
+        };
+        let mut made = Self { view, levels, plant, textures, files: Vec::new() };
+        for extension in &asked.files {
+            let bytes = made.file(extension)?;
+            made.files.push((extension.clone(), bytes));
+        }
+        Ok(made)
+    }
+
+    fn file(&self, extension: &str) -> Result<Vec<u8>, Refused> {
+        let mut bytes = Vec::new();
+        let written = match (extension, self.levels.first()) {
+            ("glb", Some(level)) => formats::write_glb(&level.model, &mut bytes),
+            ("mtg", _) => formats::write_mtg(&self.plant, &ExportSpec::default(), &mut bytes),
+            ("opf", _) => burgeon::write_opf(&self.plant, &ExportSpec::default(), &mut bytes),
+            (other, _) => return Err(Refused::choice("files", other, "glb, mtg, opf")),
+        };
+        written.map_err(|e| Refused::plain("write", e.to_string()))?;
+        Ok(bytes)
+    }
+
+    fn part(&self, level: usize, part: usize) -> Option<&Part> {
+        self.levels.get(level)?.model.parts.get(part)
+    }
+}
+
+fn part_view(part: &Part) -> PartView {
+    PartView { name: part.name.clone(), material: part.material.index() }
+}
+
+fn material_view(m: &burgeon::mesh::Material, textures: &mut Vec<Arc<Texture>>) -> MaterialView {
+    let mut row = |texture: &Option<Arc<Texture>>| {
+        let texture = texture.as_ref()?;
+        let known = textures.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
+        Some(known.unwrap_or_else(|| {
+            textures.push(Arc::clone(texture));
+            textures.len() - 1
+        }))
+    };
+    MaterialView {
+        texture: row(&m.texture),
+        normal: row(&m.maps.normal),
+        orm: row(&m.maps.orm),
+        name: m.name.clone(),
+        kind: m.kind.word(),
+        color: m.base_color,
+        roughness: m.roughness,
+        translucency: m.translucency,
+        masked: m.alpha == AlphaMode::Mask,
+        two_sided: m.double_sided,
+    }
+}
+
+/// -1 for none.
+fn handle(raw: Option<u32>) -> i32 {
+    raw.and_then(|r| i32::try_from(r).ok()).unwrap_or(burgeon::NOTHING)
+}
+
+#[wasm_bindgen]
+impl Made {
+    /// `PlantView` as JSON.
+    pub fn view(&self) -> String {
+        serde_json::to_string(&self.view).unwrap_or_default()
+    }
+
+    /// All that can be measured, as JSON.
+    pub fn measures(&self) -> String {
+        serde_json::to_string(&self.plant.measure()).unwrap_or_default()
+    }
+
+    /// A column of a mesh: `positions`, `normals`, `uvs`, `colors`, `wind`, `pivots`; empty where it has none.
+    pub fn column(&self, level: usize, part: usize, name: &str) -> Vec<f32> {
+        let Some(mesh) = self.part(level, part).map(|p| &p.mesh) else { return Vec::new() };
+        match name {
+            "positions" => mesh.positions.as_flattened().to_vec(),
+            "normals" => mesh.normals.as_flattened().to_vec(),
+            "uvs" => mesh.uvs.as_flattened().to_vec(),
+            "colors" => mesh.colors.as_flattened().to_vec(),
+            "wind" => mesh.wind.as_flattened().to_vec(),
+            "pivots" => mesh.pivots.as_flattened().to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Three indices a triangle.
+    pub fn indices(&self, level: usize, part: usize) -> Vec<u32> {
+        self.part(level, part).map_or_else(Vec::new, |p| p.mesh.triangles.as_flattened().to_vec())
+    }
+
+    /// What the triangles of a mesh are of, in their order: for each piece the organ (-1: wood), its shape, and how many
+    /// triangles there are. Empty where that is not known.
+    pub fn pieces(&self, level: usize, part: usize) -> Vec<i32> {
+        let Some((plant, layout)) = self.levels.get(level).and_then(|l| l.owners.as_ref()) else {
+            return Vec::new();
+        };
+        let Some(pieces) = layout.owners().nth(part) else { return Vec::new() };
+        let row = |(owner, triangles): (Owner<'_>, u32)| match owner {
+            Owner::Axes(_) => [-1, -1, handle(Some(triangles))],
+            Owner::Organ(id) => {
+                let shape = plant.organs.get(id.index()).map(|o| o.shape.raw());
+                [handle(Some(id.raw())), handle(shape), handle(Some(triangles))]
+            }
+        };
+        pieces.flat_map(row).collect()
+    }
+
+    /// Where the organs of a level are: matrices of 16 numbers, column by column.
+    pub fn organs(&self, level: usize) -> Vec<f32> {
+        let owners = self.levels.get(level).and_then(|l| l.owners.as_ref());
+        let matrix = |o: &burgeon::plant::Organ| {
+            let [x, y, z] = [o.frame.right, o.frame.along, o.frame.normal].map(|v| (v * o.scale).as_vec3());
+            let at = o.frame.origin.as_vec3();
+            [x.extend(0.0), y.extend(0.0), z.extend(0.0), at.extend(1.0)].map(|v| v.to_array())
+        };
+        owners.map_or_else(Vec::new, |(plant, _)| plant.organs.iter().flat_map(matrix).flatten().collect())
+    }
+
+    /// Tables of the plant, in double precision: `position` (3 a node), `radius`.
+    pub fn numbers(&self, name: &str) -> Vec<f64> {
+        match name {
+            "position" => self.plant.nodes.position.iter().flat_map(|p| p.to_array()).collect(),
+            "radius" => self.plant.nodes.radius_m.clone(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Tables of whole numbers: `node_axis`; `axis_part`, `axis_order`, `axis_bearer`, `axis_first`, `axis_end`;
+    /// `organ_part`, `organ_bearer`, `organ_flower`. -1 for none.
+    pub fn handles(&self, name: &str) -> Vec<i32> {
+        let Plant { axes, organs, nodes, .. } = &self.plant;
+        let whole = |n: u32| handle(Some(n));
+        match name {
+            "node_axis" => nodes.axis.iter().map(|a| whole(a.raw())).collect(),
+            "axis_part" => axes.iter().map(|a| i32::from(part_of_axis(a.kind))).collect(),
+            "axis_order" => axes.iter().map(|a| whole(a.order)).collect(),
+            "axis_bearer" => axes.iter().map(|a| handle(a.bearer.map(|n| n.raw()))).collect(),
+            "axis_first" => axes.iter().map(|a| whole(a.nodes.start)).collect(),
+            "axis_end" => axes.iter().map(|a| whole(a.nodes.end)).collect(),
+            "organ_part" => organs.iter().map(|o| i32::from(part_of_organ(o.kind))).collect(),
+            "organ_bearer" => organs.iter().map(|o| handle(o.bearer.map(|n| n.raw()))).collect(),
+            "organ_flower" => organs.iter().map(|o| handle(o.flower.map(|f| f.raw()))).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// RGBA bytes of a picture by its row.
+    pub fn texture(&self, row: usize) -> Vec<u8> {
+        self.textures.get(row).map_or_else(Vec::new, |t| t.pixels.clone())
+    }
+
+    /// A file that was asked for, by its extension.
+    pub fn take_file(&mut self, extension: &str) -> Vec<u8> {
+        let found = self.files.iter_mut().find(|(name, _)| name == extension);
+        found.map_or_else(Vec::new, |(_, bytes)| std::mem::take(bytes))
+    }
+}
+
+/// The words of parts of plants, by the numbers in tables.
+#[wasm_bindgen]
+pub fn parts() -> Vec<String> {
+    burgeon::PARTS.iter().map(|p| (*p).to_owned()).collect()
+}

@@ -1,0 +1,232 @@
+// node --test tests/node.mjs, with the tarball in BURGEON_TARBALL and the program in BURGEON: the package as it is
+// installed, in Node. The same plants as the native program, to the bit.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+const own = fileURLToPath(new URL('..', import.meta.url));
+const root = join(own, '../..');
+const { BURGEON_TARBALL: tarball, BURGEON: native } = process.env;
+const away = mkdtempSync(join(tmpdir(), 'burgeon-npm-'));
+after(() => rmSync(away, { recursive: true, force: true }));
+
+/** A folder with the package installed; with three.js or without. */
+function installed(name, three) {
+  const folder = join(away, name);
+  mkdirSync(folder);
+  writeFileSync(join(folder, 'package.json'), '{"type":"module","private":true}');
+  const npm = process.platform === 'win32' ? 'npm.cmd' : 'npm';
+  const options = ['--offline', '--no-audit', '--no-fund', '--silent', '--omit=optional', '--legacy-peer-deps'];
+  execFileSync(npm, ['install', ...options, tarball], { cwd: folder });
+  if (three) symlinkSync(join(own, 'node_modules/three'), join(folder, 'node_modules/three'), 'junction');
+  return folder;
+}
+
+const withThree = installed('three', true);
+const file = (path) => pathToFileURL(join(withThree, 'node_modules/burgeon/dist', path)).href;
+const burgeon = await import(file('node.js'));
+const { bloom, BurgeonError, FLOWERS, grow, leaf, PARTS, schema, sketch, TREES } = burgeon;
+const expected = JSON.parse(readFileSync(join(root, 'fixtures/digests.json'), 'utf8'));
+
+test('trees of all species are those of the native program, wind or none', async () => {
+  const trees = Object.entries(expected).filter(([name]) => name.startsWith('tree '));
+  assert.ok(trees.length >= TREES.length - 3, `${trees.length} trees, ${TREES.length} species`);
+  for (const [name, wanted] of trees) {
+    const tree = await grow(name.slice(5), { seed: 1, detail: 0.1, textures: false, wind: false });
+    const { vertices, triangles } = tree.report.counts;
+    assert.equal(`${tree.digest} ${vertices} ${triangles}`, wanted, name);
+  }
+  const blown = await grow('birch', { seed: 1, detail: 0.1, textures: false });
+  assert.ok(expected['tree birch'].startsWith(blown.digest));
+});
+
+test('the small core makes the same trees, and says what it does not make', async () => {
+  const small = await import(file('growth/node.js'));
+  const tree = await small.grow('oak', { detail: 0.1, textures: false, wind: false });
+  assert.ok(expected['tree oak'].startsWith(tree.digest));
+  assert.equal(small.sketch, undefined);
+  await assert.rejects(small.schema('leaf'), /tree, skin/);
+});
+
+test('drawings and leaves are those of the native program', async () => {
+  for (const name of ['a', 'apple-tree']) {
+    const folder = name.length === 1 ? 'table1' : 'gallery';
+    const path = join(root, `fixtures/sketches/${folder}/${name}.svg`);
+    const plant = await sketch(readFileSync(path), { name: `${name}.svg`, seed: 1 });
+    assert.equal(plant.digest, expected[`drawing ${name}`], name);
+  }
+  const marks = await leaf(readFileSync(join(root, 'fixtures/leaves/leaf1.csv'), 'utf8'), { name: 'leaf1', wind: false });
+  assert.equal(marks.digest, expected['leaf1.csv']);
+});
+
+test('flowers are those of the native program', { skip: native ? false : 'BURGEON names no program' }, async () => {
+  const report = join(away, 'flower.json');
+  for (const species of ['lily', 'rose']) {
+    const args = ['bloom', 'run', species, '--day', '3', '--quiet', '--report', report];
+    execFileSync(native, [...args, '-o', join(away, 'flower.glb')]);
+    const flower = await bloom(species, { day: 3, wind: false });
+    assert.equal(flower.digest, JSON.parse(readFileSync(report, 'utf8')).items[0].digest, species);
+    assert.equal(flower.view.days.length, 2);
+  }
+  assert.ok(FLOWERS.length > 10);
+});
+
+test('columns, tables and files fit together', async () => {
+  const tree = await grow('hazel', { seed: 5, detail: 0.3, lods: 2, files: ['glb', 'mtg', 'opf'], measures: true });
+  assert.equal(tree.levels, 3);
+  for (const level of [0, 1, 2]) {
+    for (const mesh of tree.meshes(level)) {
+      const n = mesh.positions.length / 3;
+      assert.deepEqual([mesh.normals, mesh.uvs, mesh.wind, mesh.pivots].map((c) => c.length / n), [3, 2, 4, 3], mesh.name);
+      assert.ok(mesh.indices.every((i) => i < n));
+      const told = mesh.pieces.reduce((sum, x, k) => sum + (k % 3 === 2 ? x : 0), 0);
+      assert.equal(told, mesh.indices.length / 3);
+    }
+  }
+  const count = (level) => tree.meshes(level).reduce((sum, m) => sum + m.indices.length / 3, 0);
+  assert.equal(count(0), tree.report.counts.triangles);
+  assert.ok(count(1) < 0.7 * count(0) && count(2) < 0.7 * count(1), [0, 1, 2].map(count).join());
+  const { nodes, axes, organs } = tree.tables;
+  assert.equal(nodes.position.length, 3 * nodes.radius.length);
+  assert.equal(axes.end.at(-1), nodes.radius.length);
+  assert.equal(tree.organs().length, 16 * organs.part.length);
+  const leaves = organs.part.filter((p) => PARTS[p] === 'leaf').length;
+  assert.equal(leaves, tree.report.counts.leaves);
+  assert.equal(new TextDecoder().decode(tree.files.glb.subarray(0, 4)), 'glTF');
+  assert.match(new TextDecoder().decode(tree.files.mtg), /^CODE:/m);
+  const leafNodes = new TextDecoder().decode(tree.files.opf).match(/class="Leaf"/g);
+  assert.equal(leafNodes.length, tree.report.counts.leaves);
+  assert.ok(tree.measures.leaf_area_m2 > 0 && tree.bounds.max[1] > 1);
+  assert.ok(tree.textures.every((t) => t.pixels.length === 4 * t.width * t.height));
+});
+
+test('strokes as points make a plant', async () => {
+  const stem = Array.from({ length: 40 }, (_, i) => [0.2 * Math.sin(i / 9), i]);
+  const up = await sketch([stem], { seed: 1 });
+  const down = await sketch([Float64Array.from(stem.flatMap(([x, y]) => [x, -y]))], { yUp: false });
+  assert.ok(up.report.counts.triangles > 100);
+  assert.equal(up.digest, down.digest);
+});
+
+test('what is wrong is named: field, value and range', async () => {
+  const wrong = async (promise, expected) => {
+    const error = await promise.then(() => assert.fail('made'), (e) => e);
+    assert.ok(error instanceof BurgeonError, String(error));
+    const { code, field, value, range } = error;
+    assert.deepEqual({ code, field, value, range: range?.slice(0, 20) }, { value: undefined, range: undefined, ...expected });
+    assert.ok(error.message.length > 10);
+  };
+  const trees = TREES.join(', ').slice(0, 20);
+  await wrong(grow('oka'), { code: 'spec-choice', field: 'preset', value: 'oka', range: trees });
+  await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
+  await wrong(grow('oak', { detail: 99 }), { code: 'field-range', field: 'detail', value: '99', range: '0.1 to 8' });
+  await wrong(grow('oak', { fields: { age: 'old' } }), { code: 'spec-kind', field: 'age', value: 'old' });
+  await wrong(grow('oak', { fields: { age: Number.NaN } }), { code: 'field-range', field: 'age', value: 'NaN', range: 'a finite number' });
+  await wrong(grow('oak', { seed: -1 }), { code: 'field-range', field: 'seed', value: '-1', range: 'a whole number, 0 to' });
+  await wrong(grow('oak', { seed: 1.5 }), { code: 'field-range', field: 'seed', value: '1.5', range: 'a whole number, 0 to' });
+  await wrong(grow('oak', { lods: 7 }), { code: 'field-range', field: 'lods', value: '7', range: 'a whole number, 0 to' });
+  await wrong(grow('oak', { budget: 9 }), { code: 'field-range', field: 'budget', value: '9', range: '1 to 4' });
+  await wrong(grow({ toml: 'name = ' }), { code: 'spec-syntax', field: undefined });
+  await wrong(sketch([[[0, 0], [1, Number.NaN]]]), { code: 'field-range', field: 'strokes[0][1]', value: 'NaN', range: 'a finite number' });
+  await wrong(sketch([Float64Array.of(1, 2, 3)]), { code: 'field-range', field: 'strokes[0]', value: '"3 numbers"', range: 'pairs of x and y' });
+  await wrong(sketch([]), { code: 'no-strokes', field: undefined });
+  await wrong(sketch('<svg', { name: 'x.svg' }), { code: 'file-line', field: undefined });
+  await wrong(bloom('tulp'), { code: 'spec-choice', field: 'preset', value: 'tulp', range: FLOWERS.join(', ').slice(0, 20) });
+  // What is too much is said before it is made, and the core goes on.
+  const much = await grow('oak', { detail: 8, fields: { age: 200 } }).then(() => 'made', (e) => e.code);
+  assert.ok(['over-budget', 'made', 'field-range'].includes(much), much);
+  assert.ok((await grow('grass', { detail: 0.2 })).digest);
+  await assert.rejects(grow('oak', { signal: AbortSignal.abort() }), { name: 'AbortError' });
+});
+
+test('schemas say what there is', async () => {
+  const tree = await schema('tree');
+  assert.equal(tree.properties.age.description.length > 5, true);
+  await assert.rejects(schema('pot'), BurgeonError);
+});
+
+test('objects of three.js: levels, leaves as instances, copies', async () => {
+  const THREE = await import(pathToFileURL(join(withThree, 'node_modules/three/build/three.module.js')).href);
+  const tree = await grow('birch', { seed: 3, detail: 0.3, lods: 2 });
+  const lod = tree.object3D({ three: THREE });
+  assert.ok(lod.isLOD && lod.levels.length === 3);
+  const fine = lod.levels[0].object;
+  const instances = fine.children.filter((m) => m.isInstancedMesh);
+  assert.ok(instances.length > 0);
+  // Every vertex of every leaf is where the columns have it.
+  const drawn = new Map();
+  for (const mesh of instances) {
+    const { position, color, uv } = mesh.geometry.attributes;
+    const [v, m, c] = [new THREE.Vector3(), new THREE.Matrix4(), new THREE.Color()];
+    for (let i = 0; i < mesh.count; i++) {
+      mesh.getMatrixAt(i, m);
+      mesh.getColorAt(i, c);
+      for (let k = 0; k < position.count; k++) {
+        v.fromBufferAttribute(position, k).applyMatrix4(m);
+        const row = [v.x, v.y, v.z, c.r * color.getX(k), c.g * color.getY(k), c.b * color.getZ(k), uv.getX(k), uv.getY(k)];
+        drawn.set(mesh.name, [...(drawn.get(mesh.name) ?? []), ...row]);
+      }
+      if (i > 400) break;
+    }
+  }
+  const leaves = tree.meshes().find((m) => m.name === 'leaves');
+  const got = drawn.get('leaves');
+  const all = new Map();
+  for (let k = 0; k < leaves.uvs.length / 2; k++) {
+    const at = [0, 1, 2].map((i) => leaves.positions[3 * k + i]);
+    const key = at.map((x) => Math.round(x * 500)).join();
+    const row = [...at, ...[0, 1, 2].map((i) => leaves.colors[3 * k + i]), leaves.uvs[2 * k], leaves.uvs[2 * k + 1]];
+    all.set(key, [...(all.get(key) ?? []), row]);
+  }
+  for (let k = 0; k < got.length; k += 8) {
+    const row = got.slice(k, k + 8);
+    const near = [0, 1, 2].map((i) => [-1, 0, 1].map((d) => Math.round(row[i] * 500) + d));
+    const there = near[0].flatMap((x) => near[1].flatMap((y) => near[2].flatMap((z) => all.get(`${x},${y},${z}`) ?? [])));
+    const found = there.some((r) => r.every((x, i) => Math.abs(x - row[i]) < (i < 3 ? 1e-4 : 1e-3)));
+    assert.ok(found, `vertex ${k / 8}: ${row}`);
+  }
+  const total = instances.reduce((sum, m) => sum + (m.count * m.geometry.index.count) / 3, 0);
+  const rest = fine.children.filter((m) => !m.isInstancedMesh).reduce((sum, m) => sum + m.geometry.index.count / 3, 0);
+  assert.equal(total + rest, tree.report.counts.triangles);
+  const bytes = (object) => {
+    let sum = 0;
+    object.traverse(({ geometry, instanceMatrix, instanceColor }) => {
+      for (const a of [...Object.values(geometry?.attributes ?? {}), geometry?.index, instanceMatrix, instanceColor]) sum += a?.array.byteLength ?? 0;
+    });
+    return sum;
+  };
+  const plain = tree.object3D({ three: THREE, level: 0, instances: false });
+  assert.ok(plain.isGroup && bytes(fine) < 0.6 * bytes(plain), `${bytes(fine)} of ${bytes(plain)}`);
+  const stand = tree.stand([{ x: 0, z: 0 }, { x: 5, z: 1, yaw: 90, scale: 2 }], { three: THREE, level: 2 });
+  assert.ok(stand.children.length > 0 && stand.children.every((m) => m.isInstancedMesh && m.count === 2));
+  assert.throws(() => tree.stand([{ x: Number.NaN, z: 0 }], { three: THREE }), { field: 'places[0].x' });
+  assert.throws(() => tree.object3D({ three: THREE, level: 3 }), { field: 'level', range: '0 to 2' });
+  assert.ok(tree.object3D().isLOD, 'found by itself');
+  tree.dispose();
+});
+
+test('without three.js there are arrays, and a word on what to install', async () => {
+  const folder = installed('bare', false);
+  const script = join(folder, 'bare.js');
+  writeFileSync(
+    script,
+    `import { grow } from 'burgeon'; import * as small from 'burgeon/growth';
+     const tree = await grow('grass', { detail: 0.2 });
+     let said = ''; try { tree.object3D(); } catch (e) { said = e.message; }
+     const again = await small.grow('grass', { detail: 0.2 });
+     console.log(JSON.stringify([tree.meshes()[0].positions.length > 0, said, again.digest === tree.digest]));`,
+  );
+  const said = JSON.parse(execFileSync(process.execPath, [script], { encoding: 'utf8' }));
+  assert.deepEqual([said[0], said[2]], [true, true]);
+  assert.match(said[1], /npm install three/);
+});
+
+test('the wind is the one that docs/exports.md gives to other programs', () => {
+  const page = readFileSync(join(root, 'docs/exports.md'), 'utf8');
+  const text = /```glsl\n([\s\S]*?)\/\/ in main/.exec(page)[1];
+  assert.equal(burgeon.BLOW.trim(), text.trim());
+});

@@ -1,0 +1,135 @@
+//! Plants that stand together: where they stand, their meshes, their cloud.
+
+use std::sync::Arc;
+
+use burgeon::document::Placement;
+use burgeon::formats::PngCache;
+use burgeon::glam::DVec3;
+use burgeon::mesh::Standing;
+use burgeon::{Seed, Stood, SurveySpec};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::column::Column;
+use crate::compute::compute;
+use crate::fault::{refused, unusable};
+use crate::held::Held;
+use crate::model::RawModel;
+use crate::plant::{RawPlant, cloud};
+
+/// More plants are no stand that a scanner sees at once.
+const MOST: usize = 2000;
+
+/// Plants, and where copies of them stand.
+#[pyclass(frozen, module = "burgeon._burgeon")]
+pub(crate) struct RawForest {
+    plants: Vec<Arc<Held>>,
+    /// Rows of the plants, and where each stands.
+    stand: Vec<(usize, Placement)>,
+}
+
+/// Places in a rectangle `width` by `depth` metres around the origin: x, z, yaw in degrees, scale.
+#[pyfunction]
+pub(crate) fn places(
+    area: (f64, f64),
+    spacing: f64,
+    vary: f64,
+    seed: u64,
+) -> PyResult<Vec<(f64, f64, f64, f64)>> {
+    let (width, depth) = area;
+    let fields = [
+        ("area[0]", width, 0.1, 1000.0),
+        ("area[1]", depth, 0.1, 1000.0),
+        ("spacing", spacing, 0.05, 100.0),
+        ("vary", vary, 0.0, 0.9),
+    ];
+    for (name, value, least, most) in fields {
+        if !(least..=most).contains(&value) {
+            return Err(PyValueError::new_err(format!("{name} must be {least} to {most}, not {value}")));
+        }
+    }
+    let (x, z) = (0.5 * width, 0.5 * depth);
+    let outline = [[-x, -z], [x, -z], [x, z], [-x, z]];
+    let found = workspace::stand(&outline, spacing, vary, MOST + 1, Seed::new(seed));
+    if found.len() > MOST {
+        let line = format!("a forest has at most {MOST} plants: give more spacing, or less area");
+        return Err(PyValueError::new_err(line));
+    }
+    Ok(found.into_iter().map(|p| (p.position.x, p.position.z, p.yaw_deg, p.scale)).collect())
+}
+
+impl RawForest {
+    fn standing(&self) -> Vec<Standing<'_>> {
+        let each = self.stand.iter().filter_map(|(row, place)| {
+            let held = self.plants.get(*row)?;
+            Some(burgeon::standing_at(held.name(), held.model(), place))
+        });
+        each.collect()
+    }
+}
+
+#[pymethods]
+impl RawForest {
+    /// `stand`: row of the plant, x, y, z, yaw in degrees, scale.
+    #[new]
+    fn new(plants: Vec<PyRef<'_, RawPlant>>, stand: Vec<(usize, [f64; 3], f64, f64)>) -> PyResult<Self> {
+        if stand.is_empty() || stand.len() > MOST {
+            return Err(PyValueError::new_err(format!(
+                "a forest has 1 to {MOST} plants, not {}",
+                stand.len()
+            )));
+        }
+        let plants: Vec<Arc<Held>> = plants.iter().map(|p| Arc::clone(&p.0)).collect();
+        let place = |(k, (row, at, yaw_deg, scale)): (usize, (usize, [f64; 3], f64, f64))| {
+            let sound = at.iter().chain([&yaw_deg, &scale]).all(|x| x.is_finite()) && scale > 0.0;
+            if row >= plants.len() || !sound {
+                let line = format!("places[{k}]: finite numbers, a scale above 0, and a plant that is there");
+                return Err(PyValueError::new_err(line));
+            }
+            Ok((row, Placement { position: DVec3::from_array(at), yaw_deg, scale }))
+        };
+        let stand = stand.into_iter().enumerate().map(place).collect::<PyResult<_>>()?;
+        Ok(Self { plants, stand })
+    }
+
+    /// All of it as one model.
+    fn model(&self, py: Python<'_>, name: &str) -> RawModel {
+        RawModel::new(py.detach(|| burgeon::scene_model(name, &self.standing())))
+    }
+
+    /// A .glb in which copies share their meshes.
+    fn glb<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        let written = py.detach(|| {
+            burgeon::formats::write_glb_scene(name, &self.standing(), &mut PngCache::new(), &mut bytes)
+        });
+        written.map_err(|e| unusable(py, &e))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Points as a scanner around all of it sees them; `tree` is the place.
+    fn survey<'py>(
+        &self,
+        py: Python<'py>,
+        points: u32,
+        stations: u32,
+        elevation_deg: f64,
+        noise_m: f64,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let spec = SurveySpec { points, stations, elevation_deg, noise_m };
+        let made = compute(py, 1.0, |run| {
+            let standing = self.standing();
+            let stood = standing.iter().zip(&self.stand).filter_map(|(standing, (row, _))| {
+                let held = self.plants.get(*row)?;
+                Some(Stood { standing: *standing, plant: held.plant(), layout: held.layout() })
+            });
+            burgeon::survey_stand(&stood.collect::<Vec<_>>(), &spec, Seed::new(seed), run)
+        })?;
+        let (seen, trees) = made.map_err(|e| refused(py, &e))?;
+        let dict = cloud(py, seen)?;
+        dict.set_item("tree", Py::new(py, Column::new(trees))?)?;
+        Ok(dict)
+    }
+}

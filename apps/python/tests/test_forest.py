@@ -1,0 +1,124 @@
+"""Forests: places, files, clouds, tiles of data sets."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+
+import burgeon as bg
+
+SMALL = {"age": 4, "detail": 0.2, "textures": False}
+
+
+@pytest.fixture(scope="module")
+def grove():
+    return bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
+
+
+def test_trees_stand_apart_within_the_rectangle(grove):
+    at = grove.places["position"]
+    assert len(grove) == len(at) > 8
+    assert (np.abs(at[:, 0]) <= 6.0).all() and (np.abs(at[:, 2]) <= 4.5).all() and (at[:, 1] == 0.0).all()
+    apart = np.linalg.norm(at[:, None] - at[None], axis=2) + 99.0 * np.eye(len(at))
+    assert apart.min() >= 2.5
+    scale = grove.places["scale"]
+    assert scale.min() >= 0.85 and scale.max() <= 1.15 and scale.std() > 0.02
+    assert len({plant.name for plant in grove.plants}) == 2
+    assert len({plant.digest for plant in grove.plants}) == len(grove.plants) <= 4
+
+
+def test_the_same_seed_gives_the_same_forest(grove):
+    again = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
+    other = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=8, kinds=2, **SMALL)
+    assert again.digest == grove.digest != other.digest
+
+
+def test_files_hold_all_trees_and_copies_share_meshes(grove, tmp_path):
+    data = grove.to_bytes("glb")
+    length = struct.unpack("<I", data[12:16])[0]
+    scene = json.loads(data[20 : 20 + length])
+    places = [node for node in scene["nodes"] if "translation" in node]
+    assert len(places) >= len(grove) - 1
+    parts = sum(len(plant.model.parts) for plant in grove.plants)
+    assert len(scene["meshes"]) == parts
+    grove.save(tmp_path / "grove.obj")
+    assert (tmp_path / "grove.obj").stat().st_size > 1000
+    per_plant = [plant.model.triangle_count for plant in grove.plants]
+    assert grove.model.triangle_count == sum(per_plant[row] for row in grove.places["plant"])
+
+
+def test_a_cloud_tells_which_tree_each_point_is_on(grove):
+    cloud = grove.cloud(20_000, stations=3, noise=0.001)
+    assert cloud.points.shape == (20_000, 3) and cloud.tree.max() < len(grove)
+    assert len(np.unique(cloud.tree)) > len(grove) // 2
+    # Organs are those of the point's own plant, where it stands.
+    for tree in np.unique(cloud.tree)[:5]:
+        plant = grove.plants[grove.places["plant"][tree]]
+        own = (cloud.tree == tree) & (cloud.organ >= 0)
+        yaw = np.radians(grove.places["yaw_deg"][tree])
+        turn = np.array([[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]])
+        roots = plant.organs.position[cloud.organ[own]] * grove.places["scale"][tree]
+        roots = roots @ turn.T + grove.places["position"][tree]
+        assert np.linalg.norm(roots - cloud.points[own], axis=1).max() < 0.4
+        assert (plant.organs.part[cloud.organ[own]] == cloud.part[own]).all()
+
+
+def test_measures_are_sums_over_trees(grove):
+    measures = grove.measures()
+    assert measures["trees"] == len(grove) == len(measures["tree"])
+    own = [plant.measures()["leaf_area_m2"] for plant in grove.plants]
+    area = sum(own[row] * scale**2 for row, scale in zip(grove.places["plant"], grove.places["scale"]))
+    assert measures["leaf_area_m2"] == pytest.approx(area)
+
+
+def test_a_forest_of_ones_own_plants_and_places(small):
+    places = {"position": [[0, 0, 0], [3, 0.5, 0]], "yaw_deg": [0, 90], "scale": [1, 2], "plant": [0, 0]}
+    pair = bg.Forest([small], places)
+    height = small.model.vertices[:, 1].max()
+    assert len(pair) == 2 and pair.model.vertices[:, 1].max() == pytest.approx(2 * height + 0.5, abs=1e-3)
+
+
+def test_tiles_are_plants_of_data_sets(tmp_path):
+    how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
+    made = bg.dataset.generate(
+        "hazel", 3, tmp_path / "tiles", maker="forest", formats=("cloud",), fields=how,
+        cloud={"points": 2000, "stations": 2}, shard=2, workers=1, progress=False,
+    )  # fmt: skip
+    tiles = list(bg.dataset.read(tmp_path / "tiles"))
+    assert len(tiles) == made["plants"] == 3
+    assert len({tile["digest"] for tile in tiles}) == 3
+    assert all(tile["cloud"]["tree"].max() < tile["measures"]["trees"] for tile in tiles)
+    with pytest.raises(ValueError, match="formats are glb, cloud"):
+        bg.dataset.generate("hazel", 1, tmp_path / "bad", maker="forest", formats=("mtg",))
+
+
+@pytest.mark.parametrize(
+    "how, words",
+    [
+        ({"spacing": 0}, "spacing must be 0.05 to 100"),
+        ({"area": (10, -1)}, r"area\[1\] must be 0.1 to 1000"),
+        ({"area": (1000, 1000), "spacing": 1.0}, "at most 2000 plants"),
+        ({"kinds": 0}, "kinds must be a whole number"),
+        ({"vary": 2}, "vary must be 0 to 0.9"),
+        ({"vary": float("nan")}, "vary must be"),
+        ({"species": {"oak": -1}}, "share of 'oak'"),
+        ({"species": "oka"}, "there is no preset"),
+    ],
+)
+def test_what_is_wrong_is_told(how, words):
+    with pytest.raises(ValueError, match=words):
+        bg.forest(**how)
+
+
+def test_places_of_the_wrong_shape_are_told(small):
+    good = {"position": [[0, 0, 0]], "yaw_deg": [0], "scale": [1], "plant": [0]}
+    for name, value, words in [
+        ("position", [[0, 0]], "shape"),
+        ("scale", [0], "scale above 0"),
+        ("plant", [1], "a plant that is there"),
+        ("plant", [-1], "rows of the plants"),
+        ("yaw_deg", [float("inf")], "finite"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            bg.Forest([small], {**good, name: value})
