@@ -64,7 +64,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, mut model, mut lods, mut item } = made.map_err(|e| failure(args, &spec, e))?;
+    let MadeTree { grown, mut model, mut lods, mut item, .. } = made.map_err(|e| failure(args, &spec, e))?;
     lods.iter_mut().chain([&mut model]).for_each(|m| m.offset_m = origin.offset_m);
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));

@@ -163,7 +163,7 @@ fn make(
             TreeError::Cancelled(_) => Failure::Cancelled,
             other => Failure::at(what, other),
         })?;
-        let MadeTree { grown, model, lods, item } = made;
+        let MadeTree { grown, model, lods, item, .. } = made;
         return Ok(Shaped { plant: grown.plant, model, lods, item, seed, edited: None });
     }
     let opened = match stdin {

@@ -219,6 +219,9 @@ pub enum WriteError {
         /// Its index from 0.
         key: usize,
     },
+    /// Joints do not fit the model.
+    #[error("the joints do not fit the model: each vertex needs a hold, and each joint a move for each key")]
+    Rig,
     /// Points without triangles in a format of triangles.
     #[error("a cloud of points has no triangles for STL; choose .ply, .obj or .glb")]
     NoTriangles,

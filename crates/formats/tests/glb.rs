@@ -279,3 +279,178 @@ fn packed_files_are_small_and_come_back_as_they_were() {
         assert!(read.is_err(), "a file that was cut is an error");
     }
 }
+
+/// The floats behind an accessor of a plain GLB, by its JSON alone.
+fn floats(glb: &[u8], j: &serde_json::Value, accessor: &serde_json::Value) -> Vec<f32> {
+    let of = |v: &serde_json::Value| v.as_u64().unwrap_or(0) as usize;
+    let accessor = &j["accessors"][of(accessor)];
+    let view = &j["bufferViews"][of(&accessor["bufferView"])];
+    let bin = 28 + u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
+    let from = bin + of(&view["byteOffset"]);
+    glb[from..from + of(&view["byteLength"])]
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|b| f32::from_le_bytes(*b))
+        .collect()
+}
+
+fn read(glb: &[u8]) -> Model {
+    let mut report = base::Report::default();
+    let spec = formats::ExportSpec::default();
+    formats::read_model(glb, formats::ModelFormat::Glb, "x", &spec, &formats::no_files, &mut report)
+        .expect("reads")
+}
+
+/// A thousandth of a leaf in places about a crown.
+fn copies() -> mesh::Copies {
+    let place = |k: u32| {
+        let angle = 0.7 * f64::from(k);
+        mesh::CopyPlace {
+            at: glam::DVec3::new(base::ops::sin(angle), 2.0 + 0.1 * f64::from(k), base::ops::cos(angle)),
+            turn: base::turn::about(glam::DVec3::new(0.6, 0.0, 0.8), angle),
+            scale: 0.05 + 0.01 * f64::from(k % 3),
+            color: [0.5, 1.0, 0.25 + 0.02 * k as f32],
+        }
+    };
+    let mut mesh = grid(2);
+    mesh.colors.clear();
+    mesh::Copies {
+        name: "leaves".into(),
+        material: MaterialId::new(0),
+        mesh,
+        places: (0..20).map(place).collect(),
+    }
+}
+
+#[test]
+fn levels_stand_in_one_file_and_share_their_textures() {
+    use formats::{Level, Packing, write_glb_levels};
+    let (fine, coarse, far) = (model(8), model(4), model(2));
+    let levels = [&fine, &coarse, &far].map(Level::plain);
+    for packing in [None, Some(Packing::Quantized), Some(Packing::Compressed)] {
+        let mut glb = Vec::new();
+        write_glb_levels(&levels, packing, &mut PngCache::new(), &mut glb).expect("writes");
+        let j = json_of(&glb);
+        assert!(
+            j["extensionsUsed"].as_array().is_some_and(|e| e.contains(&"MSFT_lod".into())),
+            "{packing:?}"
+        );
+        assert!(
+            !j["extensionsRequired"].to_string().contains("MSFT_lod"),
+            "who knows no levels shows the first"
+        );
+        let ids = j["nodes"][0]["extensions"]["MSFT_lod"]["ids"].as_array().expect("levels").clone();
+        assert_eq!(j["nodes"][0]["extras"]["MSFT_screencoverage"], serde_json::json!([0.5, 0.25, 0.0]));
+        assert_eq!((j["scenes"][0]["nodes"].clone(), ids.len()), (serde_json::json!([0]), 2));
+        assert_eq!(j["images"].as_array().map(Vec::len), Some(1), "{packing:?}");
+        // Each level has its triangles.
+        let of = |v: &serde_json::Value| v.as_u64().expect("a row") as usize;
+        let count = |node: usize| -> usize {
+            let children = j["nodes"][node]["children"].as_array().expect("parts").clone();
+            let mesh = |c: &serde_json::Value| of(&j["nodes"][of(c)]["mesh"]);
+            let indices = |c| of(&j["meshes"][mesh(c)]["primitives"][0]["indices"]);
+            children.iter().map(|c| of(&j["accessors"][indices(c)]["count"]) / 3).sum()
+        };
+        let counted: Vec<usize> = core::iter::once(0).chain(ids.iter().map(of)).map(count).collect();
+        assert_eq!(counted, [&fine, &coarse, &far].map(Model::triangle_count), "{packing:?}");
+        assert_eq!(
+            read(&glb).triangle_count(),
+            fine.triangle_count(),
+            "a reader without levels sees the first"
+        );
+    }
+}
+
+#[test]
+fn copies_are_read_back_where_they_stand() {
+    use formats::{Level, Packing, write_glb_levels};
+    let (tree, copies) = (model(3), [copies()]);
+    let flat = copies[0].flattened();
+    for packing in [None, Some(Packing::Quantized), Some(Packing::Compressed)] {
+        let mut glb = Vec::new();
+        let level = Level { model: &tree, copies: &copies };
+        write_glb_levels(&[level], packing, &mut PngCache::new(), &mut glb).expect("writes");
+        let back = read(&glb);
+        let leaves = &back.parts.last().expect("a part").mesh;
+        assert_eq!(leaves.triangles.len(), flat.mesh.triangles.len());
+        // Packed, vertices have another order: corners of triangles are compared.
+        let corners = |m: &TriMesh| {
+            let mut all: Vec<[i64; 3]> = (m.triangles.iter().flatten())
+                .map(|&i| m.positions[i as usize].map(|x| (f64::from(x) * 2000.0).round() as i64))
+                .collect();
+            all.sort_unstable();
+            all
+        };
+        let far = |a: &[i64; 3], b: &[i64; 3]| (0..3).map(|k| (a[k] - b[k]).abs()).max().unwrap_or(0);
+        let (a, b) = (corners(leaves), corners(&flat.mesh));
+        let near = a.iter().filter(|p| b.iter().any(|q| far(p, q) <= 1)).count();
+        assert_eq!(near, a.len(), "{packing:?}");
+        assert!(leaves.colors.contains(&[0.5, 1.0, 0.25]), "{packing:?}: {:?}", leaves.colors.first());
+        if packing.is_none() {
+            // As a program of its own would read it.
+            let j = json_of(&glb);
+            assert!(j["extensionsRequired"].to_string().contains("EXT_mesh_gpu_instancing"));
+            let node = j["nodes"].as_array().and_then(|n| n.last()).expect("a node");
+            let attributes = &node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+            let at = floats(&glb, &j, &attributes["TRANSLATION"]);
+            let place = copies[0].places[3];
+            assert_eq!(at[9..12], place.at.to_array().map(|x| x as f32));
+            assert_eq!(floats(&glb, &j, &attributes["_COLOR_0"])[9..12], place.color);
+        }
+    }
+}
+
+#[test]
+fn joints_move_vertices_as_the_rig_says() {
+    use formats::write_glb_rigged;
+    use mesh::{Hold, Joint, Rig};
+    let tree = model(4);
+    let joint = |name: &str, y: f64| Joint { name: name.into(), at: glam::DVec3::Y * y };
+    let hold = |p: &[f32; 3]| Hold { joints: [0, 1, 0, 0], shares: [1.0 - p[1], p[1], 0.0, 0.0] };
+    let turned = |k: usize| {
+        let angle = [0.0, 0.3, 0.0][k];
+        (base::turn::about(glam::DVec3::Z, angle), glam::DVec3::X * [0.0, 0.1, 0.0][k])
+    };
+    let rig = Rig {
+        joints: vec![joint("ground", 0.0), joint("limb", 0.25)],
+        holds: tree.parts.iter().map(|p| p.mesh.positions.iter().map(hold).collect()).collect(),
+        seconds: vec![0.0, 1.0, 2.0],
+        moves: vec![vec![(glam::DQuat::IDENTITY, glam::DVec3::ZERO); 3], (0..3).map(turned).collect()],
+    };
+    let mut glb = Vec::new();
+    write_glb_rigged(&tree, &rig, &mut PngCache::new(), &mut glb).expect("writes");
+    let j = json_of(&glb);
+    let of = |v: &serde_json::Value| v.as_u64().expect("a row") as usize;
+    // What moves by joints stands at the top of the scene and nowhere else.
+    let tops = j["scenes"][0]["nodes"].as_array().expect("nodes").clone();
+    assert_eq!(tops.len(), 1 + tree.parts.len());
+    let part = &j["nodes"][of(&tops[1])];
+    assert!(part["skin"] == 0 && part.get("translation").is_none());
+    let attributes = &j["meshes"][of(&part["mesh"])]["primitives"][0]["attributes"];
+    let weights = floats(&glb, &j, &attributes["WEIGHTS_0"]);
+    let positions = floats(&glb, &j, &attributes["POSITION"]);
+    // The second key, by the file alone: of the joint's turn and place, and the inverse of how it was bound.
+    let animation = &j["animations"][0];
+    let track = |path: &str| {
+        let channel =
+            animation["channels"].as_array().expect("channels").iter().find(|c| c["target"]["path"] == path);
+        floats(&glb, &j, &animation["samplers"][of(&channel.expect("a channel")["sampler"])]["output"])
+    };
+    let (turn, place) = (track("rotation"), track("translation"));
+    let turn = glam::Quat::from_slice(&turn[4..8]);
+    let place = glam::Vec3::from_slice(&place[3..6]);
+    let bound = floats(&glb, &j, &j["skins"][0]["inverseBindMatrices"]);
+    let back = glam::Mat4::from_cols_slice(&bound[16..32]);
+    for (k, p) in positions.chunks_exact(3).enumerate() {
+        let p = glam::Vec3::from_slice(p);
+        let moved = (glam::Mat4::from_rotation_translation(turn, place) * back).transform_point3(p);
+        let w = &weights[4 * k..4 * k + 4];
+        let seen = p * w[0] + moved * w[1];
+        let said = rig.moved(p.as_dvec3(), &rig.holds[0][k], 1).as_vec3();
+        assert!(seen.distance(said) < 1e-5 && (w[0] + w[1] - 1.0).abs() < 1e-6, "{p}: {seen} and {said}");
+    }
+    let short = Rig { seconds: vec![0.0, 1.0], ..rig };
+    let refused = write_glb_rigged(&tree, &short, &mut PngCache::new(), &mut Vec::new());
+    assert!(matches!(refused, Err(formats::WriteError::Rig)));
+}

@@ -5,9 +5,13 @@
 //! Knows nothing of plants or GPUs. f32/u32 columns in metres, right-handed, +Y up.
 
 mod cloud;
+mod copies;
 mod material;
+mod rig;
 mod trimesh;
 
 pub use cloud::PointCloud;
+pub use copies::{Copies, CopyPlace};
 pub use material::{AlphaMode, Maps, Material, MaterialId, MaterialKind, Texture};
+pub use rig::{Hold, Joint, Rig};
 pub use trimesh::{Bounds, Fault, Model, Part, Standing, TriMesh};

@@ -6,7 +6,7 @@ use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
 use crate::fork::{Bearer, Collar, reach};
-use crate::rings::{drawn, rings};
+use crate::rings::{drawn, mitres, rings};
 use crate::sleeve::{Circle, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec, whole};
 use crate::spine::{Reach, Spine};
@@ -107,7 +107,14 @@ pub(crate) fn tubes<'p>(
     let mut hosts: Vec<Option<Host>> = chains.iter().map(borne_by).collect();
     let smooth = |borne: Option<Host>| {
         let (host, sample) = borne?;
-        Some(Bearer { spine: spines[host].as_ref()?, sample, sides: sides[host], top: 0.0 })
+        Some(Bearer {
+            spine: spines[host].as_ref()?,
+            sample,
+            sides: sides[host],
+            exit: 0.0,
+            top: 0.0,
+            mitre: &[],
+        })
     };
     let leaves = |i: usize, borne| reach(spines[i].as_ref()?, &smooth(borne)?);
     let mut reaches = grouped(run, chains.len(), |i| leaves(i, hosts[i]))?;
@@ -140,7 +147,8 @@ pub(crate) fn tubes<'p>(
         let ends = if bare { Ends::bare(rows) } else { Ends::of(rows, sides[i]) };
         let reach = reaches[i];
         let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
-        Some(Line { line, first, reach, ends })
+        let mitre = if bears[i] { mitres(&line, first) } else { Vec::new() };
+        Some(Line { line, first, mitre, reach, ends })
     })?;
     let sleeves = lines.iter().zip(&sides).map(|(line, sides)| {
         let Some(Line { line, first, ends, .. }) = line else { return 0 };
@@ -151,13 +159,7 @@ pub(crate) fn tubes<'p>(
     let tubes = grouped(run, chains.len(), |i| {
         let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
         let bearer = hosts[i].and_then(|(host, sample)| {
-            let (smooth, drawn) = (spines[host].as_ref()?, lines[host].as_ref()?);
-            Some(Bearer {
-                spine: &drawn.line,
-                sample: drawn.line.piece(smooth.s[sample]),
-                sides: sides[host],
-                top: drawn.reach.map_or(0.0, |r| r.top),
-            })
+            Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], sides[host]))
         });
         let surface = match chain.surface {
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
@@ -252,8 +254,18 @@ struct Line {
     line: Spine,
     /// The number of its first ring.
     first: usize,
+    /// Of each piece, how much thinner it is than its rings; empty of what bears nothing.
+    mitre: Vec<f64>,
     reach: Option<Reach>,
     ends: Ends,
+}
+
+impl Line {
+    /// As what bears a branch at an arc length.
+    fn bearer(&self, s: f64, sides: u32) -> Bearer<'_> {
+        let [exit, top] = self.reach.map_or([0.0; 2], |r| [r.exit.s, r.top]);
+        Bearer { spine: &self.line, sample: self.line.piece(s), sides, exit, top, mitre: &self.mitre }
+    }
 }
 
 /// One tube: fillet or flat base, rings, round tip. Also the number of the fillet's rows below the first ring.

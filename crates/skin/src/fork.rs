@@ -14,8 +14,13 @@ pub(crate) struct Bearer<'a> {
     pub sample: usize,
     /// Sides of the bearer's tube: its flat faces lie deeper than its radius.
     pub sides: u32,
-    /// The arc length up to which the bearer is a fillet itself.
+    /// The arc lengths from which on the bearer is to be seen, outside of its own bearer, and up to which it is a fillet
+    /// itself.
+    pub exit: f64,
     pub top: f64,
+    /// Of each piece of the spine as it is drawn, how much thinner it is than its rings, which stand askew where it bends;
+    /// empty of a smooth one.
+    pub mitre: &'a [f64],
 }
 
 /// The rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's
@@ -32,8 +37,18 @@ pub(crate) struct Collar {
 // A fillet's rows may lie this much deeper than the line's radius says.
 const HOLLOW: f64 = 0.6;
 
+// Below its fillet a bearer is not drawn: of what lies there only its middle is sure to be inside the wood that it leaves.
+const BELOW: f64 = 0.1;
+
 // A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
 const SHALLOWEST: f64 = 0.22;
+
+// A fillet runs straight to the branch's first ring. Where the branch turns away from that line by more than this cosine
+// (35 degrees), the ring would stand askew in it and make a flat band of it, beside what the branch bears there.
+const STRAIGHT: f64 = 0.82;
+
+// In radii of the branch, the least height of a fillet: where it turns at once, it turns in its rings.
+const LOWEST: f64 = 0.6;
 
 /// Where the centre line of `branch` leaves its bearer, and the bearer's station there; `None` where it never does (it
 /// ends inside).
@@ -81,7 +96,26 @@ pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
     let length = 1.2 * at.radius.min(2.2 * exit.radius);
     let top = exit.s + exit.radius * cos.abs() / sin + length;
     let room = branch.length() - exit.s;
-    Some(Reach { exit, on: at.s, top: top.min(exit.s + 0.6 * room) })
+    let top = straight(branch, &exit, top.min(exit.s + 0.6 * room));
+    Some(Reach { exit, on: at.s, top })
+}
+
+/// The arc length, `top` at most, up to which a branch goes on straight enough from where it leaves its bearer.
+fn straight(branch: &Spine, exit: &Station, top: f64) -> f64 {
+    let least = exit.s + LOWEST * exit.radius;
+    let mut straight = least;
+    let first = branch.piece(exit.s) + 1;
+    for k in first..branch.s.len() {
+        let along = branch.p[k] - exit.centre;
+        if branch.s[k] >= top {
+            return top;
+        }
+        if branch.s[k] > least && branch.t[k].dot(along) < STRAIGHT * along.length() {
+            break;
+        }
+        straight = branch.s[k].max(least);
+    }
+    straight.min(top)
 }
 
 impl Collar {
@@ -162,22 +196,27 @@ impl Collar {
 impl Bearer<'_> {
     /// The point of the bearer's surface nearest to `p`, and the normal there.
     fn surface(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
-        self.shrunk(p, hint, |_| 1.0)
+        self.shrunk(p, hint, |_, _| 1.0)
     }
 
     /// The same point sunk just below the flat faces, or below the rows of the bearer's own fillet.
     fn below(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
         let faces = base::ops::cos(base::ops::PI / f64::from(self.sides.max(3))) * 0.97;
-        self.shrunk(p, hint, |s| if s < self.top { faces * HOLLOW } else { faces })
+        let mitre = |piece: usize| self.mitre.get(piece).copied().unwrap_or(1.0);
+        self.shrunk(p, hint, |s, piece| match s {
+            s if s < self.exit => faces * BELOW,
+            s if s < self.top => faces * HOLLOW,
+            _ => faces * mitre(piece),
+        })
     }
 
-    /// The nearest point of the surface whose radius is a share, by arc length, of the bearer's.
-    fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64) -> f64) -> (DVec3, DVec3) {
-        let (at, _) = self.spine.nearest(p, hint);
+    /// The nearest point of the surface whose radius is a share, by arc length and piece, of the bearer's.
+    fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64, usize) -> f64) -> (DVec3, DVec3) {
+        let (at, piece) = self.spine.nearest(p, hint);
         let d = p - at.centre;
         let out = d - at.tangent * d.dot(at.tangent);
         let ray = out.try_normalize().unwrap_or_else(|| at.tangent.any_orthonormal_vector());
-        (at.centre + ray * (at.radius * share(at.s)), (ray - at.tangent * at.slope).normalize())
+        (at.centre + ray * (at.radius * share(at.s, piece)), (ray - at.tangent * at.slope).normalize())
     }
 }
 
@@ -209,7 +248,7 @@ mod tests {
             let dir = DVec3::new(sin, cos, 0.0);
             let branch =
                 Spine::new(&[DVec3::Y, DVec3::Y + dir * 1.5], &[thick, thick * 0.6], 100, None).unwrap();
-            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, top: 0.0 };
+            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, mitre: &[] };
             let circle = Circle::new(8);
             let reach = reach(&branch, &bearer).unwrap();
             let (line, first) = drawn(&branch, Some(&reach), 20.0, |_| f64::INFINITY);
@@ -230,7 +269,7 @@ mod tests {
     fn branch_that_ends_inside_has_no_collar() {
         let trunk = Spine::new(&[DVec3::ZERO, DVec3::Y * 2.0], &[0.5, 0.5], 100, None).unwrap();
         let twig = Spine::new(&[DVec3::Y, DVec3::new(0.2, 1.0, 0.0)], &[0.01, 0.01], 10, None).unwrap();
-        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, top: 0.0 };
+        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, mitre: &[] };
         assert!(reach(&twig, &bearer).is_none());
     }
 }

@@ -13,17 +13,18 @@
 //! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
-//! | `layout` | [`Layout`]: what of a plant lies where in its parts |
+//! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
-//! | `wind` | weights and pivots for wind |
+//! | `wind`, `sway` | weights and pivots for wind; [`sway()`]: joints that move by them |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
 mod axes;
 
 mod blade;
 mod body;
+mod copies;
 mod fork;
 mod layout;
 mod leaf;
@@ -38,6 +39,7 @@ mod rings;
 mod sleeve;
 mod spec;
 mod spine;
+mod sway;
 mod texture;
 mod traced;
 mod tube;
@@ -45,12 +47,14 @@ mod wind;
 
 pub use self::spec::{BarkSpec, LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
+pub use copies::copies;
 pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use natural::{BarkKind, Venation};
 pub use organs::KeptShapes;
 pub use pictures::Pictures;
+pub use sway::sway;
 pub use texture::{LeafColours, swatch, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
@@ -165,6 +169,12 @@ pub fn drawn_shapes(plant: &Plant, spec: &SkinSpec) -> Vec<Vec<DVec3>> {
 /// empty of a shape that nothing uses. No colours.
 pub fn shape_meshes(plant: &Plant, spec: &SkinSpec) -> Vec<TriMesh> {
     organs::meshes(plant, spec, &budget(plant, spec))
+}
+
+/// The area of each shape of a plant as [`skin()`] draws it, at scale 1, one side, square metres; 0 of a shape that nothing
+/// uses. Cost: that of triangulating each shape once.
+pub fn drawn_areas(plant: &Plant, spec: &SkinSpec) -> Vec<f64> {
+    organs::areas(plant, spec, &budget(plant, spec))
 }
 
 /// What to do where there would be too many triangles.

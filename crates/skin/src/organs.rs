@@ -157,6 +157,20 @@ pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<V
     plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
 }
 
+/// The area of each shape as it is drawn at scale 1, one side, square metres; 0 of one that nothing uses.
+pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
+    let ground = Ground::new(plant, spec);
+    let drawn = |(shape, used): (&Shape, Option<Use>)| {
+        let mesh = used.map(|used| ground.wish(shape, used, budget).mesh(shape));
+        let area = |m: &TriMesh, t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| m.position(i));
+            0.5 * (b - a).cross(c - a).length()
+        };
+        mesh.map_or(0.0, |m| m.surface.triangles.iter().map(|t| area(&m.surface, t)).sum())
+    };
+    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+}
+
 /// How far from the margin each vertex of a shape is, for shapes that wear a pattern of the margin; empty for others.
 fn margins(
     plant: &Plant,
@@ -388,7 +402,12 @@ impl Ground {
                         if self.copy { COPIED_WIDER } else { plant::DRAWN_WIDER },
                     );
                 }
-                Wish::Sheet(triangles(area).max(least * budget.detail.min(1.0)))
+                let wanted = triangles(area).max(least * budget.detail.min(1.0));
+                // Of few triangles none is to be spent inside of the form.
+                if self.copy && wanted <= 60.0 {
+                    return Wish::Lean(wanted, COPIED_WIDER);
+                }
+                Wish::Sheet(wanted)
             }
             // A dome is smooth: two fifths of what a blade of its size has.
             Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {

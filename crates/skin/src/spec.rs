@@ -362,7 +362,9 @@ impl Budget {
         let by_size = 780.0 * base::ops::powf(relative / 0.04, 0.3);
         let crowd = base::ops::powf((CROWD / self.blades).min(1.0), 0.4);
         let by_count = (crowd * ALL_BLADES / self.blades).max(14.0);
-        (by_size.clamp(32.0, 1200.0).min(by_count) * self.detail).clamp(8.0, 20_000.0)
+        // Far away, where a whole level is made for an eighth of the size, a blade may be two kites.
+        let least = (32.0 * self.detail).clamp(4.0, 8.0);
+        (by_size.clamp(32.0, 1200.0).min(by_count) * self.detail).clamp(least, 20_000.0)
     }
 }
 

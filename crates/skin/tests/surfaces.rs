@@ -324,3 +324,45 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn leaves_that_are_one_form_are_taken_out_once_each() {
+    let p = scenes::leafy(120);
+    let spec = SkinSpec { textures: false, ..SkinSpec::default() };
+    let run = Run::plain();
+    let (model, layout) =
+        skin::skin_laid_out(&p, &spec, skin::Pictures::default(), None, &run).expect("a surface");
+    let (rest, copies) = skin::copies(&p, &model, &layout);
+    assert!(!copies.is_empty() && copies.iter().all(|c| c.places.len() >= 8));
+    let taken: usize = copies.iter().map(|c| c.places.len() * c.mesh.triangles.len()).sum();
+    assert_eq!(rest.triangle_count() + taken, model.triangle_count());
+    // Corners of all triangles, in ten-thousandths of a metre.
+    let corners = |parts: &mut dyn Iterator<Item = &TriMesh>| {
+        let mut sum = [0.0_f64; 6];
+        for m in parts {
+            for &i in m.triangles.iter().flatten() {
+                let at = m.positions[i as usize].map(f64::from);
+                for k in 0..3 {
+                    sum[k] += at[k];
+                    sum[3 + k] += at[k] * at[k];
+                }
+            }
+        }
+        sum
+    };
+    let flat: Vec<mesh::Part> = copies.iter().map(mesh::Copies::flattened).collect();
+    let whole = corners(&mut model.parts.iter().map(|p| &p.mesh));
+    let both = corners(&mut rest.parts.iter().chain(&flat).map(|p| &p.mesh));
+    for (a, b) in whole.iter().zip(&both) {
+        assert!((a - b).abs() < 1e-4 * (1.0 + a.abs()), "{whole:?} {both:?}");
+    }
+    for part in &flat {
+        let before = model.parts.iter().find(|p| p.name == part.name).expect("its part");
+        let same = before
+            .mesh
+            .colors
+            .iter()
+            .all(|c| part.mesh.colors.contains(c) || rest.parts.iter().any(|r| r.name == part.name));
+        assert!(same && part.mesh.normals.len() == part.mesh.positions.len());
+    }
+}

@@ -308,3 +308,61 @@ fn same_wind_for_any_executor() {
         assert_eq!(skin(&p, &spec, &run).expect("nobody cancels"), blown(&p), "{}", p.name);
     }
 }
+
+#[test]
+fn joints_sway_as_the_columns_say_and_come_back() {
+    let gust = DVec3::new(0.15, 0.0, 0.04);
+    for p in scenes().into_iter().chain([spread(), stalked()]) {
+        let model = blown(&p);
+        let Some(rig) = skin::sway(&model, gust) else {
+            assert!(model.bounds().size().y <= 0.0 || model.parts.is_empty(), "{}", p.name);
+            continue;
+        };
+        assert!(rig.fits(&model), "{}", p.name);
+        assert!(rig.moves.iter().all(|m| m.first() == m.last()), "{}: no loop", p.name);
+        // Nothing tears: vertices at one place, in whatever part, move alike to a hundredth of the gust, as their columns do.
+        let mut seen: std::collections::BTreeMap<[i64; 3], (DVec3, [f32; 4])> =
+            std::collections::BTreeMap::new();
+        for (part, holds) in model.parts.iter().zip(&rig.holds) {
+            for ((at, hold), wind) in part.mesh.positions.iter().zip(holds).zip(&part.mesh.wind) {
+                let at = DVec3::from(at.map(f64::from));
+                for key in [3, 11] {
+                    let far = rig.moved(at, hold, key) - at;
+                    assert!(far.length() < 3.0 * gust.length(), "{}: {far}", p.name);
+                    if wind[0] < 1e-6 && wind[1] < 1e-6 {
+                        assert!(far.length() < 1e-3 * gust.length(), "{}: the ground moves by {far}", p.name);
+                    }
+                    if key == 3 {
+                        #[expect(clippy::cast_possible_truncation, reason = "micrometres of small plants")]
+                        let place = (at * 1e6).to_array().map(|x| x.round() as i64);
+                        let (before, columns) = *seen.entry(place).or_insert((far, *wind));
+                        let alike = (0..4).all(|k| (columns[k] - wind[k]).abs() < 0.01);
+                        assert!(
+                            !alike || before.distance(far) < 0.1 * gust.length(),
+                            "{}: {before} {far}",
+                            p.name
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tip_of_a_level_limb_swings_by_the_gust() {
+    let model = blown(&spread());
+    let gust = DVec3::new(0.0, 0.0, 0.1);
+    let rig = skin::sway(&model, gust).expect("it has wind");
+    assert_eq!(rig.joints.len(), 3, "ground, trunk, one limb");
+    let part = &model.parts[0];
+    let tip =
+        (0..part.mesh.positions.len()).max_by(|a, b| part.mesh.wind[*a][1].total_cmp(&part.mesh.wind[*b][1]));
+    let tip = tip.expect("a vertex");
+    let at = DVec3::from(part.mesh.positions[tip].map(f64::from));
+    // About its mean, which is that of the trunk's lean.
+    let z: Vec<f64> = (0..rig.seconds.len()).map(|k| (rig.moved(at, &rig.holds[0][tip], k) - at).z).collect();
+    let swing =
+        0.5 * (z.iter().copied().fold(f64::MIN, f64::max) - z.iter().copied().fold(f64::MAX, f64::min));
+    assert!((0.07..0.15).contains(&swing), "{swing}");
+}

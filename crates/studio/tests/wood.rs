@@ -1,7 +1,8 @@
 //! The wood of every species holds together: each branch grows out of the wood that bears it.
 
-use burgeon::mesh::TriMesh;
-use burgeon::{PRESETS, Run, Seed, TreeOptions, make_tree};
+use burgeon::mesh::{Model, TriMesh};
+use burgeon::skin::SkinSpec;
+use burgeon::{PRESETS, Run, Seed, TreeOptions, TreeSpec, make_tree};
 use glam::DVec3;
 
 /// One closed piece of a mesh.
@@ -93,35 +94,62 @@ fn gap(pieces: &[Piece], own: usize, p: DVec3, most: f64) -> f64 {
     others().flat_map(|other| &other.triangles).map(|t| distance(t, p)).fold(most, f64::min)
 }
 
-#[test]
-fn every_branch_grows_out_of_the_wood_that_bears_it() {
-    let (mut branches, mut free, mut partly) = (0, 0, 0);
-    for preset in PRESETS {
-        let spec = preset.spec().expect("sound");
-        let made = make_tree(&spec, Seed::new(1), &TreeOptions::default(), &Run::plain()).expect("a tree");
-        let wood = made.model.parts.iter().filter(|p| ["branches", "twigs"].contains(&p.name.as_str()));
+/// The feet of the branches of a tree: how far the nearest and the farthest of three corners of each is from all
+/// other wood, metres.
+struct Feet {
+    height: f64,
+    gaps: Vec<[f64; 2]>,
+}
+
+impl Feet {
+    fn of(spec: &TreeSpec, seed: u64) -> Self {
+        let made = make_tree(spec, Seed::new(seed), &TreeOptions::default(), &Run::plain()).expect("a tree");
+        Self::on(&made.grown.plant, &made.model)
+    }
+
+    fn on(plant: &plant::Plant, model: &Model) -> Self {
+        let wood = model.parts.iter().filter(|p| ["branches", "twigs"].contains(&p.name.as_str()));
         let pieces: Vec<Piece> = wood.flat_map(|p| pieces(&p.mesh)).collect();
-        let plant = &made.grown.plant;
         let height = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
         // What stands on the ground is borne by nothing.
         let roots = |a: &&plant::Axis| a.bearer.is_none();
         let ground: Vec<DVec3> =
             plant.axes.iter().filter(roots).map(|a| plant.nodes.position[a.nodes.start as usize]).collect();
-        for (i, piece) in pieces.iter().enumerate() {
-            if ground.iter().any(|g| g.distance(piece.foot[0]) < 1e-3 * height) {
-                continue;
-            }
+        let borne = |piece: &Piece| !ground.iter().any(|g| g.distance(piece.foot[0]) < 1e-3 * height);
+        let gaps = |(i, piece): (usize, &Piece)| {
             let gaps = piece.foot.map(|p| gap(&pieces, i, p, height));
-            branches += 1;
-            let worst = gaps.iter().fold(0.0_f64, |a, b| a.max(*b));
-            if gaps.iter().all(|g| *g > 0.0) {
-                free += 1;
-                println!("{}: a foot up to {:.1} mm outside all other wood", preset.key, 1e3 * worst);
-            } else if worst > 0.001 {
-                partly += 1;
-            }
-            assert!(worst < 0.003 * height, "{}: a foot {worst} m from all other wood", preset.key);
-        }
+            [gaps.iter().fold(f64::INFINITY, |a, b| a.min(*b)), gaps.iter().fold(0.0, |a, b| a.max(*b))]
+        };
+        let gaps = pieces.iter().enumerate().filter(|(_, piece)| borne(piece)).map(gaps).collect();
+        Self { height, gaps }
+    }
+
+    /// Feet that lie outside all other wood as a whole; and in part, by more than a millimetre.
+    fn free(&self) -> [usize; 2] {
+        let count = |is: fn(&[f64; 2]) -> bool| self.gaps.iter().filter(|g| is(g)).count();
+        [count(|g| g[0] > 0.0), count(|g| g[0] == 0.0 && g[1] > 0.001)]
+    }
+
+    fn worst(&self) -> f64 {
+        self.gaps.iter().map(|g| g[1]).fold(0.0, f64::max)
+    }
+}
+
+#[test]
+fn every_branch_grows_out_of_the_wood_that_bears_it() {
+    let (mut branches, mut free, mut partly) = (0, 0, 0);
+    for preset in PRESETS {
+        let feet = Feet::of(&preset.spec().expect("sound"), 1);
+        let [outside, in_part] = feet.free();
+        (branches, free, partly) = (branches + feet.gaps.len(), free + outside, partly + in_part);
+        let worst = feet.worst();
+        println!(
+            "{}: {outside} of {} feet outside, the worst by {:.1} mm",
+            preset.key,
+            feet.gaps.len(),
+            1e3 * worst
+        );
+        assert!(worst < 0.003 * feet.height, "{}: a foot {worst} m from all other wood", preset.key);
     }
     println!("of {branches} feet {free} lie outside, {partly} by more than a millimetre in part");
     // A few thin twigs that run along their bearer, or start on its fillet, miss it.
@@ -129,4 +157,80 @@ fn every_branch_grows_out_of_the_wood_that_bears_it() {
         branches > 40_000 && 5000 * free < branches,
         "{free} of {branches} feet lie outside all other wood"
     );
+}
+
+#[test]
+fn level_limbs_grow_out_of_their_bearers_whatever_the_seed() {
+    let cedar = PRESETS.iter().find(|p| p.key == "cedar").expect("a cedar");
+    let spec = cedar.spec().expect("sound");
+    let (mut branches, mut free) = (0, 0);
+    for seed in 1..=9 {
+        let feet = Feet::of(&spec, seed);
+        let [outside, in_part] = feet.free();
+        (branches, free) = (branches + feet.gaps.len(), free + outside);
+        println!(
+            "seed {seed}: {outside} of {} feet outside, {in_part} in part, the worst by {:.1} mm",
+            feet.gaps.len(),
+            1e3 * feet.worst()
+        );
+    }
+    assert!(
+        branches > 40_000 && 500 * free < branches,
+        "{free} of {branches} feet lie outside all other wood"
+    );
+}
+
+/// A trunk with level limbs that turn by up to a right angle wherever they please, a few of their own diameters apart, with a
+/// twig at each joint.
+fn crooked(seed: u64) -> plant::Plant {
+    use plant::AxisKind::{Branch, Twig};
+    let mut stream = Seed::new(seed).stream(base::Draw::Habit);
+    let mut plant = plant::Plant::default();
+    let trunk: Vec<DVec3> = (0..12).map(|k| DVec3::Y * f64::from(k)).collect();
+    let trunk = plant.add_axis(Branch, None, 0, &trunk, None);
+    let mut radii = vec![stream.range(0.1, 0.3); 12];
+    for (key, node) in (1..11).zip(plant.axis(trunk).node_ids().skip(1)) {
+        let mut p = plant.nodes.position[node.index()];
+        let mut heading = stream.range(0.0, base::ops::TAU);
+        let mut course = vec![p];
+        for _ in 0..stream.below(8) + 4 {
+            let way = base::turn::direction(heading);
+            p += DVec3::new(way.x, stream.range(-0.3, 0.3), way.y) * stream.range(0.15, 0.3);
+            course.push(p);
+            heading += stream.range(-1.5, 1.5);
+        }
+        let thick = stream.range(0.01, 0.04);
+        let limb = plant.add_axis(Branch, Some(node), key, &course, None);
+        radii.extend((0..course.len()).map(|k| thick * (1.0 - 0.5 * k as f64 / course.len() as f64)));
+        for (k, joint) in plant.axis(limb).node_ids().enumerate().skip(1) {
+            let foot = plant.nodes.position[joint.index()];
+            let way = base::turn::direction(stream.range(0.0, base::ops::TAU));
+            let tip = foot + DVec3::new(way.x, stream.range(-0.5, 0.5), way.y) * 0.5;
+            plant.add_axis(Twig, Some(joint), 100 * key + k as u64, &[foot, foot.lerp(tip, 0.5), tip], None);
+            radii.extend([0.008, 0.007, 0.005]);
+        }
+    }
+    plant.nodes.radius_m = radii;
+    plant
+}
+
+#[test]
+fn twigs_at_the_turns_of_level_limbs_are_borne_by_them() {
+    let (mut branches, mut free, mut worst) = (0, 0, 0.0_f64);
+    for seed in 0..60 {
+        let plant = crooked(seed);
+        assert_eq!(plant.validate().next(), None);
+        let model = skin::skin(&plant, &SkinSpec::default(), &Run::plain()).expect("a surface");
+        let feet = Feet::on(&plant, &model);
+        let [outside, _] = feet.free();
+        (branches, free, worst) = (branches + feet.gaps.len(), free + outside, worst.max(feet.worst()));
+        println!(
+            "seed {seed}: {outside} of {} feet outside, the worst by {:.1} mm",
+            feet.gaps.len(),
+            1e3 * feet.worst()
+        );
+    }
+    println!("{free} of {branches} feet outside, the worst by {:.1} mm", 1e3 * worst);
+    assert!(worst < 0.003 * 11.0, "a foot {worst} m from all other wood");
+    assert!(branches > 4000 && 500 * free < branches, "{free} of {branches} feet lie outside all other wood");
 }

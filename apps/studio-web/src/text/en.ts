@@ -1114,6 +1114,7 @@ export const en = {
   'word.cherry': 'cherry',
   'word.cypress': 'cypress',
   'word.beech': 'beech',
+  'word.cedar': 'cedar',
   'word.grass': 'grass',
   'word.umbrella-pine': 'umbrella pine',
   'word.rose': 'rose',

@@ -611,4 +611,5 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'preset.rose': '开花的灌丛蔷薇：茎自地面拱起，花重瓣',
   'preset.grass': '一丛狼尾草：叶拱垂，花序如羽',
   'preset.beech': '欧洲水青冈：叶层细密的宽圆树冠，树干灰而光滑',
+  'preset.cedar': '黎巴嫩雪松：大枝平展，针叶成蓝绿色平层',
 };

@@ -1104,6 +1104,7 @@ export const zh: Record<TextKey, string> = {
   'word.cherry': '樱',
   'word.cypress': '柏',
   'word.beech': '水青冈',
+  'word.cedar': '雪松',
   'word.grass': '草',
   'word.umbrella-pine': '伞松',
   'word.rose': '玫瑰',

@@ -7,10 +7,10 @@ use glam::DVec3;
 use mesh::{Model, TriMesh};
 use serde_json::{Value, json};
 
-use super::glb_write::{Encoded, Writer, row};
+use super::glb_write::{Encoded, Level, Writer, check_levels, row};
 use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
 use super::meshopt::{encode_attributes, encode_triangles};
-use super::{PngCache, check, share, unit};
+use super::{PngCache, share, unit};
 use crate::error::WriteError;
 
 const QUANTIZATION: &str = "KHR_mesh_quantization";
@@ -45,44 +45,28 @@ pub fn write_glb_packed(
     cache: &mut PngCache,
     out: impl Write,
 ) -> Result<(), WriteError> {
-    check(model)?;
-    let mut w = Writer::new(16 * model.vertex_count() + 6 * model.triangle_count() + 1024);
+    write_packed(&[Level::plain(model)], packing, cache, out)
+}
+
+/// [`write_glb_packed`] of several levels: see [`super::write_glb_levels`].
+pub(super) fn write_packed(
+    levels: &[Level<'_>],
+    packing: Packing,
+    cache: &mut PngCache,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    check_levels(levels)?;
+    let room = |m: &Model| 16 * m.vertex_count() + 6 * m.triangle_count() + 1024;
+    let mut w = Writer::new(levels.iter().map(|l| room(l.model)).sum());
     w.encode = jpeg;
-    let frames: Vec<Frame> = (0..model.materials.len()).map(|m| Frame::of(model, m)).collect();
-    w.placed = frames.iter().map(Frame::transform).collect();
-    if w.placed.iter().any(Option::is_some) {
-        w.uses(TRANSFORM);
-        w.root.extensions_required.push(TRANSFORM.to_owned());
-    }
-    let first = w.materials(model, cache)?;
     let mut packer = Packer { w, packing, fallback: 0 };
     packer.needs(QUANTIZATION);
     if packing == Packing::Compressed {
         packer.needs(COMPRESSION);
     }
-    packer.w.root(&model.name);
-    let bounds = model.bounds();
-    let size = if bounds.is_empty() { 1.0 } else { bounds.size().max_element().max(1e-9) };
-    let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.min };
-    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
-        let mesh = used(&part.mesh);
-        let frame = &frames[part.material.index()];
-        let primitive = packer.primitive(&mesh, (origin, size), frame, first + part.material.raw())?;
-        let root = &mut packer.w.root;
-        root.meshes.push(Mesh {
-            name: Some(part.name.clone()),
-            primitives: vec![primitive],
-            weights: Vec::new(),
-        });
-        let at = row(root.nodes.len())?;
-        root.nodes.push(Node {
-            name: Some(part.name.clone()),
-            mesh: Some(row(root.meshes.len() - 1)?),
-            translation: Some(origin.to_array()),
-            scale: Some([size; 3]),
-            ..Node::default()
-        });
-        root.nodes[0].children.push(at);
+    for (level, number) in levels.iter().zip(0..) {
+        let under = packer.w.level(&levels[0].model.name, number)?;
+        packer.level(level, under, cache)?;
     }
     packer.finish(out)
 }
@@ -109,10 +93,12 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(model: &Model, material: usize) -> Self {
-        let parts = model.parts.iter().filter(|p| p.material.index() == material);
+    fn of(level: &Level<'_>, material: usize) -> Self {
+        let parts = level.model.parts.iter().map(|p| (p.material, &p.mesh));
+        let all = parts.chain(level.copies.iter().map(|c| (c.material, &c.mesh)));
+        let own = all.filter(|(m, _)| m.index() == material);
         let (mut low, mut high) = ([0.0_f32; 2], [1.0_f32; 2]);
-        for uv in parts.flat_map(|p| &p.mesh.uvs).filter(|uv| uv.iter().all(|x| x.is_finite())) {
+        for uv in own.flat_map(|(_, mesh)| &mesh.uvs).filter(|uv| uv.iter().all(|x| x.is_finite())) {
             for k in 0..2 {
                 (low[k], high[k]) = (low[k].min(uv[k]), high[k].max(uv[k]));
             }
@@ -184,6 +170,54 @@ impl Packer {
     fn needs(&mut self, extension: &str) {
         self.w.uses(extension);
         self.w.root.extensions_required.push(extension.to_owned());
+    }
+
+    /// Materials and meshes of a level, below a node.
+    fn level(&mut self, level: &Level<'_>, under: u32, cache: &mut PngCache) -> Result<(), WriteError> {
+        let model = level.model;
+        let frames: Vec<Frame> = (0..model.materials.len()).map(|m| Frame::of(level, m)).collect();
+        self.w.placed = frames.iter().map(Frame::transform).collect();
+        let placed = self.w.placed.iter().any(Option::is_some);
+        if placed && !self.w.root.extensions_required.iter().any(|e| e == TRANSFORM) {
+            self.needs(TRANSFORM);
+        }
+        let first = self.w.materials(model, cache)?;
+        let cube = |bounds: mesh::Bounds| {
+            if bounds.is_empty() {
+                (DVec3::ZERO, 1.0)
+            } else {
+                (bounds.min, bounds.size().max_element().max(1e-9))
+            }
+        };
+        let whole = cube(model.bounds());
+        let parts = model.parts.iter().filter(|p| !p.mesh.positions.is_empty());
+        let parts = parts.map(|p| (&p.name, p.material, &p.mesh, whole, None));
+        let copies = level.copies.iter();
+        let copies = copies.map(|c| (&c.name, c.material, &c.mesh, cube(c.mesh.bounds()), Some(&c.places)));
+        for (name, material, mesh, (origin, size), places) in parts.chain(copies) {
+            let mesh = used(mesh);
+            let frame = &frames[material.index()];
+            let primitive = self.primitive(&mesh, (origin, size), frame, first + material.raw())?;
+            let root = &mut self.w.root;
+            root.meshes.push(Mesh {
+                name: Some(name.clone()),
+                primitives: vec![primitive],
+                weights: Vec::new(),
+            });
+            let at = row(root.nodes.len())?;
+            root.nodes.push(Node {
+                name: Some(name.clone()),
+                mesh: Some(row(root.meshes.len() - 1)?),
+                translation: places.is_none().then(|| origin.to_array()),
+                scale: places.is_none().then_some([size; 3]),
+                ..Node::default()
+            });
+            root.nodes[under as usize].children.push(at);
+            if let Some(places) = places {
+                self.w.stand(places, (origin, size))?;
+            }
+        }
+        Ok(())
     }
 
     fn primitive(

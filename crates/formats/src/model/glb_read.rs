@@ -4,6 +4,7 @@ use base::Report;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use mesh::{MaterialId, Model, Part, TriMesh};
 
+use super::glb_write::INSTANCES;
 use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
 use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, unsupported};
 use super::gltf_look::Pictures;
@@ -19,7 +20,8 @@ const MAX_OBJECTS: usize = 2_000_000;
 const MAX_DEPTH: usize = 1_000;
 
 /// Extensions that may be required and still leave the shape readable.
-const HARMLESS: [&str; 6] = [
+const HARMLESS: [&str; 7] = [
+    INSTANCES,
     "EXT_meshopt_compression",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -99,6 +101,9 @@ struct Reader<'a> {
     skipped: usize,
 }
 
+/// Where an instance stands, and by what its colour is multiplied.
+type Instance = (DMat4, [f32; 3]);
+
 fn local_matrix(node: &Node) -> DMat4 {
     match node.matrix {
         Some(m) => DMat4::from_cols_array(&m),
@@ -152,12 +157,10 @@ impl Reader<'_> {
             if depth > MAX_DEPTH {
                 return Err(broken(item("node", index), "it is nested too deeply"));
             }
-            if node.extensions.as_ref().is_some_and(|e| e.get("EXT_mesh_gpu_instancing").is_some()) {
-                return Err(unsupported(item("node", index), "instances (EXT_mesh_gpu_instancing)"));
-            }
             let world = parent * local_matrix(node);
             if let Some(mesh) = node.mesh {
-                self.mesh(mesh, node.name.as_deref(), world)?;
+                let places = self.places(node, index)?;
+                self.mesh(mesh, node.name.as_deref(), world, places.as_deref())?;
             }
             stack.extend(node.children.iter().rev().map(|&c| (c, world, depth + 1)));
         }
@@ -168,7 +171,71 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn mesh(&mut self, index: u32, node: Option<&str>, world: DMat4) -> Result<(), Fault> {
+    /// Where the instances of a node's mesh stand (`EXT_mesh_gpu_instancing`), and their colours; `None` of a node that has
+    /// none.
+    fn places(&self, node: &Node, index: u32) -> Result<Option<Vec<Instance>>, Fault> {
+        let Some(instances) = node.extensions.as_ref().and_then(|e| e.get(INSTANCES)) else {
+            return Ok(None);
+        };
+        let place = || item("node", index);
+        let accessor = |key: &str| -> Result<Option<u32>, Fault> {
+            let Some(value) = instances.get("attributes").and_then(|a| a.get(key)) else { return Ok(None) };
+            let row = value.as_u64().and_then(|v| u32::try_from(v).ok());
+            row.map(Some).ok_or_else(|| broken(place(), format!("its {key} is no accessor")))
+        };
+        let (root, bytes) = (self.root, &self.bytes);
+        let column = |key: &str| accessor(key)?.map(|a| bytes.floats::<3>(root, a)).transpose();
+        let (at, scale, color) = (column("TRANSLATION")?, column("SCALE")?, column("_COLOR_0")?);
+        let turn = accessor("ROTATION")?.map(|a| bytes.floats::<4>(root, a)).transpose()?;
+        let counts = [at.as_ref().map(Vec::len), turn.as_ref().map(Vec::len), scale.as_ref().map(Vec::len)];
+        let count = counts.into_iter().flatten().next().unwrap_or(0);
+        let colored = color.as_ref().map(Vec::len);
+        if counts.into_iter().flatten().chain(colored).any(|n| n != count) {
+            return Err(broken(place(), "its instances have columns of different lengths"));
+        }
+        let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
+        let one = |k: usize| {
+            let turn = turn.as_ref().map_or(DQuat::IDENTITY, |t| DQuat::from_array(t[k].map(f64::from)));
+            // A quaternion of no length turns nothing.
+            let turn = if turn.length_squared() > 0.0 { turn.normalize() } else { DQuat::IDENTITY };
+            let scale = scale.as_ref().map_or(DVec3::ONE, |s| wide(s[k]));
+            let at = at.as_ref().map_or(DVec3::ZERO, |t| wide(t[k]));
+            let color = color.as_ref().map_or([1.0; 3], |c| c[k]);
+            (DMat4::from_scale_rotation_translation(scale, turn, at), color)
+        };
+        Ok(Some((0..count).map(one).collect()))
+    }
+
+    /// Copies of a mesh in these places as one mesh.
+    fn copied(&mut self, mesh: &TriMesh, places: &[Instance], place: &Place) -> Result<TriMesh, Fault> {
+        let each = mesh.positions.len().saturating_add(mesh.triangles.len());
+        self.rows = self.rows.saturating_add(each.saturating_mul(places.len()));
+        if self.rows > MAX_ROWS {
+            let what = "vertices and triangles of all instances";
+            let advice = "split the model into several files";
+            return Err((place.clone(), FileFault::TooMuch { what, limit: MAX_ROWS as u64, advice }));
+        }
+        let mut all = TriMesh::default();
+        let colored = places.iter().any(|(_, c)| *c != [1.0; 3]);
+        for (at, color) in places {
+            let mut copy = mesh.clone();
+            apply(&mut copy, *at);
+            if colored {
+                copy.colors.resize(copy.positions.len(), [1.0; 3]);
+                copy.colors.iter_mut().for_each(|c| *c = [0, 1, 2].map(|k| c[k] * color[k]));
+            }
+            all.append(&copy);
+        }
+        Ok(all)
+    }
+
+    fn mesh(
+        &mut self,
+        index: u32,
+        node: Option<&str>,
+        world: DMat4,
+        places: Option<&[Instance]>,
+    ) -> Result<(), Fault> {
         let root = self.root;
         let mesh =
             root.meshes.get(index as usize).ok_or_else(|| broken(item("mesh", index), "it is not there"))?;
@@ -183,6 +250,9 @@ impl Reader<'_> {
             };
             if let Some(m) = primitive.material.and_then(|m| root.materials.get(m as usize)) {
                 place_texture(&mut columns, m);
+            }
+            if let Some(places) = places {
+                columns = self.copied(&columns, places, &place)?;
             }
             apply(&mut columns, world);
             if columns.pivots.iter().flatten().any(|x| !x.is_finite()) {

@@ -4,12 +4,12 @@ use std::io::Write;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use mesh::{Model, Standing, TriMesh};
+use mesh::{Copies, CopyPlace, Model, Part, Rig, Standing, TriMesh};
 use serde_json::{Value, json};
 
 use super::gltf::{
     Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Keys, Mesh, Node, POINTS, Primitive,
-    Root, Sampler, Scene, Target, U16, U32, View,
+    Root, Sampler, Scene, Skin, Target, U16, U32, View,
 };
 use super::{PngCache, check, share, unit};
 use crate::error::WriteError;
@@ -125,19 +125,132 @@ pub fn write_glb_scene(
     w.finish(out)
 }
 
-fn write(model: &Model, morph: &Morph<'_>, cache: &mut PngCache, out: impl Write) -> Result<(), WriteError> {
+/// A model as one level of a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Level<'a> {
+    /// Its parts.
+    pub model: &'a Model,
+    /// Meshes that stand in many places, in materials of the model; they are no parts of it.
+    pub copies: &'a [Copies],
+}
+
+impl<'a> Level<'a> {
+    /// A model whose parts are all there is.
+    pub const fn plain(model: &'a Model) -> Self {
+        Self { model, copies: &[] }
+    }
+}
+
+/// Writes levels of one model, finest first, as one GLB: the first as [`write_glb`] or, packed, as
+/// [`write_glb_packed`](super::write_glb_packed) does; each coarser one below a node of its own that the first's node names
+/// (`MSFT_lod`) and that stands in no scene, so that a program without levels shows the first alone. Each level is meant for
+/// half the size in a picture of the one before (`MSFT_screencoverage`); the last is for all sizes below. Textures that
+/// levels share are there once. Copies are instances (`EXT_mesh_gpu_instancing`, required where there are any), each with
+/// its colour as `_COLOR_0`.
+///
+/// # Errors
+/// As [`write_glb`], for any of the models.
+pub fn write_glb_levels(
+    levels: &[Level<'_>],
+    packing: Option<super::Packing>,
+    cache: &mut PngCache,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    match packing {
+        Some(packing) => super::glb_pack::write_packed(levels, packing, cache, out),
+        None => write_all(levels, &Morph::default(), cache, out),
+    }
+}
+
+/// Writes a model with joints and their looping animation: as [`write_glb`], each vertex held by its joints, and the parts
+/// at the top of the scene, where glTF wants what joints move. Attributes for wind are left out: joints do what they ask for.
+///
+/// # Errors
+/// As [`write_glb`]; [`WriteError::Rig`] where the rig does not fit the model.
+pub fn write_glb_rigged(
+    model: &Model,
+    rig: &Rig,
+    cache: &mut PngCache,
+    out: impl Write,
+) -> Result<(), WriteError> {
     check(model)?;
-    let mut w = Writer::new(room(model));
+    if !rig.fits(model) || rig.joints.is_empty() {
+        return Err(WriteError::Rig);
+    }
+    let mut w = Writer::new(room(model) + 24 * model.vertex_count());
     if let (Some(extras), Some(offset)) = (&mut w.root.asset.extras, model.offset_m) {
         extras["offset_m"] = json!(offset.to_array());
     }
     let first = w.materials(model, cache)?;
-    let meshes = w.meshes(model, first, morph)?;
+    let bare = Morph::default();
+    let meshes = w.meshes_of(model, first, &bare, false)?;
     w.root(&model.name);
-    w.hang(0, &meshes)?;
-    w.animation(model, morph)?;
+    w.rig(model, rig, &meshes)?;
     w.finish(out)
 }
+
+fn write(model: &Model, morph: &Morph<'_>, cache: &mut PngCache, out: impl Write) -> Result<(), WriteError> {
+    write_all(&[Level::plain(model)], morph, cache, out)
+}
+
+fn write_all(
+    levels: &[Level<'_>],
+    morph: &Morph<'_>,
+    cache: &mut PngCache,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    check_levels(levels)?;
+    let mut w = Writer::new(levels.iter().map(|l| room(l.model)).sum());
+    let still = Morph::default();
+    for (level, number) in levels.iter().zip(0..) {
+        let model = level.model;
+        if number == 0
+            && let (Some(extras), Some(offset)) = (&mut w.root.asset.extras, model.offset_m)
+        {
+            extras["offset_m"] = json!(offset.to_array());
+        }
+        let first = w.materials(model, cache)?;
+        let morph = if number == 0 { morph } else { &still };
+        let meshes = w.meshes(model, first, morph)?;
+        let under = w.level(&levels[0].model.name, number)?;
+        w.hang(under, &meshes)?;
+        for copies in level.copies {
+            let part =
+                Part { name: copies.name.clone(), material: copies.material, mesh: copies.mesh.clone() };
+            let one = Model { parts: vec![part], ..Model::default() };
+            let mesh = w.meshes(&one, first, &still)?;
+            w.hang(under, &mesh)?;
+            w.stand(&copies.places, (DVec3::ZERO, 1.0))?;
+        }
+        if number == 0 {
+            w.animation(model, morph)?;
+        }
+    }
+    w.finish(out)
+}
+
+/// Refuses levels that no file should be made of.
+pub(super) fn check_levels(levels: &[Level<'_>]) -> Result<(), WriteError> {
+    for level in levels {
+        check(level.model)?;
+        for copies in level.copies {
+            let fail = |fault| Err(WriteError::Model { part: copies.name.clone(), fault });
+            if copies.material.index() >= level.model.materials.len() {
+                return fail(mesh::Fault::Material(copies.material.index()));
+            }
+            let bad = copies.mesh.validate();
+            let mut bad = bad.filter(|f| !matches!(f, mesh::Fault::Degenerate(_) | mesh::Fault::Normal(_)));
+            if let Some(fault) = bad.next() {
+                return fail(fault);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Meshes in many places.
+pub(super) const INSTANCES: &str = "EXT_mesh_gpu_instancing";
+const LEVELS: &str = "MSFT_lod";
 
 fn room(model: &Model) -> usize {
     48 * model.vertex_count() + 12 * model.triangle_count() + 1024
@@ -347,6 +460,56 @@ impl Writer {
         self.root.scene = Some(0);
     }
 
+    /// Lets the mesh of the last node stand in many places. `(origin, size)`: what its coordinates are in.
+    pub(super) fn stand(
+        &mut self,
+        places: &[CopyPlace],
+        (origin, size): (DVec3, f64),
+    ) -> Result<(), WriteError> {
+        #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in files, by design")]
+        let narrow = |x: f64| x as f32;
+        let at: Vec<[f32; 3]> =
+            (places.iter()).map(|p| (p.at + p.turn * (origin * p.scale)).to_array().map(narrow)).collect();
+        let turns: Vec<[f32; 4]> = places.iter().map(|p| p.turn.to_array().map(narrow)).collect();
+        let scales: Vec<[f32; 3]> = places.iter().map(|p| [narrow(p.scale * size); 3]).collect();
+        let colors: Vec<[f32; 3]> = places.iter().map(|p| p.color.map(share)).collect();
+        let attributes = json!({
+            "TRANSLATION": self.rows("VEC3", &at, None)?,
+            "ROTATION": self.rows("VEC4", &turns, None)?,
+            "SCALE": self.rows("VEC3", &scales, None)?,
+            "_COLOR_0": self.rows("VEC3", &colors, None)?,
+        });
+        self.uses(INSTANCES);
+        if !self.root.extensions_required.iter().any(|e| e == INSTANCES) {
+            self.root.extensions_required.push(INSTANCES.to_owned());
+        }
+        if let Some(node) = self.root.nodes.last_mut() {
+            node.extensions = Some(json!({ INSTANCES: { "attributes": attributes } }));
+        }
+        Ok(())
+    }
+
+    /// The node of a level: the root for number 0, which must come first; else one of its own.
+    pub(super) fn level(&mut self, name: &str, number: u32) -> Result<u32, WriteError> {
+        if number == 0 {
+            self.root(name);
+            return Ok(0);
+        }
+        self.uses(LEVELS);
+        let at = row(self.root.nodes.len())?;
+        let name = if name.is_empty() { "model" } else { name };
+        self.root.nodes.push(Node { name: Some(format!("{name} lod{number}")), ..Node::default() });
+        let root = &mut self.root.nodes[0];
+        let ids = root.extensions.get_or_insert_with(|| json!({ LEVELS: { "ids": [] } }));
+        if let Some(ids) = ids[LEVELS]["ids"].as_array_mut() {
+            ids.push(json!(at));
+        }
+        // Half of the picture's height and half of that again; of the last level there is no end.
+        let ends = (1..=number).map(|k| 1.0 / f64::from(1_u32 << k.min(30))).chain([0.0]);
+        root.extras = Some(json!({ "MSFT_screencoverage": ends.collect::<Vec<f64>>() }));
+        Ok(at)
+    }
+
     /// A node under the root that stands where the plant does.
     fn place(&mut self, plant: &Standing<'_>) -> Result<u32, WriteError> {
         let moved = plant.position != DVec3::ZERO;
@@ -375,8 +538,116 @@ impl Writer {
         Ok(())
     }
 
+    /// Joints below the root, meshes beside it, and what moves the joints.
+    fn rig(&mut self, model: &Model, rig: &Rig, meshes: &[u32]) -> Result<(), WriteError> {
+        let first = row(self.root.nodes.len())?;
+        for joint in &rig.joints {
+            let at = row(self.root.nodes.len())?;
+            self.root.nodes.push(Node {
+                name: Some(joint.name.clone()),
+                translation: Some(joint.at.to_array()),
+                ..Node::default()
+            });
+            self.root.nodes[0].children.push(at);
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in files, by design")]
+        let narrow = |x: f64| x as f32;
+        let back: Vec<[f32; 16]> = (rig.joints.iter())
+            .map(|j| {
+                let [x, y, z] = (-j.at).to_array().map(narrow);
+                [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0]
+            })
+            .collect();
+        let back = self.rows("MAT4", &back, None)?;
+        let joints = (first..).zip(&rig.joints).map(|(row, _)| row).collect();
+        self.root.skins.push(Skin { inverse_bind_matrices: back, joints, skeleton: 0 });
+        let parts = rig.holds.iter().zip(&model.parts).filter(|(_, p)| !p.mesh.positions.is_empty());
+        for (&mesh, (holds, _)) in meshes.iter().zip(parts) {
+            let view = self.view(Some(ARRAY_BUFFER), |bin| {
+                // Of a joint without a share the row is 0, as glTF asks.
+                let rows = holds
+                    .iter()
+                    .flat_map(|h| [0, 1, 2, 3].map(|k| if h.shares[k] > 0.0 { h.joints[k] } else { 0 }));
+                bin.extend(rows.flat_map(u16::to_le_bytes));
+            })?;
+            self.root.accessors.push(Accessor {
+                buffer_view: Some(view),
+                component_type: U16,
+                count: holds.len() as u64,
+                shape: "VEC4".into(),
+                ..Accessor::default()
+            });
+            let joints = row(self.root.accessors.len() - 1)?;
+            let shares: Vec<[f32; 4]> = holds.iter().map(|h| h.shares).collect();
+            let weights = self.column("VEC4", &shares, false)?;
+            let made = &mut self.root.meshes[mesh as usize];
+            for primitive in &mut made.primitives {
+                (primitive.attributes.joints, primitive.attributes.weights) = (Some(joints), Some(weights));
+            }
+            let at = row(self.root.nodes.len())?;
+            let name = made.name.clone();
+            self.root.nodes.push(Node { name, mesh: Some(mesh), skin: Some(0), ..Node::default() });
+            self.root.scenes[0].nodes.push(at);
+        }
+        let input = self.scalars(&rig.seconds, true)?;
+        let (mut channels, mut samplers) = (Vec::new(), Vec::new());
+        for ((moves, joint), node) in rig.moves.iter().zip(&rig.joints).zip(first..) {
+            let mut track = |output: u32, path: &str| -> Result<(), WriteError> {
+                channels.push(Channel {
+                    sampler: row(samplers.len())?,
+                    target: Target { node, path: path.into() },
+                });
+                samplers.push(Keys { input, interpolation: "LINEAR".into(), output });
+                Ok(())
+            };
+            if moves.iter().any(|m| m.0 != DQuat::IDENTITY) {
+                let turns: Vec<[f32; 4]> = moves.iter().map(|m| m.0.to_array().map(narrow)).collect();
+                track(self.rows("VEC4", &turns, None)?, "rotation")?;
+            }
+            if moves.iter().any(|m| m.1 != DVec3::ZERO) {
+                let places: Vec<[f32; 3]> =
+                    moves.iter().map(|m| (joint.at + m.1).to_array().map(narrow)).collect();
+                track(self.rows("VEC3", &places, None)?, "translation")?;
+            }
+        }
+        if !channels.is_empty() {
+            self.root.animations.push(Animation { name: "wind".into(), channels, samplers });
+        }
+        Ok(())
+    }
+
+    /// Rows of floats that are no column of vertices.
+    fn rows<const N: usize>(
+        &mut self,
+        shape: &str,
+        rows: &[[f32; N]],
+        target: Option<u32>,
+    ) -> Result<u32, WriteError> {
+        let view =
+            self.view(target, |bin| bin.extend(rows.iter().flatten().flat_map(|x| x.to_le_bytes())))?;
+        self.root.accessors.push(Accessor {
+            buffer_view: Some(view),
+            component_type: FLOAT,
+            count: rows.len() as u64,
+            shape: shape.to_owned(),
+            ..Accessor::default()
+        });
+        row(self.root.accessors.len() - 1)
+    }
+
     /// The meshes of a model, by their rows; `first` is the row of its first material.
     fn meshes(&mut self, model: &Model, first: u32, morph: &Morph<'_>) -> Result<Vec<u32>, WriteError> {
+        self.meshes_of(model, first, morph, true)
+    }
+
+    /// The same, with or without what moves vertices in the wind.
+    fn meshes_of(
+        &mut self,
+        model: &Model,
+        first: u32,
+        morph: &Morph<'_>,
+        wind: bool,
+    ) -> Result<Vec<u32>, WriteError> {
         let mut meshes = Vec::new();
         for (index, part) in model.parts.iter().enumerate().filter(|(_, p)| !p.mesh.positions.is_empty()) {
             let mesh = &part.mesh;
@@ -397,10 +668,10 @@ impl Writer {
                 let colors: Vec<[f32; 3]> = mesh.colors.iter().map(|c| c.map(share)).collect();
                 attributes.color = Some(self.column("VEC3", &colors, false)?);
             }
-            if !mesh.wind.is_empty() {
+            if wind && !mesh.wind.is_empty() {
                 attributes.wind = Some(self.column("VEC4", &mesh.wind, false)?);
             }
-            if !mesh.pivots.is_empty() {
+            if wind && !mesh.pivots.is_empty() {
                 attributes.pivot = Some(self.column("VEC3", &mesh.pivots, false)?);
             }
             let points = mesh.triangles.is_empty();
@@ -435,7 +706,7 @@ impl Writer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh::{MaterialId, Part};
+    use mesh::MaterialId;
 
     fn model(height: f32) -> Model {
         let mut mesh = TriMesh {

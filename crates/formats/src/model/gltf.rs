@@ -64,6 +64,8 @@ schema! {
         buffer_views: Vec<View>,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         buffers: Vec<Buffer>,
+        #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+        skins: Vec<Skin>,
         // Written, never read: an animation that we do not know must not make a model unreadable.
         #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
         animations: Vec<Animation>,
@@ -72,6 +74,11 @@ schema! {
         name: String,
         channels: Vec<Channel>,
         samplers: Vec<Keys>,
+    }
+    struct Skin {
+        inverse_bind_matrices: u32,
+        joints: Vec<u32>,
+        skeleton: u32,
     }
     struct Channel {
         sampler: u32,
@@ -106,6 +113,8 @@ schema! {
         children: Vec<u32>,
         #[serde(skip_serializing_if = "Option::is_none")]
         mesh: Option<u32>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        skin: Option<u32>,
         #[serde(skip_serializing_if = "Option::is_none")]
         matrix: Option<[f64; 16]>,
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,6 +162,10 @@ schema! {
         wind: Option<u32>,
         #[serde(rename = "_PIVOT", skip_serializing_if = "Option::is_none")]
         pivot: Option<u32>,
+        #[serde(rename = "JOINTS_0", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        joints: Option<u32>,
+        #[serde(rename = "WEIGHTS_0", skip_deserializing, skip_serializing_if = "Option::is_none")]
+        weights: Option<u32>,
     }
     struct Material {
         #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -26,7 +26,10 @@ use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
 pub use glb_pack::{Packing, write_glb_packed};
-pub use glb_write::{Morph, write_glb, write_glb_morph, write_glb_scene, write_glb_with};
+pub use glb_write::{
+    Level, Morph, write_glb, write_glb_levels, write_glb_morph, write_glb_rigged, write_glb_scene,
+    write_glb_with,
+};
 pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
 pub use ply_write::write_ply;

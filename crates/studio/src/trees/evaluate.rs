@@ -329,6 +329,11 @@ impl TreeEvaluator {
         self.model.as_ref().filter(|_| !self.stale).map(|_| &self.layout)
     }
 
+    /// The model of the last update with its plant and what lies where in it; none where that is of another plant by now.
+    pub(super) fn laid_out(&self) -> Option<(&Model, &Plant, &Layout)> {
+        Some((self.model()?, self.plant()?, self.layout()?))
+    }
+
     /// What was grown, as the hand left it, and its model; the evaluator is empty then.
     pub(super) fn take(&mut self) -> Option<(Grown, Model)> {
         let Self { dressed, shaped, model, .. } = std::mem::take(self);

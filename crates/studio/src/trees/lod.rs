@@ -4,14 +4,17 @@ use growth::Obstacles;
 use plant::{AxisKind, FlowerId, NodeId, OrganKind, Plant};
 use skin::SkinSpec;
 
-/// Fewer axes, leaves or flowers than this are not thinned: each of them is seen.
+/// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
+/// which is for half the size, half as many.
 const FEW_AXES: usize = 100;
 const FEW_LEAVES: usize = 300;
 const FEW_FLOWERS: usize = 120;
 
-/// How often so many things can be halved, `level` times at most, before fewer than `few` are left.
+/// How often so many things can be halved, `level` times at most, before fewer are left than can be seen singly: `few` in
+/// the first level.
 fn halvings(count: usize, few: usize, level: u32) -> u32 {
-    (count / few).checked_ilog2().unwrap_or(0).min(level)
+    let few = few >> level.saturating_sub(1);
+    (count / few.max(1)).checked_ilog2().unwrap_or(0).min(level)
 }
 
 /// How often the leaves of a plant are halved.
@@ -57,7 +60,7 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
 ///
 /// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
-/// are many. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
+/// are many for the size at which it is seen. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
 /// become fewer. Cost: n log n in axes.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
@@ -132,5 +135,23 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
     let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
     let sides = skin.sides.saturating_sub(2 * level).max(3);
-    (copy, SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() })
+    let coarse = SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() };
+    cover_as_much(&mut copy, &coarse, (plant, skin));
+    (copy, coarse)
+}
+
+/// Gives the leaves of a coarser copy the size at which they cover what those of the plant do as both are drawn: of few
+/// triangles a leaf has not the area of its form.
+fn cover_as_much(copy: &mut Plant, coarse: &SkinSpec, (plant, skin): (&Plant, &SkinSpec)) {
+    let covered = |plant: &Plant, skin: &SkinSpec| {
+        let areas = skin::drawn_areas(plant, skin);
+        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && o.scale.is_finite());
+        let area = |o: &plant::Organ| areas.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale * o.scale;
+        leaves.map(area).sum::<f64>()
+    };
+    let (wanted, have) = (covered(plant, skin), covered(copy, coarse));
+    if have > 0.0 && wanted > 0.0 {
+        let size = (wanted / have).sqrt().clamp(0.5, 2.0);
+        copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf).for_each(|o| o.scale *= size);
+    }
 }

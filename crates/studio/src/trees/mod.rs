@@ -28,7 +28,7 @@ use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
-use mesh::Model;
+use mesh::{Copies, Model};
 use skin::SkinSpec;
 use spec::SpecFault;
 
@@ -59,6 +59,8 @@ pub struct TreeOptions {
     pub leaf: Option<LeafTemplate>,
     /// Coarser copies to make as well, 0 to 6: each has about half of the triangles of the one before.
     pub lods: u32,
+    /// Also take leaves that are one form out of the models, as copies: [`MadeTree::copies`]. Default false.
+    pub copies: bool,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<PlantEdit>,
     /// What the obstacles of the spec are called in messages, in their order; those without a name have their number.
@@ -74,6 +76,8 @@ pub struct MadeTree {
     pub model: Model,
     /// Coarser ones, finest first.
     pub lods: Vec<Model>,
+    /// If asked for, of the model and each coarser one what is left without the leaves that are one form, and these.
+    pub copies: Vec<(Model, Vec<Copies>)>,
     /// Counts, times, growth, digest, warnings.
     pub item: ItemReport,
 }
@@ -211,15 +215,25 @@ pub fn make_tree(
     let mut evaluator = TreeEvaluator::default();
     let mut item = evaluator.update(spec, seed, options, run)?;
     let start = run.clock.now_ms();
-    let lods = (1..=options.lods.min(6)).map(|level| evaluator.at_level(level, run));
-    let lods: Vec<Model> = lods.filter_map(Result::transpose).collect::<Result<_, _>>()?;
+    let mut copies = Vec::new();
+    if let (true, Some((model, plant, layout))) = (options.copies, evaluator.laid_out()) {
+        copies.push(skin::copies(plant, model, layout));
+    }
+    let mut lods = Vec::new();
+    for level in 1..=options.lods.min(6) {
+        let Some((model, (plant, layout))) = evaluator.laid_out_at(level, run)? else { continue };
+        if options.copies {
+            copies.push(skin::copies(&plant, &model, &layout));
+        }
+        lods.push(model);
+    }
     if !lods.is_empty() {
         let ms = run.clock.now_ms() - start;
         item.timings_ms.mesh += ms;
         item.timings_ms.total += ms;
     }
     let (grown, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: both are there
-    Ok(MadeTree { grown, model, lods, item })
+    Ok(MadeTree { grown, model, lods, copies, item })
 }
 
 /// An obstacle that does not bound a volume; it is borne all the same.

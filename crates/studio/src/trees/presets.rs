@@ -51,6 +51,7 @@ presets![
     "rose",
     "grass",
     "beech",
+    "cedar",
 ];
 
 impl Preset {

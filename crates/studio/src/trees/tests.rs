@@ -188,8 +188,8 @@ fn leaves_as_made_have_the_size_of_their_species() {
         let share = within as f64 / lengths.len() as f64;
         assert!(share > 0.95 && lengths.len() > 100, "{key}: {share} of {} leaves", lengths.len());
     }
-    // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm.
-    for (key, least, most) in [("pine", 2.0, 8.0), ("umbrella-pine", 8.0, 20.0)] {
+    // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm, Cedrus libani 1.5 to 3.5 cm.
+    for (key, least, most) in [("pine", 2.0, 8.0), ("umbrella-pine", 8.0, 20.0), ("cedar", 1.5, 3.5)] {
         let spec = young(key);
         let blade = tree_blade(&spec.blade);
         let gap = |a: &DVec2, b: &DVec2| a.distance(*b);
