@@ -46,7 +46,7 @@ fn base64(bytes: &[u8]) -> String {
 /// Width and height of the pictures of a film, and how long each is seen, hundredths of a second.
 fn pictures(film: &[u8]) -> Vec<(u16, u16, u16)> {
     let word = |at: usize| u16::from_le_bytes([film[at], film[at + 1]]);
-    assert_eq!((&film[..6], film.last()), (&b"GIF89a"[..], Some(&0x3b)));
+    assert_eq!((&film[..6], film.last()), (&b"GIF89a"[..], Some(&0x3b)), "a whole film");
     let skip = |mut at: usize| {
         while film[at] != 0 {
             at += 1 + usize::from(film[at]);
