@@ -88,14 +88,26 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     finish(c)
 }
 
+/// Measures rounds of guided growth in Node, in the core as a browser has it.
+pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
+    let to = target_dir().join("xtask-bench");
+    bindgen(tools, &build(tools, true, true)?, "nodejs", &to)?;
+    say("$ node guided.mjs");
+    let mut c = prepare("node", &["xtask/node/guided.mjs"]);
+    c.arg(to.join("burgeon_wasm.js"));
+    finish(c)
+}
+
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
+    build(tools, release, !release)
+}
+
+/// `checks`: with what the checks in Node ask of it.
+fn build(tools: &Tools, release: bool, checks: bool) -> Outcome<PathBuf> {
     let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
-    if release {
-        args.push("--profile=web");
-    } else {
-        args.push("--features=checks");
-    }
+    args.extend(release.then_some("--profile=web"));
+    args.extend(checks.then_some("--features=checks"));
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);
     if release {
