@@ -751,6 +751,12 @@ async function levels({ page, url, shot }) {
 
 const SMALL = { viewport: { width: 420, height: 300 } };
 
+/** What every run of the journeys does: short ones, of what goes wrong with a controller and with a hand. */
+export const headsetCore = [
+  ['headset: astray', astray, WIDE],
+  ['headset: hands without controllers', hands, WIDE],
+];
+
 export const headset = [
   ['headset: all tools (Quest 3, right)', whole('metaQuest3', 'right'), SMALL],
   ['headset: all tools (Quest 3, left)', whole('metaQuest3', 'left'), SMALL],
@@ -762,9 +768,7 @@ export const headset = [
   ['headset: size, place, left hand, an early end', stand, WIDE],
   ['headset: a Pico, left-handed, a branch in the hand', pico, WIDE],
   ['headset: an outline on a plane in space', plane, WIDE],
-  ['headset: hands without controllers', hands, WIDE],
   ['headset: the wrist', wrist, WIDE],
-  ['headset: astray', astray, WIDE],
   ['headset: copy, both sides, leaves, a cut, all back', both, WIDE],
   ['headset: plants, things in the way, a model', scene, WIDE],
   ['headset: lost in a stroke', lost, WIDE],
