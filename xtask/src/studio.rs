@@ -7,7 +7,7 @@ use crate::shell::{
     Outcome, built_burgeon, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir,
 };
 use crate::toolchain::{apt_install, is_root_on_debian};
-use crate::web::{Tools, bindgen, build_wasm};
+use crate::web::{Tools, bench_growth, bindgen, build_wasm};
 
 fn folder() -> PathBuf {
     repository().join("apps/studio-web")
@@ -96,6 +96,7 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
 
 /// Measures the released Studio in a browser and prints a table.
 pub(crate) fn bench(tools: &Tools) -> Outcome {
+    bench_growth(tools)?;
     build(tools, true)?;
     let browser = browser().ok_or("Chromium is missing: install it or name it in BURGEON_CHROMIUM")?;
     debug_burgeon(false)?;

@@ -91,8 +91,10 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
 /// What is built for a browser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Core {
-    /// That of the Studio and of the checks in Node.
+    /// That of the Studio.
     Studio,
+    /// The same with what only the checks in Node ask.
+    Checked,
     /// That of the npm package: with all makers, or of trees alone.
     Npm {
         /// All of them.
@@ -100,25 +102,33 @@ pub(crate) enum Core {
     },
 }
 
+/// Measures rounds of guided growth in Node, in the core as a browser has it.
+pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
+    let to = target_dir().join("xtask-bench");
+    bindgen(tools, &build_core(tools, Core::Checked, true)?, "nodejs", &to)?;
+    say("$ node guided.mjs");
+    let mut c = prepare("node", &["xtask/node/guided.mjs"]);
+    c.arg(to.join("burgeon_wasm.js"));
+    finish(c)
+}
+
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
-    build_core(tools, Core::Studio, release)
+    build_core(tools, if release { Core::Studio } else { Core::Checked }, release)
 }
 
 /// Builds a core and returns the file, which the next build of the same package replaces.
 pub(crate) fn build_core(tools: &Tools, core: Core, release: bool) -> Outcome<PathBuf> {
     let package = match core {
-        Core::Studio => "burgeon-wasm",
+        Core::Studio | Core::Checked => "burgeon-wasm",
         Core::Npm { .. } => "burgeon-npm",
     };
     let mut args = vec!["build", "--package", package, "--target", TARGET];
-    if release {
-        args.push("--profile=web");
-    }
+    args.extend(release.then_some("--profile=web"));
     match core {
-        Core::Studio if !release => args.push("--features=checks"),
+        Core::Checked => args.push("--features=checks"),
         Core::Npm { makers: false } => args.push("--no-default-features"),
-        _ => {}
+        Core::Studio | Core::Npm { makers: true } => {}
     }
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);

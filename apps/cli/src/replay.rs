@@ -1,10 +1,11 @@
 //! `burgeon replay`: what hands did in a headset, done again without one.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
-use burgeon::render::{Picture, PictureSpec};
+use burgeon::render::{Camera, Picture, PictureSpec, View};
 use serde::Serialize;
 use workspace::{
     GestureDeed, GestureRecord, GestureStep, ShapeInput, ShapePointer, Workspace, WorkspaceError,
@@ -67,18 +68,17 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
     let record = GestureRecord::read(&bytes).map_err(|e| Failure::at(path, e))?;
     let mut workspace = Workspace::default();
-    let mut film = args.film.as_ref().map(|_| Film::default());
+    let mut film = args.film.as_ref().map(|_| (Film::default(), Extent::new()));
     let came = machine.with_progress("replay", |_| {
         workspace.replay(&record, &machine.run(), &mut |now, step| {
-            if let Some(film) = &mut film {
-                film.see(now, step);
+            if let Some((film, extent)) = &mut film
+                && let Some(model) = film.see(now, step)
+            {
+                extent.add(&model);
             }
         })
     });
-    let came = came.map_err(|e| match e {
-        WorkspaceError::Cancelled => Failure::Cancelled,
-        e => Failure::at(path, e),
-    })?;
+    let came = came.map_err(|e| failure_of(e, path))?;
     if let Some(path) = &args.save {
         project::save(&mut outputs, "--save", path, workspace.document())?;
     }
@@ -89,12 +89,17 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
         picture::write(&mut outputs, "--png", path, &drawn)?;
     }
     let mut frames = 0;
-    if let Some((path, film)) = args.film.as_ref().zip(film) {
+    if let Some((path, (_, mut extent))) = args.film.as_ref().zip(film) {
+        let last = seen.ok_or_else(|| Failure::at(path, "there is nothing to be seen in this record"))?;
+        extent.add(&last);
         let mut spec = args.picture.spec(seed);
         if !args.given.has("size") {
             (spec.width, spec.height) = (FILM_SIDE, FILM_SIDE);
         }
-        frames = film.write(path, seen, &spec, &mut outputs, &machine)?;
+        if matches!(spec.view, View::Turntable { .. }) {
+            spec.view = View::Front;
+        }
+        frames = draw(path, &record, (&extent, &last), &spec, &mut outputs, &machine)?;
     }
     let same = record.digest.as_ref().map(|was| came.digest.as_ref() == Some(was));
     let told = Replay {
@@ -123,10 +128,10 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     Ok(())
 }
 
-/// What is seen of a replay, one model a picture.
+/// Which steps of a replay are pictures of a film, and where the hand was.
 #[derive(Default)]
 struct Film {
-    frames: Vec<Model>,
+    count: usize,
     /// Of the film, and of the record, at the last step.
     now_ms: u32,
     was_ms: u32,
@@ -134,7 +139,8 @@ struct Film {
 }
 
 impl Film {
-    fn see(&mut self, now: &Workspace, step: &GestureStep) {
+    /// What is seen after a step, where a picture is due.
+    fn see(&mut self, now: &Workspace, step: &GestureStep) -> Option<Model> {
         if let GestureDeed::Hand(hand) = &step.did {
             self.hand = match &hand.input {
                 ShapeInput::Down(at) | ShapeInput::Up(at) => Some(*at),
@@ -144,33 +150,92 @@ impl Film {
         }
         self.now_ms += step.ms.saturating_sub(self.was_ms).min(LONGEST_WAIT_MS);
         self.was_ms = step.ms;
-        let due = self.frames.len() as u64 * 10 * u64::from(FRAME_CS);
-        if u64::from(self.now_ms) >= due
-            && self.frames.len() < MOST_FRAMES
-            && let Some(model) = now.seen()
-        {
-            self.frames.push(with_hand(model, self.hand));
+        let due = self.count as u64 * 10 * u64::from(FRAME_CS);
+        if u64::from(self.now_ms) < due || self.count >= MOST_FRAMES {
+            return None;
+        }
+        let model = now.seen()?;
+        self.count += 1;
+        Some(with_hand(model, self.hand))
+    }
+}
+
+/// The points of many models that are furthest out, which is all that a camera asks of them.
+struct Extent {
+    ways: Vec<DVec3>,
+    furthest: Vec<(f64, DVec3)>,
+}
+
+impl Extent {
+    fn new() -> Self {
+        let five = || (-2..=2).map(f64::from);
+        let ways = five().flat_map(|x| five().flat_map(move |y| five().map(move |z| DVec3::new(x, y, z))));
+        let ways: Vec<DVec3> = ways.filter_map(DVec3::try_normalize).collect();
+        Self { furthest: vec![(f64::NEG_INFINITY, DVec3::ZERO); ways.len()], ways }
+    }
+
+    fn add(&mut self, model: &Model) {
+        let points = model.parts.iter().flat_map(|part| &part.mesh.positions);
+        for p in points.map(|p| DVec3::from_array(p.map(f64::from))).filter(|p| p.is_finite()) {
+            for (way, furthest) in self.ways.iter().zip(&mut self.furthest) {
+                let out = way.dot(p);
+                if out > furthest.0 {
+                    *furthest = (out, p);
+                }
+            }
         }
     }
 
-    /// The number of its pictures.
-    fn write(
-        mut self,
-        path: &Path,
-        last: Option<Model>,
-        spec: &PictureSpec,
-        outputs: &mut Outputs,
-        machine: &Machine,
-    ) -> Outcome<usize> {
-        self.frames.extend(last);
-        if self.frames.is_empty() {
-            return Err(Failure::at(path, "there is nothing to be seen in this record"));
-        }
-        let drawn =
-            machine.with_progress("film", |_| burgeon::render::film(&self.frames, spec, &machine.run()))?;
-        let bytes = gif_of(&drawn).map_err(|e| Failure::Bug(format!("the film cannot be written: {e}")))?;
-        outputs.write("--film", path, |out| Ok(out.write_all(&bytes)?))?;
-        Ok(drawn.len())
+    fn points(&self) -> Vec<DVec3> {
+        self.furthest.iter().filter(|f| f.0.is_finite()).map(|f| f.1).collect()
+    }
+}
+
+/// Draws a film: once more through the record, one picture at a time, by one camera that sees them all. The number of its
+/// pictures.
+fn draw(
+    path: &Path,
+    record: &GestureRecord,
+    (extent, last): (&Extent, &Model),
+    spec: &PictureSpec,
+    outputs: &mut Outputs,
+    machine: &Machine,
+) -> Outcome<usize> {
+    let camera = Camera::framing(&extent.points(), spec);
+    let shot = |model: &Model| burgeon::render::shot(model, spec, camera, &machine.run());
+    let (mut film, mut strip) = (Film::default(), None::<Strip>);
+    let mut went = Outcome::Ok(());
+    let mut workspace = Workspace::default();
+    let end = shot(last)?;
+    machine
+        .with_progress("film", |_| {
+            workspace.replay(record, &machine.run(), &mut |now, step| {
+                let Some(model) = film.see(now, step).filter(|_| went.is_ok()) else { return };
+                went = shot(&model).map_err(Failure::from).and_then(|picture| {
+                    let strip = match &mut strip {
+                        Some(strip) => strip,
+                        None => strip.insert(Strip::new(&[&picture, &end])?),
+                    };
+                    strip.add(picture)
+                });
+            })
+        })
+        .map_err(|e| failure_of(e, path))?;
+    went?;
+    let mut strip = match strip {
+        Some(strip) => strip,
+        None => Strip::new(&[&end])?,
+    };
+    strip.add(end)?;
+    let bytes = strip.finish()?;
+    outputs.write("--film", path, |out| Ok(out.write_all(&bytes)?))?;
+    Ok(film.count + 1)
+}
+
+fn failure_of(e: WorkspaceError, path: &Path) -> Failure {
+    match e {
+        WorkspaceError::Cancelled => Failure::Cancelled,
+        e => Failure::at(path, e),
     }
 }
 
@@ -198,19 +263,108 @@ fn with_hand(mut model: Model, hand: Option<ShapePointer>) -> Model {
     model
 }
 
-/// An animated picture that goes on for ever.
-fn gif_of(pictures: &[Picture]) -> Result<Vec<u8>, gif::EncodingError> {
-    let side = |n: u32| u16::try_from(n).unwrap_or(u16::MAX);
-    let (width, height) = pictures.first().map_or((1, 1), |p| (side(p.width), side(p.height)));
-    let mut bytes = Vec::new();
-    let mut encoder = gif::Encoder::new(&mut bytes, width, height, &[])?;
-    encoder.set_repeat(gif::Repeat::Infinite)?;
-    for (k, picture) in pictures.iter().enumerate() {
-        let mut pixels = picture.pixels.clone();
-        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, 10);
-        frame.delay = if k + 1 == pictures.len() { END_CS } else { FRAME_CS };
-        encoder.write_frame(&frame)?;
+/// An animated picture that goes on for ever, in one palette: of a picture, only what differs from the one before.
+struct Strip {
+    encoder: gif::Encoder<Vec<u8>>,
+    size: (u16, u16),
+    palette: Vec<[u8; 3]>,
+    /// The colour of the palette that is nearest to one that was met, bits of both.
+    nearest: BTreeMap<[u8; 3], u8>,
+    /// What is seen, and what waits until it is known how long it is seen.
+    shown: Vec<[u8; 3]>,
+    waits: Option<gif::Frame<'static>>,
+}
+
+/// Number of what is not drawn again, the last one of a palette.
+const SAME: u8 = 255;
+/// Colours that differ by no more than this are one: a hand that moves changes all light a little.
+const ALIKE: u8 = 5;
+
+impl Strip {
+    /// `samples`: pictures that have most of its colours, the first of them of its size.
+    fn new(samples: &[&Picture]) -> Outcome<Self> {
+        let side = |n: u32| u16::try_from(n).unwrap_or(u16::MAX);
+        let size = samples.first().map_or((1, 1), |p| (side(p.width), side(p.height)));
+        let pixels: Vec<u8> = samples.iter().flat_map(|p| &p.pixels).copied().collect();
+        let learnt = color_quant::NeuQuant::new(3, SAME as usize, &pixels).color_map_rgb();
+        let palette: Vec<[u8; 3]> = learnt.as_chunks().0.to_vec();
+        let mut encoder =
+            gif::Encoder::new(Vec::new(), size.0, size.1, &[&learnt[..], &[0; 3]].concat()).map_err(bug)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(bug)?;
+        Ok(Self { encoder, size, palette, nearest: BTreeMap::new(), shown: Vec::new(), waits: None })
     }
-    drop(encoder);
-    Ok(bytes)
+
+    fn number(&mut self, [r, g, b]: [u8; 3]) -> u8 {
+        let Self { nearest, palette, .. } = self;
+        *nearest.entry([r, g, b]).or_insert_with(|| {
+            let away = |c: &[u8; 3]| {
+                let d = |a: u8, b: u8| i32::from(a.abs_diff(b)).pow(2);
+                // The eye sees green best, and blue worst.
+                3 * d(c[0], r) + 6 * d(c[1], g) + d(c[2], b)
+            };
+            let numbered = (0..SAME).zip(palette.iter());
+            numbered.min_by_key(|(_, c)| away(c)).map_or(0, |(k, _)| k)
+        })
+    }
+
+    fn add(&mut self, picture: Picture) -> Outcome {
+        let pixels = picture.pixels.as_chunks::<4>().0;
+        let colours: Vec<[u8; 3]> = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+        let (width, height) = (usize::from(self.size.0), usize::from(self.size.1));
+        let alike = |a: &[u8; 3], b: &[u8; 3]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= ALIKE);
+        let is_same: Vec<bool> = match self.shown.is_empty() {
+            true => vec![false; colours.len()],
+            false => self.shown.iter().zip(&colours).map(|(a, b)| alike(a, b)).collect(),
+        };
+        let differs = |k: &usize| is_same.get(*k) == Some(&false);
+        let columns = |k: usize| k % width.max(1);
+        let changed = || (0..width * height).filter(differs);
+        let Some((top, bottom)) = changed().next().zip(changed().next_back()) else {
+            // Nothing moved: what is seen is seen longer.
+            if let Some(frame) = &mut self.waits {
+                frame.delay += FRAME_CS;
+            }
+            return Ok(());
+        };
+        let (top, bottom) = (top / width, bottom / width);
+        let left = changed().map(columns).min().unwrap_or(0);
+        let right = changed().map(columns).max().unwrap_or(0);
+        let rows = (top..=bottom).flat_map(|y| (left..=right).map(move |x| y * width + x));
+        let buffer: Vec<u8> =
+            rows.map(|k| if differs(&k) { self.number(colours[k]) } else { SAME }).collect();
+        let side = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
+        let frame = gif::Frame {
+            left: side(left),
+            top: side(top),
+            width: side(right + 1 - left),
+            height: side(bottom + 1 - top),
+            buffer: buffer.into(),
+            transparent: Some(SAME),
+            delay: FRAME_CS,
+            dispose: gif::DisposalMethod::Keep,
+            ..gif::Frame::default()
+        };
+        if self.shown.is_empty() {
+            self.shown = colours;
+        } else {
+            let drawn = self.shown.iter_mut().zip(&colours).zip(&is_same).filter(|(_, same)| !**same);
+            drawn.for_each(|((shown, colour), _)| *shown = *colour);
+        }
+        if let Some(before) = self.waits.replace(frame) {
+            self.encoder.write_frame(&before).map_err(bug)?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Outcome<Vec<u8>> {
+        if let Some(mut frame) = self.waits.take() {
+            frame.delay = END_CS;
+            self.encoder.write_frame(&frame).map_err(bug)?;
+        }
+        self.encoder.into_inner().map_err(|e| Failure::Bug(format!("the film cannot be written: {e}")))
+    }
+}
+
+fn bug(e: gif::EncodingError) -> Failure {
+    Failure::Bug(format!("the film cannot be written: {e}"))
 }

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { grove } from './grove.mjs';
-import { headset } from './headset.mjs';
+import { headset, headsetCore } from './headset.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { materialJourneys } from './materials.mjs';
@@ -34,8 +34,9 @@ const all = [
   ...staging,
   ...grove,
   ...network,
+  ...headsetCore,
 ];
-// Two pictures a frame: minutes without a graphics card, so only when they are asked for.
+// Two pictures a frame: minutes without a graphics card, so the others only when they are asked for.
 if (only?.startsWith('headset')) all.push(...headset);
 for (const [name, journey, options] of all) {
   if (only && !name.includes(only)) continue;

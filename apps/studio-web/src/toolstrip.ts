@@ -162,6 +162,7 @@ export function toolOptions(tool: ShapeTool | undefined, hands: Hands): HTMLElem
         chips('shape.silhouette', [['trim', 'shape.trim']], s.silhouette.trim ? 'trim' : '', () => {
           s.silhouette.trim = !s.silhouette.trim;
         }),
+        sides(),
       ];
     case 'grow': {
       const number = (of: keyof Growth, step: number): HTMLElement => {

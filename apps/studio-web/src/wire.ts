@@ -835,6 +835,10 @@ export type HandEdit =
   {
     /** How densely it is filled, 0.1 to 10; default 1. */
     density: number;
+    /** Fills the image of the outline on the other side of a plane, too. */
+    mirror?: 
+      | Mirror
+      | null;
     op: "silhouette";
     /** The outline in the plane, metres, at least three points; the first is not repeated. */
     outline: [number, number][];

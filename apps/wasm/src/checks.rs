@@ -1,10 +1,13 @@
 //! What the checks in Node ask of the core: the same bits as natively. The page has no use for it.
 
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
+use burgeon::glam::DVec3;
+use burgeon::growth::{Envelope, Growing, GuidedSpec, Obstacles};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, FlowerOptions, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed,
-    SketchOptions, TreeOptions, Unit, bloom, make_flower, make_from_sketch, make_leaf, make_tree,
+    Budget, Digest, FlowerOptions, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run,
+    SceneEvaluator, Seed, SketchOptions, TreeOptions, Unit, bloom, make_flower, make_from_sketch, make_leaf,
+    make_tree,
 };
 use wasm_bindgen::prelude::*;
 
@@ -165,4 +168,48 @@ pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsErr
     let made = make_tree(&preset.spec()?, Seed::new(seed), &options, &Run::plain())?;
     let (digest, counts) = (&made.item.digest, &made.item.counts);
     Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
+}
+
+/// The paper's 1,300 markers a bud are more than the usual budget allows.
+fn without_budget() -> Run<'static> {
+    Run { budget: Budget { times: 1000.0, ..Budget::default() }, ..Run::plain() }
+}
+
+/// Guided growth in a ball of 5 m, to be measured round by round.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct GuidedGrowth(Growing);
+
+#[wasm_bindgen]
+impl GuidedGrowth {
+    /// Grows until so many buds live, or for 200 rounds. `finer`: internodes are so many times shorter than usual.
+    ///
+    /// # Errors
+    /// A message for people for numbers out of range.
+    #[wasm_bindgen(constructor)]
+    pub fn new(markers: u32, finer: f64, buds: u32) -> Result<Self, JsError> {
+        let plain = GuidedSpec::of_crown(Envelope::Sphere { centre: DVec3::Y * 5.0, radius_m: 5.0 });
+        let spec = GuidedSpec { markers, internode_m: plain.internode_m / finer, rounds: 200, ..plain };
+        let (none, seed, run) = (Obstacles::none(), Seed::new(1), without_budget());
+        let mut growing = Self(Growing::plant(&[DVec3::ZERO], &none, &spec, seed, &run)?);
+        while growing.living() < buds && growing.0.rounds() < 200 {
+            growing.step()?;
+        }
+        Ok(growing)
+    }
+
+    /// Buds that may grow on.
+    #[wasm_bindgen(getter)]
+    pub fn living(&self) -> u32 {
+        u32::try_from(self.0.living()).unwrap_or(u32::MAX)
+    }
+
+    /// Grows one round more.
+    ///
+    /// # Errors
+    /// A message for people where it costs more than is allowed.
+    pub fn step(&mut self) -> Result<(), JsError> {
+        self.0.step(&without_budget())?;
+        Ok(())
+    }
 }

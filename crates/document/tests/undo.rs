@@ -205,7 +205,14 @@ fn hand_edit() -> BoxedStrategy<HandEdit> {
             HandEdit::Brush { bearer: None, points, radius_m, density, seed: 2, mirror: None }
         }),
         (vec(point(), 0..5), number.clone(), seed).prop_map(|(outline, density, seed)| {
-            HandEdit::Silhouette { plane: ViewPlane::default(), outline, density, trim: true, seed }
+            HandEdit::Silhouette {
+                plane: ViewPlane::default(),
+                outline,
+                density,
+                trim: true,
+                seed,
+                mirror: None,
+            }
         }),
         (points(), number).prop_map(|(points, keep)| {
             HandEdit::LeafDensity { region: LeafRegion::Stroke { points, radius_m: 0.5 }, keep, seed: 3 }

@@ -101,28 +101,24 @@ pub fn turntable(
         .collect()
 }
 
-/// A picture of each model, all by one camera that sees all of them; `spec.view` is no turntable, or is seen from the front.
+/// A picture of `model` by a camera that is there already: pictures of a film, one at a time. `spec.view` is not used.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.
 ///
 /// ```
+/// use render::Camera;
 /// let spec = render::PictureSpec { width: 32, height: 24, ..Default::default() };
-/// let film = render::film(&[mesh::Model::default(), mesh::Model::default()], &spec, &base::Run::plain())?;
-/// assert_eq!(film.len(), 2);
+/// let (model, run) = (mesh::Model::default(), base::Run::plain());
+/// let shot = render::shot(&model, &spec, Camera::framing(&[], &spec), &run)?;
+/// assert_eq!(shot, render::render(&model, &spec, &run)?);
 /// # Ok::<(), base::Cancelled>(())
 /// ```
-pub fn film(models: &[Model], spec: &PictureSpec, run: &Run<'_>) -> Result<Vec<Picture>, Cancelled> {
-    let view = if matches!(spec.view, View::Turntable { .. }) { View::Front } else { spec.view };
-    let spec = PictureSpec { view, ..spec.clone() }.clamped();
-    let scenes: Vec<Scene> = models.iter().map(Scene::new).collect();
-    let points: Vec<_> = scenes.iter().flat_map(Scene::points).collect();
-    let camera = Camera::framing(&points, &spec);
-    let shot = |scene: &Scene| {
-        let sky = Sky::new(scene, &spec, run)?;
-        shade::frame(scene, &sky, &spec, camera, run)
-    };
-    scenes.iter().map(shot).collect()
+pub fn shot(model: &Model, spec: &PictureSpec, camera: Camera, run: &Run<'_>) -> Result<Picture, Cancelled> {
+    run.cancel.check()?;
+    let (spec, scene) = (spec.clamped(), Scene::new(model));
+    let sky = Sky::new(&scene, &spec, run)?;
+    shade::frame(&scene, &sky, &spec, camera, run)
 }
 
 // The layout whose cells are nearest to 4:5 upright, which suits plants.

@@ -172,7 +172,8 @@ fn one(
     }
     let old = draft.branches.len();
     let mut changed = one_side(draft, edit, kept, bench)?;
-    if let Some(mirror) = edit.mirror() {
+    // An outline and its image are filled at once.
+    if let Some(mirror) = edit.mirror().filter(|_| !matches!(edit, HandEdit::Silhouette { .. })) {
         twin::complete(draft, mirror, old, &mut changed, bench)?;
     }
     Ok(changed)
@@ -204,8 +205,8 @@ fn one_side(
             let wish = grow::Wish { from, towards: *towards, rounds: *rounds, changes };
             grow::grow(draft, &wish, Seed::new(*seed), kept, bench)
         }
-        HandEdit::Silhouette { plane, outline, density, trim, seed } => {
-            let wanted = fill::Outline { plane, outline, density: *density, trim: *trim };
+        HandEdit::Silhouette { plane, outline, density, trim, seed, mirror } => {
+            let wanted = fill::Outline { plane, outline, density: *density, trim: *trim, mirror: *mirror };
             fill::silhouette(draft, &wanted, Seed::new(*seed), bench)
         }
         HandEdit::LeafDensity { region, keep, seed } => {

@@ -145,6 +145,9 @@ pub enum HandEdit {
         /// Another number, other branches.
         #[serde(default)]
         seed: u64,
+        /// Fills the image of the outline on the other side of a plane, too. Default none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mirror: Option<Mirror>,
     },
     /// Takes leaves away, or adds some.
     LeafDensity {
@@ -203,9 +206,10 @@ impl HandEdit {
     /// The plane on whose other side it is made, too.
     pub(crate) const fn mirror(&self) -> Option<Mirror> {
         match self {
-            Self::SketchBranch { mirror, .. } | Self::Brush { mirror, .. } | Self::Grow { mirror, .. } => {
-                *mirror
-            }
+            Self::SketchBranch { mirror, .. }
+            | Self::Brush { mirror, .. }
+            | Self::Grow { mirror, .. }
+            | Self::Silhouette { mirror, .. } => *mirror,
             _ => None,
         }
     }
@@ -468,6 +472,11 @@ impl Mirror {
         let (_, line) = long.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         let point = *line.first().filter(|p| p.is_finite())?;
         Some(Self { point, normal })
+    }
+
+    /// The point of space that is seen in it where this one stands before it.
+    pub(crate) fn image(through: DVec3, normal: DVec3, p: DVec3) -> DVec3 {
+        p - normal * (2.0 * (p - through).dot(normal))
     }
 
     /// A point of it, and the unit vector across it.

@@ -6,7 +6,7 @@ use growth::{ColonizeSpec, JointId, colonize_from};
 
 use crate::bench::{Bench, Stop, unread};
 use crate::draft::{At, Draft};
-use crate::edit::ViewPlane;
+use crate::edit::{Mirror, ViewPlane};
 use crate::graft::{Hosts, graft_all};
 use crate::habit::Habit;
 use crate::key::AxisKey;
@@ -25,6 +25,7 @@ pub(crate) struct Outline<'a> {
     pub(crate) outline: &'a [DVec2],
     pub(crate) density: f64,
     pub(crate) trim: bool,
+    pub(crate) mirror: Option<Mirror>,
 }
 
 /// Most markers of an edit.
@@ -142,7 +143,7 @@ pub(crate) fn silhouette(
     if !(0.1..=10.0).contains(&wanted.density) {
         return Err(Why::BadNumber { field: "density" }.into());
     }
-    let mask = Mask::new(wanted.plane, wanted.outline)?;
+    let mask = Mask::new(wanted.plane, wanted.outline, wanted.mirror)?;
     let habit = bench.habit(draft);
     let (removed, pipes) = if wanted.trim { trim(draft, &mask, &habit) } else { (0, Pipes::default()) };
     let hosts = Hosts::of(draft, |_| true);
@@ -162,19 +163,24 @@ pub(crate) fn silhouette(
     let natural = mask.volume() / base::ops::powf(1.2 * habit.internode_m, 3.0);
     let per_pixel = (natural / mask.pixels() as f64).clamp(1.0, 12.0) * wanted.density;
     let most = MOST_MARKERS as f64 / mask.pixels() as f64;
-    let markers = mask.markers(per_pixel.min(most), depth, own);
+    let mut markers = mask.markers(per_pixel.min(most), depth, own);
     let volume = mask.volume();
     let spacing = base::ops::cbrt(volume / markers.len().max(1) as f64).max(1e-9);
     let grid = geom::KdTree::new(&hosts.skeleton.position);
-    let gap = markers
-        .iter()
-        .filter_map(|m| {
+    let gap = |markers: &[DVec3]| {
+        let away = |m: &DVec3| {
             Some(grid.nearest(*m, f64::INFINITY).map(|i| hosts.skeleton.position[i])?.distance(*m))
-        })
-        .fold(f64::INFINITY, f64::min);
-    if gap.is_nan() || gap > 0.5 * habit.size_m.max(mask.pixel * 48.0) {
-        return Err(Why::NothingGrew.into());
-    }
+        };
+        let least = markers.iter().filter_map(away).fold(f64::INFINITY, f64::min);
+        // Wood must be there that reaches them.
+        (least <= 0.5 * habit.size_m.max(mask.pixel * 48.0)).then_some(least)
+    };
+    let images = mask.images(&markers, depth);
+    let (gap, alone) = match (gap(&markers), gap(&images)) {
+        (Some(gap), Some(other)) => (gap.max(other), false),
+        (gap, other) => (gap.or(other).ok_or(Why::NothingGrew)?, !images.is_empty()),
+    };
+    markers.extend(images);
     let spec = ColonizeSpec {
         attraction_m: (8.0 * spacing).max(1.05 * gap + spacing),
         kill_m: 1.25 * spacing,
@@ -194,7 +200,8 @@ pub(crate) fn silhouette(
     if made.is_empty() && removed + dropped == 0 {
         return Err(Why::NothingGrew.into());
     }
-    Ok(Changed { removed, added: made.len(), ..Changed::default() })
+    let alone = if alone { made.len() } else { 0 };
+    Ok(Changed { removed, added: made.len(), alone, ..Changed::default() })
 }
 
 // How far a bend may leave the outline and still be part of the crown, in pixels of the mask: a twentieth of it.

@@ -4,7 +4,7 @@ use base::ops;
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
 
-use crate::edit::ViewPlane;
+use crate::edit::{Mirror, ViewPlane};
 use crate::outcome::Why;
 
 /// The longer side of the mask, pixels. R of the paper is in pixels: 10 of 48 give a crown about 0.4 as deep as broad.
@@ -27,11 +27,14 @@ pub(crate) struct Mask {
     columns: usize,
     rows: usize,
     inside: Vec<bool>,
+    /// A point of a plane of symmetry, and the unit vector across it: what is said of a point is so of its image.
+    mirror: Option<(DVec3, DVec3)>,
 }
 
 impl Mask {
-    pub(crate) fn new(plane: &ViewPlane, outline: &[DVec2]) -> Result<Self, Why> {
+    pub(crate) fn new(plane: &ViewPlane, outline: &[DVec2], mirror: Option<Mirror>) -> Result<Self, Why> {
         let axes = plane.axes()?;
+        let mirror = mirror.map(|m| m.axes()).transpose()?;
         if !outline.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e6) {
             return Err(Why::BadNumber { field: "outline" });
         }
@@ -64,7 +67,12 @@ impl Mask {
             columns,
             rows,
             inside,
+            mirror,
         })
+    }
+
+    fn image(&self, p: DVec3) -> Option<DVec3> {
+        self.mirror.map(|(through, normal)| Mirror::image(through, normal, p))
     }
 
     /// Where a point appears in the plane.
@@ -74,17 +82,30 @@ impl Mask {
     }
 
     /// Whether a point lies behind or before the outline's inside.
-    pub(crate) fn covers(&self, p: DVec3) -> bool {
+    fn is_behind(&self, p: DVec3) -> bool {
         geom::contains(&self.outline, self.seen(p))
     }
 
-    /// Whether a point is seen inside the outline or at most so far outside.
+    /// Whether a point, or its image, lies behind or before the outline's inside.
+    pub(crate) fn covers(&self, p: DVec3) -> bool {
+        self.is_behind(p) || self.image(p).is_some_and(|q| self.is_behind(q))
+    }
+
+    /// Whether a point, or its image, is seen inside the outline or at most so far outside.
     pub(crate) fn near(&self, p: DVec3, slack: f64) -> bool {
-        if self.covers(p) {
-            return true;
-        }
-        let seen = self.seen(p);
-        geom::closest_on_polyline(&self.closed, seen).is_some_and(|c| c.point.distance(seen) <= slack)
+        let beside = |p: DVec3| {
+            let seen = self.seen(p);
+            geom::closest_on_polyline(&self.closed, seen).is_some_and(|c| c.point.distance(seen) <= slack)
+        };
+        self.covers(p) || beside(p) || self.image(p).is_some_and(beside)
+    }
+
+    /// What is seen of markers in the plane of symmetry, but for those that stand in the room of the markers themselves;
+    /// none without one. `depth`: as for [`markers`](Self::markers).
+    pub(crate) fn images(&self, markers: &[DVec3], depth: f64) -> Vec<DVec3> {
+        let deep = RADIUS_PX * self.pixel;
+        let own = |p: &DVec3| self.is_behind(*p) && (self.before(*p) - depth).abs() <= deep;
+        markers.iter().filter_map(|m| self.image(*m)).filter(|p| !own(p)).collect()
     }
 
     /// A marker for every masked pixel, `density` of them in the mean, each uniform in a ball around the pixel's middle
@@ -154,9 +175,14 @@ impl Mask {
         f64::from(n)
     }
 
-    /// Distance of a point before the plane.
-    pub(crate) fn depth_of(&self, p: DVec3) -> f64 {
+    fn before(&self, p: DVec3) -> f64 {
         (p - self.origin).dot(self.axes[2])
+    }
+
+    /// Distance of a point before the plane; of its image, where that alone is seen inside the outline.
+    pub(crate) fn depth_of(&self, p: DVec3) -> f64 {
+        let other = self.image(p).filter(|q| !self.is_behind(p) && self.is_behind(*q));
+        self.before(other.unwrap_or(p))
     }
 }
 
@@ -170,7 +196,7 @@ mod tests {
 
     #[test]
     fn markers_follow_the_logistic_radii_of_the_paper() {
-        let mask = Mask::new(&ViewPlane::default(), &square()).expect("sound");
+        let mask = Mask::new(&ViewPlane::default(), &square(), None).expect("sound");
         assert!((mask.columns, mask.rows) == (48, 48) && (mask.pixel - 0.1).abs() < 1e-12);
         assert!(
             (mask.outside_around(20, 20), mask.outside_around(20, 0), mask.outside_around(0, 0))
@@ -191,11 +217,11 @@ mod tests {
     #[test]
     fn outlines_without_area_say_so() {
         let plane = ViewPlane::default();
-        let none = |o: &[DVec2]| Mask::new(&plane, o).err();
+        let none = |o: &[DVec2]| Mask::new(&plane, o, None).err();
         assert_eq!(none(&[DVec2::ZERO, DVec2::X]), Some(Why::TooSmall { what: "outline" }));
         assert_eq!(none(&[DVec2::ZERO, DVec2::X, DVec2::X * 2.0]), Some(Why::TooSmall { what: "outline" }));
         assert_eq!(none(&[DVec2::NAN, DVec2::X, DVec2::Y]), Some(Why::BadNumber { field: "outline" }));
         let flat = ViewPlane { right: DVec3::Y, ..plane };
-        assert_eq!(Mask::new(&flat, &square()).err(), Some(Why::BadNumber { field: "plane" }));
+        assert_eq!(Mask::new(&flat, &square(), None).err(), Some(Why::BadNumber { field: "plane" }));
     }
 }

@@ -629,7 +629,7 @@ impl Tool {
                     DVec2::new((*q - plane.origin).dot(plane.right), (*q - plane.origin).dot(plane.up))
                 };
                 let outline = points.iter().map(flat).collect();
-                HandEdit::Silhouette { plane, outline, density, trim, seed }
+                HandEdit::Silhouette { plane, outline, density, trim, seed, mirror: self.mirror }
             }
             ToolKind::Leaves { keep, .. } => {
                 let radius_m = s.radius_m.iter().copied().fold(0.0, f64::max);

@@ -73,7 +73,7 @@ pub(crate) fn complete(
 ) -> Result<(), Stop> {
     let (through, normal) = mirror.axes()?;
     let habit = bench.habit(draft);
-    let image = |p: DVec3| p - normal * (2.0 * (p - through).dot(normal));
+    let image = |p: DVec3| Mirror::image(through, normal, p);
     let off = |p: &DVec3| (*p - through).dot(normal).abs();
     let end = draft.branches.len();
     let is_new = |b: usize| (old..end).contains(&b);

@@ -159,12 +159,13 @@ fn edit() -> impl Strategy<Value = HandEdit> {
             seed: 1,
             mirror
         }),
-        (outline, any::<bool>()).prop_map(|(outline, trim)| HandEdit::Silhouette {
+        (outline, any::<bool>(), mirror()).prop_map(|(outline, trim, mirror)| HandEdit::Silhouette {
             plane: ViewPlane::default(),
             outline,
             density: 0.5,
             trim,
-            seed: 1
+            seed: 1,
+            mirror
         }),
         (region, number).prop_map(|(region, keep)| HandEdit::LeafDensity { region, keep, seed: 1 }),
     ]
@@ -346,7 +347,7 @@ fn a_branch_that_leaves_a_silhouette_and_comes_back_is_cut_where_it_leaves() {
     plant.nodes.radius_m = plant.nodes.axis.iter().map(|a| if *a == trunk { 0.1 } else { 0.03 }).collect();
     let outline = [(-2.0, 2.0), (2.0, 2.0), (2.0, 6.5), (-2.0, 6.5)].map(DVec2::from).to_vec();
     let plane = ViewPlane::default();
-    let fill = HandEdit::Silhouette { plane, outline, density: 1.0, trim: true, seed: 3 };
+    let fill = HandEdit::Silhouette { plane, outline, density: 1.0, trim: true, seed: 3, mirror: None };
     let filled = done(&plant, &[fill]);
     assert!(filled.outcomes[0].is_done(), "{}", filled.outcomes[0]);
     let nodes = &filled.plant.nodes.position;
@@ -367,6 +368,7 @@ fn a_silhouette_is_filled_and_what_leaves_it_is_cut() {
             density: 1.0,
             trim: true,
             seed: 3,
+            mirror: None,
         };
         let filled = done(&plant, &[fill]);
         assert!(filled.outcomes[0].is_done(), "{kind}: {}", filled.outcomes[0]);
@@ -457,6 +459,7 @@ fn what_is_filled_or_brushed_leaves_the_trunk_as_thick_as_it_was() {
                 density: 3.0,
                 trim,
                 seed: 1,
+                mirror: None,
             };
             let filled = done(&plant, &[fill]);
             let Outcome::Done(changed) = filled.outcomes[0] else { panic!("{}", filled.outcomes[0]) };
@@ -667,6 +670,48 @@ fn what_is_made_on_one_side_of_a_mirror_is_made_on_the_other() {
         let one = done(&plant, &[plain]).plant;
         assert_eq!(2 * (one.axes.len() - plant.axes.len()), a.plant.axes.len() - plant.axes.len(), "{word}");
         assert!(one.nodes.position.iter().all(|p| nodes.contains(p)), "{word}");
+    }
+}
+
+#[test]
+fn an_outline_and_its_image_are_filled_at_once() {
+    let right: Vec<DVec2> = [(0.6, 2.0), (2.4, 2.4), (2.2, 4.6), (0.6, 5.4)].map(DVec2::from).to_vec();
+    let whole: Vec<DVec2> = [(-2.0, 2.0), (2.0, 2.0), (2.0, 5.5), (-2.0, 5.5)].map(DVec2::from).to_vec();
+    let mirror = Some(Mirror { point: DVec3::ZERO, normal: DVec3::X });
+    for kind in [0, 3, 4] {
+        let plant = plant_of(kind, 1);
+        let fill = |outline: &[DVec2], trim, mirror| {
+            let (plane, outline) = (ViewPlane::default(), outline.to_vec());
+            let edit = HandEdit::Silhouette { plane, outline, density: 1.0, trim, seed: 3, mirror };
+            let filled = done(&plant, &[edit]);
+            let Outcome::Done(changed) = filled.outcomes[0] else { panic!("{kind}: {}", filled.outcomes[0]) };
+            (filled.plant, changed)
+        };
+        let inside = |p: &Plant, outline: &[DVec2], side: f64| {
+            let seen = p.nodes.position.iter().map(|q| DVec2::new(q.x * side, q.y));
+            seen.filter(|q| geom::contains(outline, *q)).count()
+        };
+        let (one, _) = fill(&right, false, None);
+        let (both, told) = fill(&right, false, mirror);
+        let new = |p, side| inside(p, &right, side).saturating_sub(inside(&plant, &right, side));
+        assert!(new(&both, -1.0) > 30, "{kind}: {} on the other side", new(&both, -1.0));
+        let sides = [inside(&both, &right, 1.0), inside(&both, &right, -1.0)];
+        assert!(
+            2 * sides[1] > sides[0] && 2 * sides[0] > sides[1],
+            "{kind}: as full as the first: {sides:?}"
+        );
+        assert!(new(&one, -1.0) < 10 && told.alone == 0, "{kind}: {told:?}");
+        // What is cut is what neither shows; a stem beside both stays.
+        let (cut, _) = fill(&right, true, mirror);
+        let borne = cut.nodes.position.iter().zip(&cut.nodes.axis);
+        let borne = borne.filter(|(_, a)| cut.axis(**a).bearer.is_some()).map(|(q, _)| q);
+        let crown: Vec<_> = borne.filter(|q| q.y > 2.3 && q.x.abs() > 0.6).collect();
+        let out = crown.iter().find(|q| q.x.abs() > 2.9 || q.y > 5.9);
+        assert_eq!(out, None, "{kind}: nothing stands out");
+        assert!(crown.iter().any(|q| q.x > 1.2) && crown.iter().any(|q| q.x < -1.2), "{kind}: two halves");
+        // An outline that is its own image is filled once.
+        let (once, twice) = (fill(&whole, true, None).1, fill(&whole, true, mirror).1);
+        assert!(twice.added < once.added * 3 / 2 + 10, "{kind}: {} and {}", twice.added, once.added);
     }
 }
 

@@ -521,6 +521,15 @@ export class PlantView {
     this.chosen?.place.add(thing);
   }
 
+  /** Has the card translate now what draws the stage, and `things` in it, straight to a headset: it takes its time. */
+  async readyToImmerse(things: readonly THREE.Object3D[]): Promise<void> {
+    if (this.immersing) return;
+    const { renderer, stage } = this;
+    const { far } = this.rig;
+    await renderer.compileAsync(stage.scene, far);
+    for (const thing of things) await renderer.compileAsync(thing, far, stage.scene);
+  }
+
   /**
    * Gives its pictures to a headset, until its session ends: of the same scene, from `rig`. `through`: the room is seen
    * behind the plants.

@@ -40,6 +40,8 @@ const REPORT_MS = 100;
 const EYES_M = 1.5;
 /** A hand that is not seen for so long, ms, has let go. */
 const LOST_MS = 1000;
+/** After so long without anything new the page makes ready to go in, ms. */
+const READY_MS = 400;
 /** What the stick turns while something grows: upwards, sideways. A click on it takes the next pair. */
 const TURNS = [
   ['vigour', 'angle_deg'],
@@ -82,8 +84,9 @@ export class Headset {
   private turned = false;
   private drawn = 0;
   private frames = 0;
-  /** From the wish to go in until the first picture was drawn. */
-  private firstMs = 0;
+  private readying = 0;
+  /** From the wish to go in until the session was there, the scene was given to it, and the first picture was drawn. */
+  private readonly entryMs = { session: 0, ready: 0, first: 0 };
   private reportAt = 0;
   /** The pair of numbers that the stick turns. */
   private pair = 0;
@@ -145,6 +148,7 @@ export class Headset {
     this.dark.renderOrder = 20;
     this.dark.visible = this.ring.visible = false;
     this.sheet.matrixAutoUpdate = false;
+    this.makeReady();
     (this.sheet.material as THREE.Material).transparent = true;
     (this.sheet.material as THREE.Material).opacity = 0.45;
   }
@@ -161,6 +165,7 @@ export class Headset {
     const session = await xr.requestSession(mode, {
       optionalFeatures: ['local-floor', 'hand-tracking'],
     });
+    this.entryMs.session = Math.round(performance.now() - asked);
     this.session = session;
     session.addEventListener('end', () => this.left());
     session.addEventListener('inputsourceschange', (e) => {
@@ -198,11 +203,12 @@ export class Headset {
         things: [this.trace, this.lit, this.ring],
         frame: (frame, space) => {
           // Of the first picture: all of this is done before the next is begun.
-          if (this.frames === 1) this.firstMs = performance.now() - asked;
+          if (this.frames === 1) this.entryMs.first = Math.round(performance.now() - asked);
           this.frame(frame, space);
         },
       },
     );
+    this.entryMs.ready = Math.round(performance.now() - asked);
     this.events.changed(true);
   }
 
@@ -214,6 +220,17 @@ export class Headset {
   /** The plant that is shaped, its meshes or its edits are others now. */
   renewed(): void {
     if (this.isOn) this.showKeys();
+    else this.makeReady();
+  }
+
+  /** What takes time before the first picture is done while nobody waits for it; once, however much is new. */
+  private makeReady(): void {
+    clearTimeout(this.readying);
+    this.readying = window.setTimeout(() => {
+      if (this.isOn) return;
+      this.showKeys();
+      void this.view.readyToImmerse([this.world.rig, this.trace, this.lit, this.ring, this.sheet]);
+    }, READY_MS);
   }
 
   private left(): void {
@@ -569,7 +586,7 @@ export class Headset {
       read: this.readout.text,
       page: this.board.page,
       hand: tool?.isHand ?? false,
-      first: Math.round(this.firstMs),
+      entry: this.entryMs,
       cost: this.view.cost,
       records: this.recorder.isOn,
     };

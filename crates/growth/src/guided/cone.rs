@@ -1,31 +1,70 @@
 //! Markers: drawn once for the cone of any bud, turned for each, and counted in the cells of a grid.
 //!
 //! `cone -> pool of markers -> (turned) -> cells -> how many of others are where one's own are`
+//!
+//! What is done for each marker runs over columns of numbers of 32 bits, which compilers make run four abreast. Sums are
+//! taken in four lanes in any case: the same bits everywhere.
 
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::GuidedSpec;
 use super::room::{Guide, Room};
 
 /// Markers of the pool, at least: each bud takes some that follow one another, from a place of its own.
 const POOL: usize = 4096;
-/// The cell of a marker that found no room, and its row among the cells that are met.
-const NOWHERE: u64 = u64::MAX;
-const NO_ROW: u32 = u32::MAX;
-/// 2^52: numbers from here to its double are whole.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// The tile of a place that is in none.
+const NO_TILE: u32 = u32::MAX;
+/// 2^23: numbers of 32 bits from here to its double are whole.
+const WHOLE: f32 = 8_388_608.0;
+/// A cone is at most so many cells long.
+const LONGEST: f64 = 1e6;
 /// A tile of the grid is 4 cells long, wide and high: so many bits number those in it.
 const TILE: u32 = 6;
+/// Most tiles of a grid whose cells are numbered in 32 bits; and so many more than there are markers, or the grid is
+/// nearly empty.
+const MOST_TILES: u64 = 1 << 25;
+const MORE_TILES: u64 = 65_536;
+/// Which markers of others stand in a cone is asked of so many of its own, or of every second: more tell hardly more.
+const PROBES: usize = 64;
+const OF_EACH: usize = 2;
+/// So many markers are looked at together.
+const TOGETHER: usize = 64;
+
+/// Numbers in three columns.
+type Columns<T> = [T; 3];
 
 /// Markers in the frame of a bud: its heading, side and across. What is asked for at different times lies apart.
 #[derive(Clone, Debug, Default)]
 struct Pool {
-    way: Vec<DVec3>,
-    /// As far along its way as each is.
-    place: Vec<DVec3>,
-    weight: Vec<f64>,
+    way: Columns<Vec<f32>>,
+    /// As far along its way as each is, in cells.
+    place: Columns<Vec<f32>>,
+    weight: Vec<f32>,
+    /// Of all before each: the sum of their weights, and of their ways times these.
+    whole: Vec<f64>,
+    pull: Vec<DVec3>,
+}
+
+impl Pool {
+    fn push(&mut self, way: DVec3, place: DVec3, weight: f64) {
+        let push = |columns: &mut Columns<Vec<f32>>, v: DVec3| {
+            for (column, x) in columns.iter_mut().zip(v.as_vec3().to_array()) {
+                column.push(x);
+            }
+        };
+        push(&mut self.way, way);
+        push(&mut self.place, place);
+        self.weight.push(short(weight));
+        let last = |sums: &[f64]| sums.last().copied().unwrap_or(0.0);
+        self.whole.push(last(&self.whole) + weight);
+        self.pull.push(self.pull.last().copied().unwrap_or(DVec3::ZERO) + way * weight);
+    }
+
+    fn len(&self) -> usize {
+        self.weight.len()
+    }
 }
 
 /// The cone of perception, the same for all buds but for where it stands.
@@ -34,10 +73,12 @@ pub(super) struct Cone {
     pool: Pool,
     /// Of one bud.
     markers: usize,
+    /// Those of them that stand for all where others' are met.
+    probes: usize,
     far: f64,
     /// Side of a cell.
     cell: f64,
-    /// A marker's share of the cone's volume, in cells.
+    /// A probe's share of the cone's volume, in cells.
     share: f64,
 }
 
@@ -55,18 +96,38 @@ pub(super) struct Stand {
 pub(super) struct Grid {
     from: DVec3,
     per_m: f64,
-    tiles: [u64; 3],
+    /// Cells from the middle of a cone to the furthest that it can reach.
+    reach: u32,
+    /// Along x and y.
+    tiles: [u64; 2],
+    /// Of all, where their cells are numbered in 32 bits.
+    all: Option<usize>,
 }
 
-/// The markers of some buds.
+/// The markers of one bud.
+#[derive(Clone, Copy, Debug)]
+struct Of {
+    /// The first of the pool.
+    first: usize,
+    side: DVec3,
+    across: DVec3,
+    /// Where those of the batch end that are its own.
+    end: usize,
+    /// All of them found room, and nothing guides them: nothing is said of each.
+    is_whole: bool,
+}
+
+/// The markers of some buds: those that found room.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batch {
-    /// For each bud: its first sample, side and across.
-    turned: Vec<(usize, DVec3, DVec3)>,
-    /// The cells of the markers, bud by bud, and their rows among those that are met.
-    cells: Vec<u64>,
+    of: Vec<Of>,
+    /// The cells of the markers, bud by bud, and then their rows among those that are met.
     rows: Vec<u32>,
-    /// What strokes add to each marker; none without strokes.
+    /// The cells, where 32 bits do not number them.
+    cells: Vec<u64>,
+    /// Of those that are not whole, which of the pool each is; no others have any.
+    which: Vec<u32>,
+    /// What strokes add to each of these; none without strokes.
     guides: Vec<Guide>,
 }
 
@@ -74,7 +135,7 @@ pub(super) struct Batch {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
     /// Own markers.
-    pub(super) own: usize,
+    pub(super) own: f64,
     /// Of their weights.
     pub(super) whole: f64,
     /// Of the ways to them and along their strokes, each times its weight.
@@ -88,8 +149,8 @@ pub(super) struct Sums {
 /// Markers in a cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Held {
-    count: f64,
-    weight: f64,
+    count: f32,
+    weight: f32,
 }
 
 /// Memory of one round, taken again by the next: a fresh one would cost as much as what is written to it.
@@ -97,7 +158,22 @@ struct Held {
 pub(super) struct Scratch {
     tiles: Tiles,
     held: Vec<Held>,
-    younger: Vec<f64>,
+    own: OwnColumns,
+}
+
+/// A bud's own markers, in columns, where they do not follow one another in the pool.
+#[derive(Clone, Debug, Default)]
+struct OwnColumns {
+    way: Columns<Vec<f32>>,
+    weight: Vec<f32>,
+}
+
+/// A bud's own markers.
+#[derive(Clone, Copy, Debug)]
+struct Own<'a> {
+    rows: &'a [u32],
+    way: Columns<&'a [f32]>,
+    weight: &'a [f32],
 }
 
 impl Cone {
@@ -107,6 +183,14 @@ impl Cone {
         let half = spec.half_angle_deg * (PI / 180.0);
         let (near3, far3, cos_half) = (near * near * near, far * far * far, ops::cos(half));
         let markers = spec.markers as usize;
+        // Strokes weigh each marker.
+        let few = if spec.strokes.is_empty() { PROBES.max(markers.div_ceil(OF_EACH)) } else { markers };
+        let probes = few.min(markers);
+        // As large as a probe's share, so that a probe meets in its cell what is in its way. But a cone must be two
+        // cells wide and deep, or cells would reach out of it.
+        let volume = TAU / 3.0 * (1.0 - cos_half) * (far3 - near3) / probes as f64;
+        let wide = far * if half < 0.5 * PI { ops::sin(half) } else { 1.0 };
+        let cell = ops::cbrt(volume).min(0.5 * wide).min(0.5 * (far - near)).max(far / LONGEST);
         let mut stream = seed.stream(Draw::Attractors);
         let sample = |_| {
             let c = stream.range(cos_half, 1.0);
@@ -114,64 +198,77 @@ impl Cone {
             let distance = ops::cbrt(ops::lerp(near3, far3, stream.uniform()));
             let x = (distance - mean) / sigma;
             let way = DVec3::new(c, s * around.1, s * around.0);
-            (way, way * distance, ops::exp(-0.5 * x * x))
+            (way, way * (distance / cell), ops::exp(-0.5 * x * x))
         };
         let samples: Vec<_> = (0..POOL.max(markers)).map(sample).collect();
-        let mut pool = Pool::default();
+        let mut pool = Pool { whole: vec![0.0], pull: vec![DVec3::ZERO], ..Pool::default() };
         // Its first ones once more at its end: those of a bud follow one another.
         for &(way, place, weight) in samples.iter().chain(&samples[..markers]) {
-            pool.way.push(way);
-            pool.place.push(place);
-            pool.weight.push(weight);
+            pool.push(way, place, weight);
         }
-        // As large as a marker's share, so that a marker meets in its cell those that are in its way. But a cone must
-        // be two cells wide and deep, or cells would reach out of it.
-        let volume = TAU / 3.0 * (1.0 - cos_half) * (far3 - near3) / f64::from(spec.markers);
-        let wide = far * if half < 0.5 * PI { ops::sin(half) } else { 1.0 };
-        let cell = ops::cbrt(volume).min(0.5 * wide).min(0.5 * (far - near));
-        Self { pool, markers, far, cell, share: volume / (cell * cell * cell) }
+        Self { pool, markers, probes, far, cell, share: volume / (cell * cell * cell) }
     }
 
     /// A grid that holds the cones of buds at these places.
     pub(super) fn grid(&self, places: impl Iterator<Item = DVec3>) -> Grid {
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (lo, hi) = places.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
-        let (from, per_m) = (lo - self.far - self.cell, 1.0 / self.cell);
+        let none = (0_u64, DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (buds, lo, hi) = places.fold(none, |(n, lo, hi), p| (n + 1, lo.min(p), hi.max(p)));
+        let most = MOST_TILES.min(buds.saturating_mul(self.probes as u64).saturating_add(MORE_TILES));
+        let per_m = 1.0 / self.cell;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most a little over LONGEST"
+        )]
+        let reach = (self.far * per_m) as u32 + 2;
+        let from = lo - f64::from(reach + 1) * self.cell;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let tiles = ((hi + self.far - from) * per_m).to_array().map(|n| (n as u64 >> 2) + 2);
-        Grid { from, per_m, tiles }
+        let count = |cells: f64| ((cells as u64).saturating_add(u64::from(reach)) >> 2) + 2;
+        let [x, y, z] = ((hi - from) * per_m).to_array().map(count);
+        let all = x.checked_mul(y).and_then(|n| n.checked_mul(z)).filter(|n| *n <= most);
+        Grid { from, per_m, reach, tiles: [x, y], all: all.and_then(|n| usize::try_from(n).ok()) }
     }
 
     /// The markers of buds, but for those that find no room.
     pub(super) fn markers(&self, stands: impl Iterator<Item = Stand>, grid: &Grid, room: &Room) -> Batch {
         let (mut batch, mut near) = (Batch::default(), Vec::new());
+        let buds = stands.size_hint().0;
+        batch.of.reserve(buds);
+        if grid.all.is_some() {
+            batch.rows.reserve(buds * self.probes);
+        }
         for stand in stands {
             let mut stream = stand.key.stream(Draw::Attractors);
-            let first = stream.below(self.pool.way.len() - self.markers);
+            let first = stream.below(self.pool.len() - self.markers);
             let (sin, cos) = ops::sin_cos(TAU * stream.uniform());
             let across = stand.heading.cross(stand.side);
             let (side, across) = (stand.side * cos + across * sin, across * cos - stand.side * sin);
-            batch.turned.push((first, side, across));
-            let places = self.pool.place[first..first + self.markers].iter();
-            if room.is_open(stand.at, self.far) {
-                let of = grid.turned(stand.at, [stand.heading, side, across]);
-                batch.cells.extend(places.map(|&at| of.cell(at)));
-                continue;
-            }
-            let placed = |at: &DVec3| stand.at + stand.heading * at.x + side * at.y + across * at.z;
-            if room.is_plain() {
-                let cell = |p| if room.surrounds(p) { grid.cell(p) } else { NOWHERE };
-                batch.cells.extend(places.map(|at| cell(placed(at))));
-                continue;
-            }
-            batch.cells.extend(places.map(|at| {
-                let p = placed(at);
-                let guide = room.at(p, &mut near);
-                if room.is_guided() {
-                    batch.guides.push(guide.unwrap_or(Guide { weight: 0.0, along: DVec3::ZERO }));
+            let turned = grid.turned(stand.at, [stand.heading, side, across]);
+            let [x, y, z] = self.pool.place.each_ref().map(|c| &c[first..first + self.probes]);
+            let is_whole = room.is_open(stand.at, self.far);
+            if is_whole {
+                batch.add(x, y, z, &turned, grid);
+            } else {
+                let of_cell = [stand.heading, side, across].map(|v| v * self.cell);
+                let first = u32::try_from(first).unwrap_or(0);
+                for (((&x, &y), &z), which) in x.iter().zip(y).zip(z).zip(first..) {
+                    let [h, s, a] = of_cell;
+                    let p = stand.at + h * f64::from(x) + s * f64::from(y) + a * f64::from(z);
+                    let guide = if room.is_plain() {
+                        room.surrounds(p).then_some(None)
+                    } else {
+                        room.at(p, &mut near).map(Some)
+                    };
+                    let Some(guide) = guide else { continue };
+                    batch.which.push(which);
+                    if room.is_guided() {
+                        batch.guides.extend(guide);
+                    }
+                    batch.add(&[x], &[y], &[z], &turned, grid);
                 }
-                if guide.is_some() { grid.cell(p) } else { NOWHERE }
-            }));
+            }
+            let end = batch.rows.len().max(batch.cells.len());
+            batch.of.push(Of { first, side, across, end, is_whole });
         }
         batch
     }
@@ -179,7 +276,8 @@ impl Cone {
     /// What the markers of each bud sum up to, beside those of all others. The earlier a bud, the older.
     ///
     /// Markers of others in a bud's cone are found by its own: these are spread evenly over its room, so that the sum
-    /// over them of what their cells hold estimates that over the cone. Cost: linear in markers.
+    /// over them of what their cells hold estimates that over the cone. Some stand for all, of others' as of its own.
+    /// Cost: linear in these.
     pub(super) fn sums(
         &self,
         grid: &Grid,
@@ -188,140 +286,219 @@ impl Cone {
         scratch: &mut Scratch,
     ) -> Vec<Sums> {
         let mut sums = Vec::with_capacity(headings.len());
-        let Scratch { tiles, held, younger } = scratch;
+        // A probe stands for so many markers.
+        let each = self.markers as f64 / self.probes as f64;
+        let Scratch { tiles, held, own } = scratch;
         tiles.begin(grid, batches);
-        held.clear();
         for batch in &mut *batches {
-            batch.rows.clear();
-            batch.rows.reserve(batch.cells.len());
-            for k in 0..batch.turned.len() {
-                let Batch { cells, rows, .. } = &mut *batch;
-                rows.extend(cells[k * self.markers..(k + 1) * self.markers].iter().map(|&c| tiles.row(c)));
-                held.resize(tiles.cells(), Held::default());
-                sums.push(self.meet(batch, k, held));
-            }
+            tiles.number(batch);
         }
-        younger.clear();
-        younger.resize(tiles.cells(), 0.0);
-        let mut row = headings.len();
-        for batch in batches.iter().rev() {
-            for k in (0..batch.turned.len()).rev() {
-                row -= 1;
-                let (sum, heading) = (&mut sums[row], headings[row]);
-                let (_, side, across) = batch.turned[k];
-                let world = |v: DVec3| heading * v.x + side * v.y + across * v.z;
-                sum.push = world(sum.push + self.meet_younger(batch, k, younger)) * self.share;
-                sum.older *= self.share;
+        held.clear();
+        held.resize(tiles.cells(), Held::default());
+        for batch in &*batches {
+            self.each(batch, own, |of, own, _| {
+                let mut sum = if of.is_whole {
+                    let (from, to) = (of.first, of.first + self.markers);
+                    let pool = &self.pool;
+                    let whole = pool.whole[to] - pool.whole[from];
+                    Sums { whole, pull: pool.pull[to] - pool.pull[from], ..Sums::default() }
+                } else {
+                    let (whole, pull) = (own.whole() * each, own.dot(0, own.weight) * each);
+                    Sums { whole, pull, ..Sums::default() }
+                };
+                sum.own = own.rows.len() as f64 * each;
+                (sum.older, sum.push) = own.meet(held);
+                sums.push(sum);
+            });
+        }
+        let mut next = sums.iter_mut().zip(headings);
+        for batch in &*batches {
+            self.each(batch, own, |of, own, guides| {
+                let Some((sum, &heading)) = next.next() else { return };
+                let world = |v: DVec3| heading * v.x + of.side * v.y + of.across * v.z;
+                sum.push = world(sum.push + own.see(held)) * (self.share * each);
+                sum.older *= self.share * each;
                 sum.pull = world(sum.pull);
-                for (g, _) in self.guides(batch, k) {
-                    sum.pull += g.along * g.weight;
+                for g in guides {
+                    sum.pull += g.along * (g.weight * each);
                 }
-            }
+            });
         }
         sums
     }
 
-    fn guides<'a>(&self, batch: &'a Batch, k: usize) -> impl Iterator<Item = (&'a Guide, u64)> {
-        let of = k * self.markers..(k + 1) * self.markers;
-        let guides = batch.guides.get(of.clone()).unwrap_or_default();
-        guides.iter().zip(batch.cells[of].iter().copied()).filter(|(_, c)| *c != NOWHERE)
-    }
-
-    /// A bud's markers that have room: way in its frame, weight, cell.
-    #[inline]
-    fn placed(&self, batch: &Batch, k: usize, mut f: impl FnMut(DVec3, f64, usize)) {
-        let (of, first) = (k * self.markers..(k + 1) * self.markers, batch.turned[k].0);
-        let own = first..first + self.markers;
-        let weights = match batch.guides.get(of.clone()) {
-            Some(guides) => Weights::Guided(guides),
-            None => Weights::Own(&self.pool.weight[own.clone()]),
-        };
-        let rows = &batch.rows[of];
-        let ways = &self.pool.way[own];
-        match weights {
-            Weights::Guided(guides) => {
-                for ((way, &row), g) in ways.iter().zip(rows).zip(guides).filter(|((_, r), _)| **r != NO_ROW)
-                {
-                    f(*way, g.weight, row as usize);
-                }
+    /// The markers of each bud of a batch, and what strokes add to them.
+    fn each(&self, batch: &Batch, columns: &mut OwnColumns, mut f: impl FnMut(&Of, Own<'_>, &[Guide])) {
+        let (mut from, mut part) = (0, 0);
+        for of in &batch.of {
+            let rows = &batch.rows[from..of.end];
+            from = of.end;
+            if of.is_whole {
+                let window = of.first..of.first + self.probes;
+                let way = self.pool.way.each_ref().map(|c| &c[window.clone()]);
+                f(of, Own { rows, way, weight: &self.pool.weight[window] }, &[]);
+                continue;
             }
-            Weights::Own(weights) => {
-                for ((way, &row), w) in ways.iter().zip(rows).zip(weights).filter(|((_, r), _)| **r != NO_ROW)
-                {
-                    f(*way, *w, row as usize);
-                }
+            let these = part..part + rows.len();
+            part = these.end;
+            let (which, guides) = (&batch.which[these.clone()], batch.guides.get(these).unwrap_or_default());
+            let pick = |to: &mut Vec<f32>, from: &[f32]| {
+                to.clear();
+                to.extend(which.iter().map(|w| from[*w as usize]));
+            };
+            for (to, from) in columns.way.iter_mut().zip(&self.pool.way) {
+                pick(to, from);
             }
+            if guides.is_empty() {
+                pick(&mut columns.weight, &self.pool.weight);
+            } else {
+                columns.weight.clear();
+                columns.weight.extend(guides.iter().map(|g| short(g.weight)));
+            }
+            let way = columns.way.each_ref().map(Vec::as_slice);
+            f(of, Own { rows, way, weight: &columns.weight }, guides);
         }
     }
+}
 
-    /// What a bud's own markers are, and what they meet in their cells, in its frame; then they are held, too.
-    fn meet(&self, batch: &Batch, k: usize, held: &mut [Held]) -> Sums {
-        let mut sums = Sums::default();
-        self.placed(batch, k, |way, weight, cell| {
-            let there = held[cell];
-            sums.own += 1;
-            sums.whole += weight;
-            sums.pull += way * weight;
-            sums.push += way * there.weight;
-            sums.older += there.count;
-        });
-        self.placed(batch, k, |_, weight, cell| {
-            let there = &mut held[cell];
+impl Own<'_> {
+    fn whole(&self) -> f64 {
+        self.weight.iter().map(|w| f64::from(*w)).sum()
+    }
+
+    /// The sum of the ways from a marker on, each times a number.
+    fn dot(&self, from: usize, times: &[f32]) -> DVec3 {
+        let sum = self.way.map(|way| lanes(&way[from..from + times.len()], times));
+        Vec3::from_array(sum).as_dvec3()
+    }
+
+    /// How many of older buds its markers meet in their cells, and how they push it, less what its own would add to what
+    /// [`see`](Self::see) says; then its own are held, too.
+    fn meet(&self, held: &mut [Held]) -> (f64, DVec3) {
+        let (mut older, mut push) = (0.0, DVec3::ZERO);
+        let (mut count, mut weight) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+        for (k, rows) in self.rows.chunks(TOGETHER).enumerate() {
+            for ((row, c), w) in rows.iter().zip(&mut count).zip(&mut weight) {
+                let there = held[*row as usize];
+                (*c, *w) = (there.count, there.weight);
+            }
+            older += f64::from(lane_sum(&count[..rows.len()]));
+            push += self.dot(k * TOGETHER, &weight[..rows.len()]);
+        }
+        for (row, w) in self.rows.iter().zip(self.weight) {
+            let there = &mut held[*row as usize];
             there.count += 1.0;
-            there.weight += weight;
-        });
-        sums
+            there.weight += w;
+        }
+        (older, push - self.see(held))
     }
 
-    /// How what its markers meet pushes a bud, in its frame; then they are held, too.
-    fn meet_younger(&self, batch: &Batch, k: usize, held: &mut [f64]) -> DVec3 {
+    /// How all that its markers meet pushes it.
+    fn see(&self, held: &[Held]) -> DVec3 {
         let mut push = DVec3::ZERO;
-        self.placed(batch, k, |way, _, cell| push += way * held[cell]);
-        self.placed(batch, k, |_, weight, cell| held[cell] += weight);
+        let mut weight = [0.0; TOGETHER];
+        for (k, rows) in self.rows.chunks(TOGETHER).enumerate() {
+            for (row, w) in rows.iter().zip(&mut weight) {
+                *w = held[*row as usize].weight;
+            }
+            push += self.dot(k * TOGETHER, &weight[..rows.len()]);
+        }
         push
     }
 }
 
-/// Of a bud's markers.
-enum Weights<'a> {
-    Own(&'a [f64]),
-    Guided(&'a [Guide]),
+#[expect(clippy::cast_possible_truncation, reason = "the nearest")]
+const fn short(x: f64) -> f32 {
+    x as f32
+}
+
+/// The sum of products, in four lanes.
+fn lanes(a: &[f32], b: &[f32]) -> f32 {
+    let ((a, a_end), (b, b_end)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sum = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        for ((s, a), b) in sum.iter_mut().zip(a).zip(b) {
+            *s += a * b;
+        }
+    }
+    for ((s, a), b) in sum.iter_mut().zip(a_end).zip(b_end) {
+        *s += a * b;
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
+
+fn lane_sum(a: &[f32]) -> f32 {
+    let (a, end) = a.as_chunks::<4>();
+    let mut sum = [0.0; 4];
+    for a in a {
+        for (s, a) in sum.iter_mut().zip(a) {
+            *s += a;
+        }
+    }
+    for (s, a) in sum.iter_mut().zip(end) {
+        *s += a;
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
 }
 
 /// A bud's frame in a grid, in cells.
-struct Turned<'a> {
-    grid: &'a Grid,
-    at: DVec3,
-    frame: [DVec3; 3],
+struct Turned {
+    /// The cell that the numbers below count from.
+    cell: [u64; 3],
+    /// The bud, half a cell less.
+    at: [f32; 3],
+    /// For each of x, y and z what a cell along heading, side and across adds.
+    frame: [[f32; 3]; 3],
 }
 
-impl Turned<'_> {
-    fn cell(&self, p: DVec3) -> u64 {
-        let [heading, side, across] = self.frame;
-        self.grid.at(self.at + heading * p.x + side * p.y + across * p.z)
+impl Batch {
+    /// Markers at places in a bud's frame, in cells.
+    #[inline]
+    fn add(&mut self, x: &[f32], y: &[f32], z: &[f32], turned: &Turned, grid: &Grid) {
+        let [tx, ty, tz] = turned.frame;
+        let [ax, ay, az] = turned.at;
+        // The nearest whole numbers, as the last bits of a number that has no room for others: far faster than a cast.
+        let whole = |x: f32| (x + WHOLE).to_bits() & 0x7f_ffff;
+        let local = |(x, y, z): (f32, f32, f32)| {
+            let along = |at: f32, t: [f32; 3]| whole(at + x * t[0] + y * t[1] + z * t[2]);
+            [along(ax, tx), along(ay, ty), along(az, tz)]
+        };
+        let places = x.iter().zip(y).zip(z).map(|((x, y), z)| local((*x, *y, *z)));
+        if grid.all.is_none() {
+            let [nx, ny] = grid.tiles;
+            self.cells.extend(places.map(|n| {
+                let [x, y, z] = [0, 1, 2].map(|i| turned.cell[i].wrapping_add(u64::from(n[i])));
+                let inner = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
+                let tile =
+                    (z >> 2).wrapping_mul(ny).wrapping_add(y >> 2).wrapping_mul(nx).wrapping_add(x >> 2);
+                tile << TILE | inner
+            }));
+            return;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a grid of few tiles")]
+        let ([cx, cy, cz], [nx, ny]) = (turned.cell.map(|n| n as u32), grid.tiles.map(|n| n as u32));
+        self.rows.extend(places.map(|[x, y, z]| {
+            let (x, y, z) = (cx.wrapping_add(x), cy.wrapping_add(y), cz.wrapping_add(z));
+            let inner = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
+            let tile = (z >> 2).wrapping_mul(ny).wrapping_add(y >> 2).wrapping_mul(nx).wrapping_add(x >> 2);
+            tile << TILE | inner
+        }));
     }
 }
 
 impl Grid {
-    /// The tile of a place, and the cell in it.
-    fn cell(&self, p: DVec3) -> u64 {
-        self.at((p - self.from) * self.per_m - 0.5)
-    }
-
-    /// The same for many places about a bud, given in its frame.
-    fn turned(&self, at: DVec3, frame: [DVec3; 3]) -> Turned<'_> {
-        Turned { grid: self, at: (at - self.from) * self.per_m - 0.5, frame: frame.map(|v| v * self.per_m) }
-    }
-
-    /// Of half a cell before a place, in cells.
-    fn at(&self, place: DVec3) -> u64 {
-        // The nearest whole numbers, as the last bits of a number that has no room for others: far faster than a cast.
-        let [x, y, z] = (place + WHOLE).to_array().map(|n| n.to_bits() & (NOWHERE >> 12));
-        let [nx, ny, _] = self.tiles;
-        let inner = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
-        let [x, y, z] = [x >> 2, y >> 2, z >> 2];
-        let tile = x.wrapping_add(nx.wrapping_mul(y.wrapping_add(ny.wrapping_mul(z))));
-        (tile << TILE | inner) & (NOWHERE >> 1)
+    fn turned(&self, at: DVec3, frame: [DVec3; 3]) -> Turned {
+        let place = (at - self.from) * self.per_m;
+        let cell = place.floor();
+        let reach = f64::from(self.reach);
+        let [h, s, a] = frame.map(|v| v.as_vec3().to_array());
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let from = (cell - reach).to_array().map(|n| n as u64);
+        Turned {
+            cell: from,
+            at: (place - cell + reach - 0.5).as_vec3().to_array(),
+            frame: [0, 1, 2].map(|i| [h[i], s[i], a[i]]),
+        }
     }
 }
 
@@ -332,43 +509,44 @@ struct Tiles {
     /// Of each tile of the grid, or of each that is met, its number.
     numbers: Vec<u32>,
     /// Of a grid that is nearly empty, as of trees far apart: only its tiles that are met, in order.
-    met: Option<Vec<u64>>,
+    met: Vec<u64>,
     next: u32,
 }
 
 impl Tiles {
     fn begin(&mut self, grid: &Grid, batches: &[Batch]) {
-        let markers: usize = batches.iter().map(|b| b.cells.len()).sum();
-        let all = grid.tiles.iter().try_fold(1_u64, |n, &side| n.checked_mul(side));
-        let all = all.and_then(|n| usize::try_from(n).ok()).filter(|&n| n <= markers + 65_536);
-        self.met = all.is_none().then(|| {
-            let cells = batches.iter().flat_map(|b| &b.cells).filter(|c| **c != NOWHERE);
-            let mut met: Vec<u64> = cells.map(|c| c >> TILE).collect();
-            base::sort_by_key(&mut met, |&tile| tile);
-            met.dedup();
-            met
-        });
+        self.met.clear();
+        self.met.extend(batches.iter().flat_map(|b| &b.cells).map(|c| c >> TILE));
+        base::sort_by_key(&mut self.met, |&tile| tile);
+        self.met.dedup();
         self.next = 0;
         self.numbers.clear();
-        self.numbers.resize(all.unwrap_or_else(|| self.met.as_ref().map_or(0, Vec::len)), NO_ROW);
+        self.numbers.resize(grid.all.unwrap_or(self.met.len()), NO_TILE);
     }
 
-    /// The row of a cell.
-    #[inline]
-    fn row(&mut self, cell: u64) -> u32 {
-        let tile = cell >> TILE;
-        let at = match &self.met {
-            None => tile as usize,
-            Some(met) => met.partition_point(|m| *m < tile),
+    /// Puts rows in the place of the cells of a batch.
+    fn number(&mut self, batch: &mut Batch) {
+        let Self { numbers, met, next } = self;
+        let mut row = |tile: usize, inner: u32| {
+            // A place that is no number is in some tile, too.
+            let tile = if tile < numbers.len() { tile } else { 0 };
+            let number = &mut numbers[tile];
+            if *number == NO_TILE {
+                *number = *next;
+                *next += 1;
+            }
+            *number << TILE | inner
         };
-        // None of a marker that found no room: its tile is beyond all others.
-        let Some(number) = self.numbers.get_mut(at) else { return NO_ROW };
-        if *number == NO_ROW {
-            *number = self.next;
-            self.next += 1;
+        const INNER: u32 = (1 << TILE) - 1;
+        for cell in &mut batch.rows {
+            *cell = row((*cell >> TILE) as usize, *cell & INNER);
         }
-        let inner = (cell & ((1 << TILE) - 1)) as u32;
-        *number << TILE | inner
+        let far = batch.cells.iter().map(|cell| {
+            let tile = met.partition_point(|m| *m < cell >> TILE);
+            #[expect(clippy::cast_possible_truncation, reason = "6 bits")]
+            row(tile, (cell & u64::from(INNER)) as u32)
+        });
+        batch.rows.extend(far);
     }
 
     /// So many cells lie in tiles that were met.
@@ -388,12 +566,11 @@ mod tests {
         let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
         let near = spec.near * spec.internode_m;
         let placed = |k: usize| {
-            let (_, side, across) = batch.turned[k];
-            let first = batch.turned[k].0;
+            let Of { first, side, across, .. } = batch.of[k];
             (first..first + cone.markers).map(move |s| {
-                let place = cone.pool.place[s];
-                let turned = stands[k].heading * place.x + side * place.y + across * place.z;
-                (stands[k].at + turned, cone.pool.weight[s])
+                let [x, y, z] = cone.pool.place.each_ref().map(|c| f64::from(c[s]) * cone.cell);
+                let turned = stands[k].heading * x + side * y + across * z;
+                (stands[k].at + turned, f64::from(cone.pool.weight[s]))
             })
         };
         let of = |a: usize| {

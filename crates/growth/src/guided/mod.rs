@@ -120,6 +120,27 @@ struct Look {
     dies: bool,
 }
 
+/// Free space that comes down to each joint, and vigour that goes up from it; memory of one round, taken again by the next.
+#[derive(Clone, Debug, Default)]
+struct Flow {
+    /// All that is gathered, and that of the main axis.
+    gathered: Vec<f64>,
+    main: Vec<f64>,
+    /// What reaches the main axis beyond each joint, and what each unit of free space at its side gets.
+    ahead: Vec<f64>,
+    beside: Vec<f64>,
+}
+
+impl Flow {
+    /// Nothing yet, at so many joints.
+    fn begin(&mut self, joints: usize) {
+        for column in [&mut self.gathered, &mut self.main, &mut self.ahead, &mut self.beside] {
+            column.clear();
+            column.resize(joints, 0.0);
+        }
+    }
+}
+
 /// Buds of one job of a parallel map.
 const GROUP: usize = 32;
 
@@ -166,6 +187,7 @@ pub struct Growing {
     /// Those of them that live, in their order.
     living: Vec<u32>,
     scratch: Scratch,
+    flow: Flow,
     room: Room,
     /// As it is asked at first.
     asked: GuidedSpec,
@@ -282,6 +304,7 @@ impl Growing {
             given,
             living: (0_u32..).zip(&buds).map(|(b, _)| b).collect(),
             scratch: Scratch::default(),
+            flow: Flow::default(),
             buds,
             skeleton,
             room,
@@ -389,7 +412,7 @@ impl Growing {
         if change.strokes.is_some() {
             self.room.set_strokes(&spec.strokes, &run.budget)?;
         }
-        if change.markers.is_some() {
+        if change.markers.is_some() || change.strokes.is_some() {
             self.cone = Cone::new(&spec, self.seed);
         }
         (self.spec, self.numbers) = (spec, numbers);
@@ -482,7 +505,9 @@ impl Growing {
         run.cancel.check()?;
         let headings: Vec<DVec3> = awake.iter().map(|&b| self.buds[b as usize].heading).collect();
         let sums = self.cone.sums(&grid, &mut batches, &headings, &mut self.scratch);
-        self.markers_made += sums.iter().map(|s| s.own).sum::<usize>();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "markers of a round")]
+        let made = sums.iter().map(|s| s.own).sum::<f64>() as usize;
+        self.markers_made += made;
         let looks: Vec<Look> = sums.iter().zip(&headings).map(|(s, h)| self.look(s, *h)).collect();
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {
@@ -500,14 +525,14 @@ impl Growing {
 
     /// Direction and free space of a bud.
     fn look(&self, sums: &Sums, heading: DVec3) -> Look {
-        if sums.own == 0 {
+        if sums.own <= 0.0 {
             return Look { dies: true, ..Look::default() };
         }
         let spec = &self.spec;
         let v = sums.pull - sums.push * spec.repulsion + self.numbers.pull * sums.whole;
         // Half of the markers in a wall is half of the room.
-        let room = sums.own as f64 / f64::from(spec.markers);
-        let crowd = sums.older / sums.own as f64;
+        let room = sums.own / f64::from(spec.markers);
+        let crowd = sums.older / sums.own;
         // Guided, markers fill the tube only, however narrow: what counts is whom it is shared with.
         let room = if self.room.is_guided() { room.sqrt() } else { room };
         Look {
@@ -518,9 +543,10 @@ impl Growing {
     }
 
     /// Vigour of the awake buds: `alpha` times the free space of each tree, shared at its forks (Palubicki 2009, 4.2).
-    fn share(&self, awake: &[u32], looks: &[Look]) -> Vec<f64> {
+    fn share(&mut self, awake: &[u32], looks: &[Look]) -> Vec<f64> {
         let n = self.skeleton.len();
-        let (mut gathered, mut main) = (vec![0.0; n], vec![0.0; n]);
+        self.flow.begin(n);
+        let Flow { gathered, main, ahead, beside } = &mut self.flow;
         for (&b, look) in awake.iter().zip(looks).filter(|(_, l)| !l.dies) {
             let bud = &self.buds[b as usize];
             gathered[bud.joint as usize] += look.free;
@@ -536,9 +562,7 @@ impl Growing {
                 }
             }
         }
-        // What reaches the main axis beyond each joint, and what each unit of free space at its side gets.
         let lambda = self.spec.lambda;
-        let (mut ahead, mut beside) = (vec![0.0; n], vec![0.0; n]);
         for j in 0..n {
             let vigour = match self.skeleton.parent[j] {
                 None => self.spec.alpha * gathered[j],
