@@ -1,7 +1,9 @@
-//! Habits that no compiler checks: what dependencies may be, spelling, packages that could be published.
+//! Habits that no compiler checks: what dependencies may be, spelling, numbers without a name, packages that could be
+//! published.
 
 use std::path::PathBuf;
 
+use crate::bare_numbers;
 use crate::shell::{Outcome, cargo, finish, installed, output, prepare, say};
 
 /// A program that checks one of them.
@@ -17,6 +19,7 @@ const TYPOS: Checker = Checker { package: "typos-cli", version: "1.52.0", progra
 
 /// Runs them all.
 pub(crate) fn check() -> Outcome {
+    bare_numbers::check()?;
     if let Some(deny) = DENY.found() {
         say("$ cargo deny check licenses bans sources (deny.toml)");
         finish(prepare(&deny, &["--log-level", "error", "check", "licenses", "bans", "sources"]))?;

@@ -3,9 +3,13 @@
 //! `cargo xtask read-drawings` reads them. Others, with another salt, are among those that `cargo xtask train-kinds` learns
 //! from.
 
+mod food;
 pub(crate) mod hands;
+mod herbs;
 pub(crate) mod kinds;
-mod ways;
+mod pens;
+mod things;
+mod trees;
 
 use std::f64::consts::TAU;
 
@@ -412,15 +416,15 @@ fn beside(r: &mut Stream) -> Shown {
     for k in 0..1 + r.below(3) {
         let side = if k == 1 { -side } else { side };
         let (thing, size, high) = match r.below(5) {
-            0 => (kinds::sun(r), r.range(0.15, 0.3), r.range(0.75, 1.1)),
+            0 => (things::sun(r), r.range(0.15, 0.3), r.range(0.75, 1.1)),
             1 => (
                 vec![ring(r, DVec2::ZERO, DVec2::new(0.5, 0.22), 7, 0.2)],
                 r.range(0.2, 0.35),
                 r.range(0.8, 1.1),
             ),
-            2 => (ways::birds(r), r.range(0.1, 0.25), r.range(0.7, 1.1)),
-            3 => (ways::butterfly(r), r.range(0.1, 0.22), r.range(0.5, 0.9)),
-            _ => (ways::written(r), r.range(0.25, 0.45), r.range(-0.2, -0.1)),
+            2 => (things::birds(r), r.range(0.1, 0.25), r.range(0.7, 1.1)),
+            3 => (things::butterfly(r), r.range(0.1, 0.22), r.range(0.5, 0.9)),
+            _ => (things::written(r), r.range(0.25, 0.45), r.range(-0.2, -0.1)),
         };
         let (a, b) = extent(&thing);
         let scale = size * tall / (b - a).max_element().max(1e-9);

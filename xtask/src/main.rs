@@ -3,6 +3,7 @@
 
 mod ablation;
 mod archive;
+mod bare_numbers;
 mod circles;
 mod contact_sheet;
 mod flowers;
@@ -46,7 +47,8 @@ cargo xtask COMMAND
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   types          writes the schemas of specs and the TypeScript types of what travels between page and core
-  habits         checks licences and versions of dependencies, spelling, and that the crates could be published
+  habits         checks licences and versions of dependencies, spelling, numbers without a name, and that the crates could be
+                 published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)

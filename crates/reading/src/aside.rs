@@ -25,6 +25,13 @@ const PLANT: f64 = 0.3;
 /// Letters are at most this high beside the largest plant, and at least so many.
 const LETTER: f64 = 0.3;
 const LETTERS: usize = 3;
+/// Between two letters at most this share of the height of the higher one is free, and they overlap by at most that.
+const SPACED: f64 = 0.9;
+const OVERLAP: f64 = 0.3;
+/// Letters of one word share at least this much of the height of the lower one, and the lower is at least this high beside the
+/// higher: a small letter beside a capital.
+const IN_LINE: f64 = 0.4;
+const ALIKE: f64 = 0.3;
 
 /// One piece of a drawing.
 pub(crate) struct Piece<'a> {
@@ -102,9 +109,9 @@ fn words(boxes: &[(DVec2, DVec2)], out: &[bool], most: f64) -> Vec<Vec<usize>> {
             let Some(&last) = word.last() else { return false };
             let (a, b) = (boxes[last], boxes[k]);
             let (less, more) = (tall(last).min(tall(k)), tall(last).max(tall(k)));
-            let beside = b.0.x - a.1.x < 0.9 * more && b.0.x - a.1.x > -0.3 * more;
-            let level = (a.0.y.max(b.0.y) - a.1.y.min(b.1.y)) < -0.4 * less;
-            beside && level && less > 0.3 * more
+            let beside = b.0.x - a.1.x < SPACED * more && b.0.x - a.1.x > -OVERLAP * more;
+            let level = (a.0.y.max(b.0.y) - a.1.y.min(b.1.y)) < -IN_LINE * less;
+            beside && level && less > ALIKE * more
         };
         match found.iter_mut().find(follows) {
             Some(word) => word.push(k),

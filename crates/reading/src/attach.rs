@@ -11,11 +11,40 @@ use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
 use crate::near::Near;
 use crate::near::bounds;
+use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{Veins, choose_midrib};
 use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord};
 
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
 const SESSILE: f64 = 0.02;
+/// As [`SESSILE`], as a share of the leaf's size: large leaves leave a larger gap.
+const SESSILE_SHARE: f64 = 0.08;
+/// Lines that are a tuft of grass at least: three are a stem with two branches.
+const FEWEST_BLADES: usize = 4;
+/// The ground under a tuft: its ends are this far apart as a share of its length, and it rises by less than that share of
+/// its width.
+const LEVEL_STRAIGHT: f64 = 0.93;
+const LEVEL_RISE: f64 = 0.15;
+/// A nut at the top of a trunk has a radius of less than so many times the trunk's width there; a flower a larger one.
+const NUT: f64 = 1.2;
+/// A stamen begins within this share of its flower's reach, and is at most so many times as long as that.
+const STAMEN_FOOT: f64 = 0.3;
+const STAMEN_LENGTH: f64 = 1.3;
+/// It is shorter than this share of the longest line: that one is the stem.
+const NO_STEM: f64 = 0.6;
+/// A root lies under the ground on the average by more than the first, and rises over it nowhere by more than the second.
+const UNDER: f64 = 0.005;
+const OVER: f64 = 0.04;
+/// Roots begin this far from the sides of a trunk's foot, which flares.
+const FLARE: f64 = 0.08;
+/// A stem belongs to a flower up to so many times the reach of its petals from its middle.
+const BEYOND: f64 = 1.35;
+/// It ends at the flower rather than passing it, where less than this share of it, or of the reach, is left.
+const AT_END: f64 = 0.25;
+/// Nearer places are one: less than a step of the pen. *Sampled*.
+const STEP: f64 = 0.004;
+/// A flower nearer to an axis than this sits on it: some two steps of the pen. *Sampled*.
+const ON_AXIS: f64 = 0.012;
 /// More lines than this are no tuft of grass that a person drew.
 const MOST_GRASS: usize = 2_000;
 /// Leaves and flowers farther than this from every axis are borne by none.
@@ -31,14 +60,14 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
         .iter()
         .filter_map(|&r| {
             let top = *draft.forest.axes[r].points.last()?;
-            Some((top, 0.06 + draft.forest.half_width(r, f64::INFINITY)))
+            Some((top, WELL_SHORT + draft.forest.half_width(r, f64::INFINITY)))
         })
         .collect();
     let from_top = |line: &Line| {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         let near = |p: DVec2| tops.iter().map(|(t, r)| t.distance(p) - r).fold(f64::INFINITY, f64::min);
         let last = near(ends[1]) < near(ends[0]);
-        (near(ends[usize::from(last)]) < 0.0 && polyline_length(&line.points) > 0.06).then_some(last)
+        (near(ends[usize::from(last)]) < 0.0 && polyline_length(&line.points) > WELL_SHORT).then_some(last)
     };
     let fans: Vec<Option<bool>> = draft.lines.iter().map(from_top).collect();
     if fans.iter().flatten().count() + draft.blades.len() < 2 {
@@ -62,7 +91,6 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
 
 /// Single lines that stand beside one another, with nothing that they bear, are blades of grass.
 pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
-    const FEWEST: usize = 4;
     let bare = draft.blades.is_empty()
         && draft.regions.is_empty()
         && draft.forest.axes.is_empty()
@@ -70,7 +98,7 @@ pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
             use StrokeClass::{Corolla, Crown, Disc, Fruit, Pot, Scribble};
             [Corolla, Crown, Disc, Fruit, Pot, Scribble].contains(c)
         });
-    if !bare || draft.lines.len() < FEWEST || draft.lines.len() > MOST_GRASS {
+    if !bare || draft.lines.len() < FEWEST_BLADES || draft.lines.len() > MOST_GRASS {
         return;
     }
     let mut near = Near::new(0.04);
@@ -84,15 +112,16 @@ pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
     };
     let level = |l: &Line| {
         let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
-        let straight = a.distance(b) > 0.93 * polyline_length(&l.points);
-        straight && (a.y - b.y).abs() < 0.15 * (a.x - b.x).abs()
+        let straight = a.distance(b) > LEVEL_STRAIGHT * polyline_length(&l.points);
+        straight && (a.y - b.y).abs() < LEVEL_RISE * (a.x - b.x).abs()
     };
     let branches = (0..draft.lines.len())
         .filter(|&i| {
             let p = foot(&draft.lines[i]);
-            let own =
-                |j: usize| j != i && foot(&draft.lines[j]).distance(p) > 0.06 && !level(&draft.lines[j]);
-            near.nearest(p, 0.02, own).is_some()
+            let own = |j: usize| {
+                j != i && foot(&draft.lines[j]).distance(p) > WELL_SHORT && !level(&draft.lines[j])
+            };
+            near.nearest(p, SESSILE, own).is_some()
         })
         .count();
     if branches * 3 > draft.lines.len() || draft.lines.iter().all(level) {
@@ -131,8 +160,10 @@ pub(crate) fn part_discs(
                 && draft.bodies.iter().any(|&r| {
                     let axis = &draft.forest.axes[r];
                     let wide = 1.5 * draft.forest.half_width(r, f64::INFINITY);
-                    axis.points.last().is_some_and(|t| t.distance(disc.centre) < disc.radius + wide + 0.03)
-                        && disc.radius < 1.2 * wide
+                    axis.points
+                        .last()
+                        .is_some_and(|t| t.distance(disc.centre) < disc.radius + wide + STOPPED_SHORT)
+                        && disc.radius < NUT * wide
                 });
             if in_crown || on_trunk {
                 nuts.push(*stroke);
@@ -166,10 +197,10 @@ pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots:
             let disc = flowers[f].disc.map_or(0.0, |d| 1.35 * d.radius);
             let (near, far) =
                 (a.distance(centre).min(b.distance(centre)), a.distance(centre).max(b.distance(centre)));
-            near < disc.max(0.3 * reach[f]) && far < reach[f] && length < 1.3 * reach[f]
+            near < disc.max(STAMEN_FOOT * reach[f]) && far < reach[f] && length < STAMEN_LENGTH * reach[f]
         });
         match found {
-            Some((e, _)) if !alone && (length < 0.6 * longest || draft.lines.is_empty()) => {
+            Some((e, _)) if !alone && (length < NO_STEM * longest || draft.lines.is_empty()) => {
                 let last = b.distance(e.point) < a.distance(e.point);
                 flowers[e.owner].stamens.push(oriented(&line.points, last));
                 draft.set_organ(line.source, OrganWord::Stamen);
@@ -196,9 +227,11 @@ pub(crate) fn roots(draft: &mut Draft<'_>) {
         #[expect(clippy::cast_precision_loss, reason = "a mean of a few points")]
         let mean = axis.points.iter().map(|p| p.y).sum::<f64>() / axis.points.len() as f64;
         let top = axis.points.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-        let under_ground = ground_y.is_some_and(|y| mean < y - 0.005 && top < y + 0.04);
+        let under_ground = ground_y.is_some_and(|y| mean < y - UNDER && top < y + OVER);
         let below_foot = feet.iter().any(|(_, p, w)| {
-            top < p.y + 0.03 && mean < p.y - 0.01 && axis.points[0].distance(*p) < 2.0 * w + 0.08
+            top < p.y + STOPPED_SHORT
+                && mean < p.y - SAME_PLACE
+                && axis.points[0].distance(*p) < 2.0 * w + FLARE
         });
         if under_ground || below_foot {
             found.push(row);
@@ -306,23 +339,23 @@ fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>
 fn flower_bearer(draft: &mut Draft<'_>, centre: DVec2, reach: f64) -> Option<Attachment> {
     let (at, gap) = draft
         .forest
-        .nearest(centre, (1.35 * reach).clamp(0.06, 0.5))
+        .nearest(centre, (BEYOND * reach).clamp(WELL_SHORT, 0.5))
         .or_else(|| draft.forest.nearest(centre, FAR))?;
     if draft.forest.axes[at.axis].kind == AxisKind::Root {
         return None;
     }
     let length = draft.forest.length(at.axis);
     let tip = *draft.forest.axes[at.axis].points.last()?;
-    if length - at.at < 0.25 * length.min(reach) + 0.01 && gap < (1.35 * reach).max(0.06) {
+    if length - at.at < AT_END * length.min(reach) + SAME_PLACE && gap < (BEYOND * reach).max(WELL_SHORT) {
         let way = tip.distance(centre);
-        if way > 0.004 {
+        if way > STEP {
             let more: Vec<DVec2> = (1..=6).map(|i| tip.lerp(centre, f64::from(i) / 6.0)).collect();
             let width = draft.forest.half_width(at.axis, f64::INFINITY);
             draft.forest.extend(at.axis, &more, width);
         }
         return Some(Attachment { axis: at.axis, at: draft.forest.length(at.axis) });
     }
-    if gap < 0.012 {
+    if gap < ON_AXIS {
         return Some(at);
     }
     let stalk = stalk(draft, at, centre, AxisKind::Stem)?;
@@ -339,7 +372,7 @@ fn leaf_bearer(draft: &mut Draft<'_>, leaf: &BladeReading, size: f64, soil: &Nea
     if draft.forest.axes[at.axis].kind == AxisKind::Root || on_ground {
         return None;
     }
-    if gap < SESSILE || gap < 0.08 * size {
+    if gap < SESSILE || gap < SESSILE_SHARE * size {
         return Some(at);
     }
     let stalk = stalk(draft, at, leaf.root, AxisKind::Petiole)?;

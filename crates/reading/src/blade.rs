@@ -7,6 +7,7 @@ use geom::{
 use glam::DVec2;
 
 use crate::near::bounds;
+use crate::thresholds::{NO_LENGTH, ROUNDING};
 
 /// Points round an outline that the tip is looked for among.
 const ROUND: usize = 96;
@@ -18,6 +19,23 @@ const POINTED: f64 = 1.0;
 const STALK: f64 = 0.07;
 /// The ends of a closed blade are at most this share of the stroke apart.
 const CLOSED: f64 = 0.035;
+/// The square of a blade's size over its area at most: thinner than 1 in 60 is a line that was drawn there and back.
+const THINNEST: f64 = 120.0;
+/// A midrib drawn in one go with its margin lies in it with more than 4 of 5 of its points.
+const RIB_INSIDE: (usize, usize) = (4, 5);
+/// The ends of a blade seen from its edge meet within this share of its length.
+const EDGE_ON: f64 = 0.1;
+/// A line comes back to where it began within this share of its size.
+const COMES_BACK: f64 = 0.08;
+/// Cutting a stalk off costs less than this share of the gap between the ends, or the gap is a gap.
+const STALK_COST: f64 = 0.8;
+/// A sharp place is the tip if it lies this far out beside the farthest point.
+const SHARP_REACH: f64 = 0.9;
+/// Cross-sections of a blade, and how many at either end are wild because its outline turns there.
+const SECTIONS: usize = 11;
+const WILD: usize = 2;
+/// Each point of a midrib leads on by this share of its length at least.
+const ONWARDS: f64 = 0.02;
 
 /// A blade whose root is not decided yet.
 #[derive(Clone, Debug)]
@@ -50,8 +68,7 @@ impl Sheetlet {
         let (lo, hi) = bounds(&outline)?;
         let size = lo.distance(hi);
         let area = signed_area(&outline);
-        // Thinner than 1 in 60 is a line that was drawn there and back.
-        if area <= size * size / 120.0 {
+        if area <= size * size / THINNEST {
             return None;
         }
         Some(Self {
@@ -79,7 +96,8 @@ impl Sheetlet {
         let from_start = margin.as_ptr() == line.as_ptr();
         let rest = if from_start { &line[margin.len()..] } else { &line[..line.len() - margin.len()] };
         let inside = rest.iter().filter(|p| contains(&blade.outline, **p)).count();
-        (inside * 5 > rest.len() * 4).then(|| Self { rib: Some(rest.to_vec()), ..blade })
+        (RIB_INSIDE.1 * inside > RIB_INSIDE.0 * rest.len())
+            .then(|| Self { rib: Some(rest.to_vec()), ..blade })
     }
 
     /// A lens round a line: a frond or grass blade that was drawn as one stroke of the pen. `None` for a line
@@ -87,7 +105,7 @@ impl Sheetlet {
     pub(crate) fn lens(line: &[DVec2], stroke: usize, half_width: f64) -> Option<Self> {
         let spine = resample(&simplify(line, 0.002), geom::polyline_length(line) / 16.0);
         let n = spine.len();
-        if n < 3 {
+        if n <= 2 {
             return None;
         }
         let side = |i: usize, sign: f64| {
@@ -115,7 +133,7 @@ impl Sheetlet {
         };
         let turn = (0..line.len()).max_by(far)?;
         let long = line[turn].distance(root);
-        if first.distance(last) > 0.1 * long {
+        if first.distance(last) > EDGE_ON * long {
             return None;
         }
         let evenly = |way: &[DVec2]| resample(way, geom::polyline_length(way) / 16.0);
@@ -165,7 +183,7 @@ pub(crate) fn first_round(points: &[DVec2]) -> &[DVec2] {
         range
             .map(|k| (k, points[k].distance(from)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|&(_, d)| d < 0.08 * size)
+            .filter(|&(_, d)| d < COMES_BACK * size)
     };
     let ahead = nearest(points[0], n / 2..n * 5 / 6).map(|(k, _)| &points[..=k]);
     let back = nearest(points[n - 1], n / 6..n / 2).map(|(k, _)| &points[k..]);
@@ -203,7 +221,7 @@ pub(crate) fn split_stalks(points: &[DVec2], near: f64) -> (Vec<DVec2>, Vec<Vec<
         }
     }
     let Some((cost, i, j)) = best else { return whole() };
-    if cost > 0.8 * gap {
+    if cost > STALK_COST * gap {
         return whole();
     }
     let (i, j) = (i * stride, (j * stride).min(points.len() - 1));
@@ -231,7 +249,7 @@ pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
     let step = geom::polyline_length(&closed) / ROUND as f64;
     let even = resample(&closed, step);
     let n = even.len().saturating_sub(1);
-    if n < 8 {
+    if n < SHARPEST {
         return farthest;
     }
     let turn = |i: usize| {
@@ -251,15 +269,15 @@ pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
         .map(|&(_, i)| even[i])
         .max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
         .unwrap_or(farthest);
-    if reach(sharp) > 0.9 * reach(farthest) { sharp } else { farthest }
+    if reach(sharp) > SHARP_REACH * reach(farthest) { sharp } else { farthest }
 }
 
 /// A midrib from the outline alone: through the middles of its cross-sections, root to tip.
 pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
     let mut line = vec![root];
-    let sections = medial_axis_width(outline, root, tip, 11);
-    if sections.len() > 4 {
-        line.extend(sections[2..sections.len() - 2].iter().map(|s| s.0).filter(|c| c.is_finite()));
+    let sections = medial_axis_width(outline, root, tip, SECTIONS);
+    if sections.len() > 2 * WILD {
+        line.extend(sections[WILD..sections.len() - WILD].iter().map(|s| s.0).filter(|c| c.is_finite()));
     }
     line.push(tip);
     let reach = root.distance(tip);
@@ -268,7 +286,7 @@ pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DV
     let mut ahead = f64::NEG_INFINITY;
     line.retain(|p| {
         let s = (*p - root).dot(along);
-        let on = s > ahead + 0.02 * reach && (s < 0.98 * reach || *p == tip);
+        let on = s > ahead + ONWARDS * reach && (s < (1.0 - ONWARDS) * reach || *p == tip);
         if on {
             ahead = s;
         }
@@ -280,11 +298,11 @@ pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DV
 /// A smooth midrib that begins at the root and ends at the tip.
 pub(crate) fn midrib(line: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
     let mut whole = vec![root];
-    whole.extend(line.iter().copied().filter(|p| p.distance(root) > 1e-9 && p.distance(tip) > 1e-9));
+    whole.extend(line.iter().copied().filter(|p| p.distance(root) > ROUNDING && p.distance(tip) > ROUNDING));
     whole.push(tip);
     let length = geom::polyline_length(&whole);
-    if length <= 1e-9 {
-        return vec![root, if tip == root { root + DVec2::new(0.0, 1e-6) } else { tip }];
+    if length <= ROUNDING {
+        return vec![root, if tip == root { root + DVec2::new(0.0, NO_LENGTH) } else { tip }];
     }
     let step = length / 12.0;
     let even = resample(&whole, step);

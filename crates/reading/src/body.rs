@@ -12,6 +12,7 @@ use glam::DVec2;
 
 use crate::near::bounds;
 use crate::rings::Ring;
+use crate::thresholds::ROUNDING;
 
 /// Cells along the longer side of a body's box.
 const CELLS: f64 = 80.0;
@@ -21,6 +22,25 @@ const MOST_LIMBS: usize = 24;
 const LIMB_STEP: f64 = 0.012;
 /// A drawn end lies this far from where its limb begins: lines across a foot sag.
 const SLACK: f64 = 0.015;
+/// A part that stands out by less than so many times the body's half width there, or by less than this share of its box, is
+/// a bump and no limb.
+const BUMP: f64 = 1.3;
+const BUMP_LEAST: f64 = 0.07;
+/// An opening is wider than so many cells: less are the steps of the grid (*geometry*).
+const OPENING_CELLS: f64 = 3.0;
+/// A limb ends in an opening nearer than so many times its half width.
+const ENDS_AT: f64 = 1.5;
+/// One of its ends lies in an opening nearer than this share of its half width.
+const IN_OPENING: f64 = 0.8;
+/// Where a limb's end is so many times as far as its sides are, the sides are what was measured.
+const SIDES_NEARER: f64 = 1.25;
+/// The opening on which a body stands, in widths of the body; a level one may be wider.
+const FOOT_WIDTH: core::ops::Range<f64> = 0.6..2.2;
+/// It lies in the lowest part of the body, and one that was left open above in the highest: shares of its height.
+const FOOT_LOW: f64 = 0.35;
+const TOP_HIGH: f64 = 0.75;
+/// A body without such an opening stands on the lowest part of this share of its height.
+const LOWEST: f64 = 0.05;
 
 /// One limb of a body, base first.
 #[derive(Clone, Debug)]
@@ -65,15 +85,15 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
         let parent = covered[at];
         // A bump of the outline is no limb: one stands out by more than the body's own half width there.
         let bump = !first
-            && (way.cost[far] - way.cost[at] < (1.3 * clearance[at]).max(0.07 * CELLS)
+            && (way.cost[far] - way.cost[at] < (BUMP * clearance[at]).max(BUMP_LEAST * CELLS)
                 || openings.iter().any(|&(a, b)| {
                     let tip = mask.middle(far);
-                    a.distance(tip).min(b.distance(tip)) < 3.0 * mask.cell
+                    a.distance(tip).min(b.distance(tip)) < OPENING_CELLS * mask.cell
                         && limbs[0].wide_at(a.midpoint(b), mask.cell)
                 }));
         let name = if bump { parent.unwrap_or(0) } else { limbs.len() };
         for &c in &path {
-            mask.cover(&mut covered, c, 1.3 * clearance[c] + 1.5, name);
+            mask.cover(&mut covered, c, BUMP * clearance[c] + 1.5, name);
         }
         if !bump {
             path.reverse();
@@ -103,9 +123,9 @@ fn finish(
         .gaps
         .iter()
         .map(|&g| ring.gap(g))
-        .filter(|(a, b)| a.distance(*b) > 3.0 * mask.cell)
+        .filter(|(a, b)| a.distance(*b) > OPENING_CELLS * mask.cell)
         .map(|(a, b)| a.midpoint(b))
-        .filter(|m| m.distance(last) < 1.5 * clear(last).max(2.0 * mask.cell))
+        .filter(|m| m.distance(last) < ENDS_AT * clear(last).max(2.0 * mask.cell))
         .min_by(|a, b| a.distance(last).total_cmp(&b.distance(last)));
     if let Some(middle) = open {
         line.push(middle);
@@ -124,7 +144,7 @@ impl Limb {
     /// One of the limb's ends lies at `opening`.
     fn wide_at(&self, opening: DVec2, cell: f64) -> bool {
         let near = |p: Option<&DVec2>, w: Option<&f64>| {
-            p.zip(w).is_some_and(|(p, w)| p.distance(opening) < 0.8 * w + 3.0 * cell)
+            p.zip(w).is_some_and(|(p, w)| p.distance(opening) < IN_OPENING * w + OPENING_CELLS * cell)
         };
         near(self.points.first(), self.half_width.first()) || near(self.points.last(), self.half_width.last())
     }
@@ -140,13 +160,13 @@ impl Limb {
             return;
         }
         // Until the sides are clearly nearer than the end is: the distance to the end itself grows as fast as the way.
-        if let Some(i) = (0..n).find(|&i| at[i] > 1.25 * self.half_width[i] + SLACK) {
+        if let Some(i) = (0..n).find(|&i| at[i] > SIDES_NEARER * self.half_width[i] + SLACK) {
             let w = self.half_width[i].min(0.5 * total);
             self.half_width[..i].iter_mut().for_each(|h| *h = h.max(w));
         }
         if self.closed_end
             && let Some(i) =
-                (0..n).rev().find(|&i| total - at[i] > 1.25 * self.half_width[i] + SLACK && i + 1 < n)
+                (0..n).rev().find(|&i| total - at[i] > SIDES_NEARER * self.half_width[i] + SLACK && i + 1 < n)
         {
             let radius = self.half_width[i];
             for (width, at) in self.half_width.iter_mut().zip(&at).skip(i + 1) {
@@ -199,7 +219,7 @@ impl Mask {
     fn new(outline: &[DVec2]) -> Option<Self> {
         let (lo, hi) = bounds(outline)?;
         let cell = (hi - lo).max_element() / CELLS;
-        if cell <= 1e-9 || outline.len() < 3 {
+        if cell <= ROUNDING || outline.len() < 3 {
             return None;
         }
         // One empty cell all round.
@@ -257,16 +277,16 @@ impl Mask {
             .map(|&g| ring.gap(g))
             .filter(|(a, b)| {
                 let d = a.distance(*b);
-                d > 0.6 * width && (d < 2.2 * width || (a.y - b.y).abs() < 0.5 * d)
+                d > FOOT_WIDTH.start * width && (d < FOOT_WIDTH.end * width || (a.y - b.y).abs() < 0.5 * d)
             })
             .map(|(a, b)| a.midpoint(b))
-            .filter(|m| m.y < lo.y + 0.35 * (hi.y - lo.y))
+            .filter(|m| m.y < lo.y + FOOT_LOW * (hi.y - lo.y))
             .min_by(|a, b| a.y.total_cmp(&b.y));
         opening.unwrap_or_else(|| {
             let low: Vec<DVec2> = (0..self.inside.len())
                 .filter(|&c| self.inside[c])
                 .map(|c| self.middle(c))
-                .filter(|p| p.y < lo.y + 0.05 * (hi.y - lo.y) + self.cell)
+                .filter(|p| p.y < lo.y + LOWEST * (hi.y - lo.y) + self.cell)
                 .collect();
             let x = low.iter().map(|p| p.x).sum::<f64>() / (low.len() as f64).max(1.0);
             if low.is_empty() { lo.midpoint(hi) } else { DVec2::new(x, lo.y) }
@@ -281,9 +301,9 @@ impl Mask {
             .gaps
             .iter()
             .map(|&g| ring.gap(g))
-            .filter(|(a, b)| a.distance(*b) > 3.0 * self.cell && a.distance(*b) < 0.5 * height)
+            .filter(|(a, b)| a.distance(*b) > OPENING_CELLS * self.cell && a.distance(*b) < 0.5 * height)
             .map(|(a, b)| a.midpoint(b))
-            .filter(|m| m.y > lo.y + 0.75 * height && m.distance(base) > 0.5 * height)
+            .filter(|m| m.y > lo.y + TOP_HIGH * height && m.distance(base) > 0.5 * height)
             .max_by(|a, b| a.y.total_cmp(&b.y))?;
         self.nearest_inside(middle)
     }

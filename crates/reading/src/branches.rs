@@ -11,6 +11,7 @@ use plant::AxisKind;
 
 use crate::body::Limb;
 use crate::near::{Entry, Near};
+use crate::thresholds::{NO_LENGTH, WELL_SHORT};
 use crate::{Attachment, AxisReading};
 
 /// An end this near to a line touches it: a finger's width on a sheet.
@@ -25,6 +26,15 @@ const MOST_CONTACTS: usize = 16;
 const MOST_LED: usize = 3_000;
 /// Stems are joined at most this often (each costs a pass over the axes).
 const MOST_JOINS: usize = 64;
+/// A base farther than this from its bearer is led to it by a piece of its own: less than a step of the pen. *Sampled*.
+const STEP: f64 = 0.004;
+/// What touches the lowest part of a stem, of this share of its length, begins at its foot.
+const FOOT: f64 = 0.04;
+/// A line that goes down by more than this share of its length is a root, or the rest of the stem.
+const DOWN: f64 = 0.3;
+/// What comes nearest to this lowest share of an axis stands beside it; what is as long as this share of it is a stem, too.
+const NEIGHBOUR: f64 = 0.12;
+const AS_LONG: f64 = 0.6;
 
 /// A line that will be an axis.
 #[derive(Clone, Debug)]
@@ -103,7 +113,7 @@ impl Forest {
             && let (Some(foot), Some(&first)) = (point_at(&self.axes[b.axis].points, b.at), points.first())
         {
             let gap = foot.distance(first);
-            if gap > 0.004 {
+            if gap > STEP {
                 points.insert(0, foot);
                 if let Some(&w) = half_width.first() {
                     half_width.insert(0, w);
@@ -115,7 +125,7 @@ impl Forest {
         if half_width.len() != points.len() {
             half_width.clear();
         }
-        if points.len() < 2 || polyline_length(&points) <= 1e-6 {
+        if points.len() < 2 || polyline_length(&points) <= NO_LENGTH {
             return None;
         }
         let row = self.axes.len();
@@ -183,7 +193,7 @@ impl Forest {
 
     /// The hierarchy of `lines` on top of what stands already.
     pub(crate) fn grow(&mut self, mut lines: Vec<Line>, hints: &Hints) {
-        lines.retain(|l| l.points.len() >= 2 && polyline_length(&l.points) > 1e-6);
+        lines.retain(|l| l.points.len() >= 2 && polyline_length(&l.points) > NO_LENGTH);
         let length: Vec<f64> = lines.iter().map(|l| polyline_length(&l.points)).collect();
         let mut order: Vec<usize> = (0..lines.len()).collect();
         base::sort_by(&mut order, |&a, &b| length[b].total_cmp(&length[a]).then(a.cmp(&b)));
@@ -286,11 +296,11 @@ impl Forest {
             return Borne::Axis(None);
         };
         let stands = self.axes[row].bearer.is_none() && self.axes[row].half_width.is_empty();
-        if stands && at.at < touch.max(0.04 * self.length(row)) {
+        if stands && at.at < touch.max(FOOT * self.length(row)) {
             let base = self.axes[row].points[0].y;
             let far = points[points.len() - 1].y;
             let top = points.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-            if far < base - 0.3 * polyline_length(&points) && top < base + touch {
+            if far < base - DOWN * polyline_length(&points) && top < base + touch {
                 return Borne::Below;
             }
             // Several stems from one foot: each stands on the ground.
@@ -363,7 +373,8 @@ impl Forest {
         match found {
             // Neighbours on the ground and lines as long as the bearer are stems of their own.
             Some((_, last, bearer))
-                if bearer.at > 0.12 * self.length(bearer.axis) && length < 0.6 * self.length(bearer.axis) =>
+                if bearer.at > NEIGHBOUR * self.length(bearer.axis)
+                    && length < AS_LONG * self.length(bearer.axis) =>
             {
                 self.push(oriented(&line.points, last), Vec::new(), Some(bearer), line.source)
             }
@@ -454,7 +465,7 @@ fn seed_order(lines: &[Line], length: &[f64], order: &[usize], hints: &Hints, fl
         .map(|(line, l)| {
             let stands = [false, true].into_iter().any(|last| {
                 let p = end(&line.points, last);
-                p.y < floor + 0.06 || hints.soil.nearest(p, TOUCH, |_| true).is_some()
+                p.y < floor + WELL_SHORT || hints.soil.nearest(p, TOUCH, |_| true).is_some()
             });
             if stands { 1.5 * l } else { *l }
         })

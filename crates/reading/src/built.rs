@@ -6,7 +6,25 @@ use ink::StrokeClass;
 use plant::AxisKind;
 
 use crate::near::bounds;
+use crate::thresholds::FEWEST_PETALS;
 use crate::{AxisReading, Kind, OrganWord, Reading, RegionReading};
+/// A crown over less bare trunk than this share of its height is a bush.
+const BARE: f64 = 0.1;
+/// A conifer is at least this high beside its width, and its upper part on the average at most this wide beside its lower one.
+const POINTED_TALL: f64 = 0.9;
+const POINTED_THIN: f64 = 0.45;
+/// Which parts those are, shares of the height.
+const ABOVE: core::ops::Range<f64> = 0.74..0.92;
+const BELOW: core::ops::Range<f64> = 0.08..0.35;
+/// Fronds are rooted nearer to the top of their trunk than this share of its length, and are at least 2 of 3 leaves.
+const AT_TOP: f64 = 0.45;
+const MOST: (usize, usize) = (2, 3);
+/// One leaf has more than this share of the area of all: it is the plant.
+const MAIN_LEAF: f64 = 0.75;
+/// Blades of grass are rooted in this lowest share of the drawing, at least 3 of 4, and there are at least so many.
+const ROOTED: f64 = 0.35;
+const NEARLY_ALL: (usize, usize) = (3, 4);
+const FEWEST_STALKS: usize = 3;
 
 impl Kind {
     /// What the parts of a reading are together: nothing is asked but what will be built. A drawing of several plants
@@ -18,7 +36,7 @@ impl Kind {
     /// assert_eq!(Kind::from_word("tree"), Some(Kind::Tree));
     /// ```
     pub fn of(reading: &Reading) -> Self {
-        let petals = |f: &crate::FlowerReading| f.petals.len() >= 3;
+        let petals = |f: &crate::FlowerReading| f.petals.len() >= FEWEST_PETALS;
         let flowers = reading.flowers.iter().filter(|f| petals(f)).count();
         let petal_area: f64 =
             reading.flowers.iter().flat_map(|f| &f.petals).map(|p| signed_area(&p.outline)).sum();
@@ -76,7 +94,7 @@ fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
         .filter_map(|a| a.points.first())
         .map(|p| p.y)
         .fold(f64::INFINITY, f64::min);
-    if low.y - foot < 0.1 * height {
+    if low.y - foot < BARE * height {
         return Kind::Bush;
     }
     if pointed(&crown.outline) { Kind::Conifer } else { Kind::Tree }
@@ -90,15 +108,20 @@ pub(crate) fn pointed(outline: &[DVec2]) -> bool {
         let row = |i: i32| low.y + (from + (to - from) * f64::from(i) / 5.0) * height;
         (0..6).map(|i| crate::contour::width_at(outline, row(i))).sum::<f64>() / 6.0
     };
-    height > 0.9 * (high.x - low.x) && mean(0.74, 0.92) < 0.45 * mean(0.08, 0.35)
+    height > POINTED_TALL * (high.x - low.x)
+        && mean(ABOVE.start, ABOVE.end) < POINTED_THIN * mean(BELOW.start, BELOW.end)
 }
 
 /// A trunk without a crown: leaves at its top are fronds.
 fn of_body(reading: &Reading, body: &AxisReading) -> Kind {
     let Some((&foot, &top)) = body.points.first().zip(body.points.last()) else { return Kind::None };
-    let high = |l: &&crate::BladeReading| l.root.distance(top) < 0.45 * foot.distance(top);
+    let high = |l: &&crate::BladeReading| l.root.distance(top) < AT_TOP * foot.distance(top);
     let fronds = reading.leaves.iter().filter(high).count();
-    if fronds >= 3 && 3 * fronds >= 2 * reading.leaves.len() { Kind::Palm } else { Kind::Tree }
+    if fronds >= FEWEST_PETALS && MOST.1 * fronds >= MOST.0 * reading.leaves.len() {
+        Kind::Palm
+    } else {
+        Kind::Tree
+    }
 }
 
 /// Leaves and stems only.
@@ -109,7 +132,7 @@ fn of_blades(reading: &Reading, leaf_area: f64) -> Kind {
         (0, 0) => Kind::None,
         (0, _) if reading.woody => Kind::Tree,
         (0, _) => Kind::Stem,
-        (_, n) if largest > 0.75 * leaf_area && n <= 2 => {
+        (_, n) if largest > MAIN_LEAF * leaf_area && n <= 2 => {
             let longest = axes.iter().map(|a| polyline_length(&a.points)).fold(0.0, f64::max);
             let size = reading
                 .leaves
@@ -125,10 +148,14 @@ fn of_blades(reading: &Reading, leaf_area: f64) -> Kind {
             let high =
                 reading.leaves.iter().flat_map(|l| &l.outline).map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
             let rooted =
-                |l: &&crate::BladeReading| l.root.y < low + 0.35 * (high - low) && l.bearer.is_none();
+                |l: &&crate::BladeReading| l.root.y < low + ROOTED * (high - low) && l.bearer.is_none();
             let ground = reading.leaves.iter().filter(rooted).count();
             let stems = reading.strokes.iter().filter(|s| s.organ == OrganWord::Branch).count();
-            if n >= 3 && 4 * ground >= 3 * n && stems <= n { Kind::Grass } else { Kind::Stem }
+            if n >= FEWEST_STALKS && NEARLY_ALL.1 * ground >= NEARLY_ALL.0 * n && stems <= n {
+                Kind::Grass
+            } else {
+                Kind::Stem
+            }
         }
     }
 }

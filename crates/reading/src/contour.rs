@@ -4,17 +4,31 @@ use geom::{convex_hull, signed_area, simple_outline, simplify};
 use glam::DVec2;
 
 use crate::near::bounds;
+/// A hull of at most this area is a line, not a crown.
+const NO_AREA: f64 = 2e-4;
+/// An outline that fills less of its hull is a scribble, whose hull is the crown.
+const FULL: f64 = 0.4;
+/// The trunk goes on up to where the outline is so many times as wide as its middle width.
+const TRUNK_WIDTH: f64 = 1.5;
+/// A trunk is narrower than this share of its crown, and the outline becomes wider by more than that factor within six of the
+/// levels: where it is known to be a tree, and where it is not.
+const NECK_OF_A_TREE: (f64, f64) = (0.6, 1.25);
+const NECK: (f64, f64) = (0.4, 1.7);
+/// A trunk is higher than this share of its width; it and the crown have these shares of the height at least.
+const TRUNK_TALL: f64 = 0.8;
+const TRUNK_SHARE: f64 = 0.12;
+const CROWN_SHARE: f64 = 0.2;
 
 /// The outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
 pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     let hull = convex_hull(points);
     let hull_area = signed_area(&hull);
     // A line, not a crown.
-    if hull_area <= 2e-4 {
+    if hull_area <= NO_AREA {
         return None;
     }
     match simple_outline(&simplify(points, 0.001)) {
-        Some(outline) if signed_area(&outline) > 0.4 * hull_area => Some(outline),
+        Some(outline) if signed_area(&outline) > FULL * hull_area => Some(outline),
         _ => Some(hull),
     }
 }
@@ -34,14 +48,14 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
     base::sort_numbers(&mut below);
     let median = below.get(below.len() / 2).copied()?;
     // The neck ends where the outline first becomes clearly wider than the trunk for good.
-    let top = (0..=first_wide).rev().find(|&k| width[k] < 1.5 * median).map_or(first_wide, |k| k + 1);
+    let top = (0..=first_wide).rev().find(|&k| width[k] < TRUNK_WIDTH * median).map_or(first_wide, |k| k + 1);
     let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-    let (thin, wider) = if known { (0.6, 1.25) } else { (0.4, 1.7) };
+    let (thin, wider) = if known { NECK_OF_A_TREE } else { NECK };
     let jump = width[(top + 3).min(LEVELS - 1)] > wider * width[top.saturating_sub(3)];
     let fits = median < thin * widest
-        && trunk_height > 0.8 * median
-        && trunk_height > 0.12 * height
-        && crown_height > 0.2 * height;
+        && trunk_height > TRUNK_TALL * median
+        && trunk_height > TRUNK_SHARE * height
+        && crown_height > CROWN_SHARE * height;
     if !(fits && jump) {
         return None;
     }

@@ -10,6 +10,14 @@ use crate::near::bounds;
 const DIP: f64 = 0.13;
 /// Most petals that one stroke is cut into.
 const MOST: usize = 400;
+/// Ends of a blade of grass that differ in height by more than this share of it: one is an open end of the stroke.
+const OPEN_END: f64 = 0.3;
+/// A corolla whose ends are nearer than this share of its diagonal is closed.
+const SHUT: f64 = 0.12;
+/// A piece shorter than this share of the reach is a remnant at an open end.
+const REMNANT: f64 = 0.3;
+/// Ends nearer to the root than this share of the reach are at it.
+const AT_ROOT: f64 = 0.02;
 
 /// What the petals of a corolla stand around.
 #[derive(Clone, Debug)]
@@ -41,7 +49,7 @@ impl Core {
             }
             Self::Line(line) => closest_on_polyline(line, middle).map_or(middle, |c| c.point),
             // A blade at the open end of the stroke is rooted where it was begun or ended below.
-            Self::Ground(y) if (a.y - b.y).abs() > 0.3 * (top.y - y) => {
+            Self::Ground(y) if (a.y - b.y).abs() > OPEN_END * (top.y - y) => {
                 if a.y < b.y {
                     a
                 } else {
@@ -88,7 +96,7 @@ pub(crate) fn visits(points: &[DVec2], p: DVec2, near: f64) -> usize {
 pub(crate) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetlet> {
     let Some((lo, hi)) = bounds(points) else { return Vec::new() };
     let closed =
-        points.first().zip(points.last()).is_some_and(|(a, b)| a.distance(*b) < 0.12 * lo.distance(hi));
+        points.first().zip(points.last()).is_some_and(|(a, b)| a.distance(*b) < SHUT * lo.distance(hi));
     // A closed stroke is turned so that it begins at its deepest dip, and comes back to it.
     let line: Vec<DVec2> = if closed {
         let start = (0..points.len())
@@ -109,12 +117,12 @@ pub(crate) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
         };
         let (a, b) = (arc[0], arc[arc.len() - 1]);
         // A remnant at an open end of the stroke is no petal.
-        if arc.len() < 3 || polyline_length(arc) < 0.3 * reach {
+        if arc.len() < 3 || polyline_length(arc) < REMNANT * reach {
             continue;
         }
         let root = core.root(a, b, top);
         let mut ring = arc.to_vec();
-        if root.distance(a) > 0.02 * reach && root.distance(b) > 0.02 * reach {
+        if root.distance(a) > AT_ROOT * reach && root.distance(b) > AT_ROOT * reach {
             ring.push(root);
         }
         if let Some(mut blade) = Sheetlet::new(&ring, stroke) {

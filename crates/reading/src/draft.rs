@@ -13,6 +13,7 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::steady::steady;
+use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, Reading, RegionKind,
     RegionReading, StrokeReading, blade, rings,
@@ -22,6 +23,15 @@ use crate::{
 pub(crate) const MOST_REGIONS: usize = 200;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
+/// A thin outline is a petal seen from its edge where two others begin nearer than this share of their size.
+const BESIDE: f64 = 0.25;
+/// A blade closes where its stroke comes nearer to itself than this share of the gap between its ends.
+const STALK_NEAR: f64 = 0.35;
+/// Ends nearer than this share of the length: a blade that is closed by itself. Ends farther than that: one side of a leaf.
+const SHUT: f64 = 0.1;
+const ONE_SIDE: f64 = 0.45;
+/// Green is larger by more than this than red and blue, of 255: grey and what is nearly black differ by less.
+const GREEN: u8 = 15;
 
 /// A thorn: root and tip, what bears it, its stroke.
 pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
@@ -189,7 +199,7 @@ impl<'a> Draft<'a> {
         for k in thin {
             let points = &self.ink.strokes[k].points;
             let root = points[0].midpoint(points[points.len() - 1]);
-            let beside = |b: &&Sheetlet| b.gap.distance(root) < 0.25 * b.size;
+            let beside = |b: &&Sheetlet| b.gap.distance(root) < BESIDE * b.size;
             let petal = if self.blades.iter().filter(beside).take(2).count() == 2 {
                 Sheetlet::edge_on(points, k)
             } else {
@@ -221,8 +231,8 @@ impl<'a> Draft<'a> {
                 self.blades.push(blade);
                 continue;
             }
-            let (line, stalks) = split_stalks(&ink.strokes[k].points, 0.35);
-            if stalks.is_empty() && gap(k) > 0.1 {
+            let (line, stalks) = split_stalks(&ink.strokes[k].points, STALK_NEAR);
+            if stalks.is_empty() && gap(k) > SHUT {
                 open.push(k);
             } else if let Some(blade) = Sheetlet::new(&line, k) {
                 self.organ[k] = OrganWord::Leaf;
@@ -239,7 +249,7 @@ impl<'a> Draft<'a> {
         for ring in rings::rings(&points) {
             let parts: Vec<usize> = ring.parts.iter().map(|&p| open[p]).collect();
             // Only a part that is clearly one side of a leaf is completed by another stroke.
-            let sides = parts.len() > 1 && parts.iter().any(|&k| gap(k) > 0.45);
+            let sides = parts.len() > 1 && parts.iter().any(|&k| gap(k) > ONE_SIDE);
             match Sheetlet::new(&ring.points, parts[0]).filter(|_| sides) {
                 Some(blade) => {
                     parts.iter().for_each(|&k| self.organ[k] = OrganWord::Leaf);
@@ -324,7 +334,7 @@ impl<'a> Draft<'a> {
         // Inside nothing but soil: what was taken for soil is the plant.
         self.soil.clear();
         let s = &strokes[k];
-        let straight = s.points[0].distance(s.points[s.points.len() - 1]) > 0.7 * s.length;
+        let straight = s.points[0].distance(s.points[s.points.len() - 1]) > STRAIGHT * s.length;
         if straight || !self.crown_from(k, report) {
             self.line_of(k, OrganWord::Branch);
             base::warn!(
@@ -344,8 +354,9 @@ impl<'a> Draft<'a> {
             .take(MOST_REGIONS)
             .filter_map(|k| geom::simple_outline(&self.ink.strokes[k].points))
             .collect();
-        let deep =
-            |p: DVec2| pots.iter().any(|pot| contains(pot, p) && blade::nearest_on_ring(pot, p).1 > 0.03);
+        let deep = |p: DVec2| {
+            pots.iter().any(|pot| contains(pot, p) && blade::nearest_on_ring(pot, p).1 > STOPPED_SHORT)
+        };
         if pots.is_empty() {
             return;
         }
@@ -383,7 +394,7 @@ impl<'a> Draft<'a> {
         let whole = self.kind.is_some_and(|k| k.is_like(Kind::Fruit));
         let open = |k: &usize| {
             let s = &self.ink.strokes[*k];
-            s.points[0].distance(s.points[s.points.len() - 1]) > 0.35 * s.length
+            s.points[0].distance(s.points[s.points.len() - 1]) > MOUTH * s.length
         };
         if !whole {
             return core::mem::take(strokes);
@@ -495,5 +506,5 @@ impl<'a> Draft<'a> {
 
 /// Green before all, and neither grey nor nearly black.
 fn is_green([r, g, b]: [u8; 3]) -> bool {
-    g.saturating_sub(r.max(b)) > 15
+    g.saturating_sub(r.max(b)) > GREEN
 }

@@ -20,12 +20,63 @@ use crate::corolla::{Core, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::{Near, bounds};
 use crate::rings::Ring;
+use crate::thresholds::{FEWEST_PETALS, STOPPED_SHORT, WELL_SHORT};
 use crate::{DiscReading, OrganWord};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
 /// Roots that are clustered by mean shift; more are told apart by cells.
 const MOST_ROOTS: usize = 2_000;
+/// What hangs below a corolla is the trunk of a palm if it is so many times as tall as wide; a petal is less.
+const SLENDER: f64 = 1.6;
+/// A piece of a corolla that is a trunk: as long as this share of the usual piece, pointing down with this cosine, and so many
+/// times as long as wide.
+const LONGEST: f64 = 0.9;
+const DOWN: f64 = 0.9;
+const TRUNK_SLENDER: f64 = 1.8;
+/// It is cut off flat: at this share of its height above its foot it has at least that share of its width in the middle.
+const CUT_AT: f64 = 0.06;
+const CUT_OFF: f64 = 0.7;
+/// Fronds in one stroke come this near to the top of their trunk, as a share of the stroke's size; petals in one stroke so
+/// many radii near to the middle of their disc.
+const AT_TRUNK: f64 = 0.12;
+const AT_DISC: f64 = 1.3;
+/// A corolla touches a stem where it comes nearer than this share of its size. Every so many points are looked at, and a
+/// stem that it stands along is touched by more than one of so many of them, and longer than that share of its size.
+const TOUCHES: f64 = 0.07;
+const STRIDE: usize = 6;
+const ALONG: usize = 3;
+const LONG_STEM: f64 = 0.4;
+/// A stroke that turns round its middle by more than this angle is a ring of petals, not a row; all round is 6.3.
+const AROUND: f64 = 4.0;
+/// What stands nearer to its bearer than this share of the usual petal stands on it.
+const STANDS: f64 = 0.2;
+/// Fronds begin within this share of their usual length of the top of their trunk.
+const FRONDS: f64 = 0.6;
+/// In front of a stem a flower has at least so many petals, and between neighbours no wider angle than this: leaves at a
+/// node leave two sides free.
+const WHOLE_RING: usize = 5;
+const CLOSE_RING: f64 = 1.9;
+/// Between petals all round no wider angle than this; half a turn (3.14, *geometry*) is a tuft.
+const RING: f64 = 2.6;
+/// Petals on a shoot's end begin in one place: nearer than this share of the usual petal.
+const ONE_PLACE: f64 = 0.15;
+/// A rosette has at least so many leaves, each of which comes this near to its middle as a share of its size, and between
+/// neighbours no wider angle than that.
+const ROSETTE: usize = 4;
+const TO_MIDDLE: f64 = 0.25;
+const ROSETTE_GAP: f64 = 2.2;
+/// A petal begun at its tip comes within so many bandwidths of its flower's middle.
+const ADOPTED: f64 = 1.2;
+/// The foot of a stem that leads up to a disc: petals are taken for at least this size, and the stem is so many times as tall.
+const SMALLEST: f64 = 0.08;
+const LEADS_UP: f64 = 1.2;
+/// Petals of a flower of which no rings are told apart: each is compared with each.
+const MOST_PETALS: usize = 300;
+/// A petal of an inner ring reaches less than this share of the one that it stands in front of, and stands within this share
+/// of that one's half angle.
+const INNER: f64 = 0.72;
+const IN_FRONT: f64 = 0.8;
 
 /// A flower before its petals are read.
 #[derive(Clone, Debug, Default)]
@@ -93,7 +144,7 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
 
 /// A lower part that is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
 fn slender(outline: &[DVec2]) -> bool {
-    bounds(outline).is_some_and(|(lo, hi)| hi.y - lo.y > 1.6 * (hi.x - lo.x))
+    bounds(outline).is_some_and(|(lo, hi)| hi.y - lo.y > SLENDER * (hi.x - lo.x))
 }
 
 /// A palm in one stroke: the piece that points straight down, the longest of all, is the trunk.
@@ -106,10 +157,10 @@ fn trunk_piece(draft: &mut Draft<'_>, pieces: &mut Vec<Sheetlet>) {
         let down = root - foot;
         let wide = geom::signed_area(&p.outline) / p.size.max(1e-9);
         // A trunk is cut off flat below; a petal is round or pointed.
-        let flat =
-            width_at(&p.outline, foot.y + 0.06 * down.y) > 0.7 * width_at(&p.outline, foot.y + 0.5 * down.y);
-        let long = p.size > 0.9 * usual && down.y > 0.9 * down.length() && down.y > 1.8 * wide;
-        long && flat && foot.y < floor + 0.06
+        let flat = width_at(&p.outline, foot.y + CUT_AT * down.y)
+            > CUT_OFF * width_at(&p.outline, foot.y + 0.5 * down.y);
+        let long = p.size > LONGEST * usual && down.y > DOWN * down.length() && down.y > TRUNK_SLENDER * wide;
+        long && flat && foot.y < floor + WELL_SHORT
     });
     if let Some(k) = found.filter(|_| pieces.len() > 2) {
         let trunk = pieces.remove(k);
@@ -140,30 +191,30 @@ fn core_of(
         .bodies
         .iter()
         .filter_map(|&r| draft.forest.axes[r].points.last().copied())
-        .find(|&t| contains(&hull, t) || crate::blade::nearest_on_ring(&hull, t).1 < 0.12 * size);
+        .find(|&t| contains(&hull, t) || crate::blade::nearest_on_ring(&hull, t).1 < AT_TRUNK * size);
     if let Some(top) = top {
         return Core::Point(top, 0.0);
     }
     let disc = centres
         .nearest(middle, 0.5 * size, |i| {
             let d = &discs[i].0;
-            contains(&hull, d.centre) || crate::blade::nearest_on_ring(&hull, d.centre).1 < 1.3 * d.radius
+            contains(&hull, d.centre) || crate::blade::nearest_on_ring(&hull, d.centre).1 < AT_DISC * d.radius
         })
         .map(|(e, _)| discs[e.owner].0);
     if let Some(disc) = disc {
         return Core::Point(disc.centre, disc.radius);
     }
-    let near = 0.07 * size;
+    let near = TOUCHES * size;
     let mut along: Option<Vec<DVec2>> = None;
-    let around = winding(points, middle) > 4.0;
+    let around = winding(points, middle) > AROUND;
     for line in axes.iter().take(200) {
         for end in [line[0], line[line.len() - 1]] {
             if visits(points, end, near) >= 2 {
                 return Core::Point(end, 0.0);
             }
         }
-        let touching: usize = line.iter().step_by(6).filter(|p| visits(points, **p, near) >= 1).count();
-        if !around && touching * 6 > line.len() / 3 && polyline_length(line) > 0.4 * size {
+        let touching: usize = line.iter().step_by(STRIDE).filter(|p| visits(points, **p, near) >= 1).count();
+        if !around && touching * STRIDE > line.len() / ALONG && polyline_length(line) > LONG_STEM * size {
             along = Some(line.to_vec());
         }
     }
@@ -287,7 +338,7 @@ fn on_rings(
         if !wide
             || bears_fronds(draft, centre, usual)
             || bearers.leads_up(centre, usual, discs)
-            || bearers.stand(centre, 0.2 * usual) == Stand::Body
+            || bearers.stand(centre, STANDS * usual) == Stand::Body
         {
             continue;
         }
@@ -305,7 +356,9 @@ fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
     draft.open_top
         && draft.bodies.iter().any(|&r| {
             let top = draft.forest.axes[r].points.last();
-            top.is_some_and(|t| t.distance(centre) < 0.6 * usual + draft.forest.half_width(r, f64::INFINITY))
+            top.is_some_and(|t| {
+                t.distance(centre) < FRONDS * usual + draft.forest.half_width(r, f64::INFINITY)
+            })
         })
 }
 
@@ -317,7 +370,7 @@ fn is_flower(
     bearers: &Bearers,
     discs: &[(DiscReading, usize)],
 ) -> bool {
-    if members.len() < 3 {
+    if members.len() < FEWEST_PETALS {
         return false;
     }
     let centre = mean(members.iter().map(|&i| draft.blades[i].gap));
@@ -336,13 +389,13 @@ fn is_flower(
         // Fronds on a trunk.
         Stand::Body => false,
         // Leaves at a node of a stem: only a whole ring of many is a flower in front of it.
-        Stand::Along => members.len() >= 5 && widest < 1.9,
+        Stand::Along => members.len() >= WHOLE_RING && widest < CLOSE_RING,
         // On the ground a tuft of leaves, unless they stand all round.
-        Stand::Soil => widest < 2.6,
+        Stand::Soil => widest < RING,
         // A shoot's end may be thick with leaves: petals meet in one place, or stand all round.
         Stand::End => {
             let spread = members.iter().map(|&i| draft.blades[i].gap.distance(centre)).fold(0.0, f64::max);
-            spread < 0.15 * usual || widest < 2.6
+            spread < ONE_PLACE * usual || widest < RING
         }
         Stand::Free => true,
     }
@@ -358,13 +411,13 @@ fn rosettes(
     taken: &mut [bool],
 ) {
     let free: Vec<usize> = (0..draft.blades.len()).filter(|&i| !taken[i] && roots[i].is_none()).collect();
-    if free.len() < 3 || free.len() > MOST_ROOTS {
+    if free.len() < FEWEST_PETALS || free.len() > MOST_ROOTS {
         return;
     }
     let middles: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].middle).collect();
     for members in clusters(&middles, 1.1 * usual) {
         let members: Vec<usize> = members.into_iter().map(|m| free[m]).collect();
-        if members.len() < 4 {
+        if members.len() < ROSETTE {
             continue;
         }
         let centre = mean(members.iter().map(|&i| draft.blades[i].middle));
@@ -372,13 +425,13 @@ fn rosettes(
         if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
             continue;
         }
-        let close = members.iter().zip(&feet).all(|(&i, f)| f.1 < 0.25 * draft.blades[i].size)
-            && !matches!(bearers.stand(centre, 0.2 * usual), Stand::Along | Stand::Body);
+        let close = members.iter().zip(&feet).all(|(&i, f)| f.1 < TO_MIDDLE * draft.blades[i].size)
+            && !matches!(bearers.stand(centre, STANDS * usual), Stand::Along | Stand::Body);
         let mut angles: Vec<f64> =
             members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
         base::sort_numbers(&mut angles);
-        let even = angles.windows(2).all(|w| w[1] - w[0] < 2.2)
-            && angles.first().zip(angles.last()).is_some_and(|(a, b)| a + ops::TAU - b < 2.2);
+        let even = angles.windows(2).all(|w| w[1] - w[0] < ROSETTE_GAP)
+            && angles.first().zip(angles.last()).is_some_and(|(a, b)| a + ops::TAU - b < ROSETTE_GAP);
         if close && even {
             for (&i, f) in members.iter().zip(&feet) {
                 taken[i] = true;
@@ -410,7 +463,7 @@ fn adopt(
         let mut best: Option<(f64, usize, DVec2)> = None;
         index.visit(blade.middle, blade.size.min(0.4), |e, _| {
             let (p, d) = blade.nearest(e.point);
-            if d < 1.2 * BANDWIDTH * usual && best.is_none_or(|(b, ..)| d < b) {
+            if d < ADOPTED * BANDWIDTH * usual && best.is_none_or(|(b, ..)| d < b) {
                 best = Some((d, e.owner, p));
             }
         });
@@ -470,9 +523,9 @@ impl Bearers {
     fn leads_up(&self, p: DVec2, usual: f64, discs: &[(DiscReading, usize)]) -> bool {
         self.ends.iter().any(|&(a, b)| {
             let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
-            let at_disc = |d: &DiscReading| d.centre.distance(top) < 2.0 * d.radius + 0.03;
-            foot.distance(p) < 0.5 * usual.max(0.08)
-                && top.y - foot.y > 1.2 * usual
+            let at_disc = |d: &DiscReading| d.centre.distance(top) < 2.0 * d.radius + STOPPED_SHORT;
+            foot.distance(p) < 0.5 * usual.max(SMALLEST)
+                && top.y - foot.y > LEADS_UP * usual
                 && discs.iter().any(|(d, _)| at_disc(d) && d.centre.distance(p) > usual)
         })
     }
@@ -525,21 +578,21 @@ pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, roots: &[DVec2]) -
     let mut order: Vec<usize> = (0..petals.len()).collect();
     base::sort_by(&mut order, |&a, &b| petals[b].0.total_cmp(&petals[a].0).then(a.cmp(&b)));
     let mut whorl = vec![0_u32; petals.len()];
-    if petals.len() > 300 {
+    if petals.len() > MOST_PETALS {
         return whorl;
     }
     for (k, &i) in order.iter().enumerate() {
         for &j in &order[..k] {
             let mut apart = (petals[i].1 - petals[j].1).abs();
             apart = apart.min(ops::TAU - apart);
-            if petals[i].0 < 0.72 * petals[j].0 && apart < 0.8 * petals[j].2 {
+            if petals[i].0 < INNER * petals[j].0 && apart < IN_FRONT * petals[j].2 {
                 whorl[i] = whorl[i].max(whorl[j] + 1);
             }
         }
     }
     // One small petal is a small petal, not a ring.
     let inner = whorl.iter().filter(|w| **w > 0).count();
-    if inner < 3 { vec![0; petals.len()] } else { whorl }
+    if inner < FEWEST_PETALS { vec![0; petals.len()] } else { whorl }
 }
 
 /// Clusters of at least 3 points that lie within `bandwidth` of one another.

@@ -11,6 +11,7 @@ use geom::{contains, convex_hull, signed_area};
 use glam::DVec2;
 use ink::{Classified, Ink, StrokeClass};
 
+use crate::look::{LINE, LOOP};
 use crate::near::bounds;
 use crate::{Kind, Reading, Scored, look};
 
@@ -19,6 +20,9 @@ pub(crate) const COUNT: usize =
     1 + Kind::ALL.len() + (2 + CLASS_BANDS) * StrokeClass::ALL.len() + SHAPE.len() + look::COUNT;
 /// Bands of the height for which the length of each stroke class is measured.
 const CLASS_BANDS: usize = 3;
+/// What ends in this lowest share of the height counts as a foot. As all numbers of a look, how it is cut matters little: the
+/// model learns what the count is worth.
+const LOW: f64 = 0.1;
 /// Names of the numbers that say how the whole looks.
 const SHAPE: [&str; 20] = [
     "strokes",
@@ -126,7 +130,7 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
         s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-9)
     };
     let n = ink.strokes.len();
-    let closed: Vec<usize> = (0..n).filter(|&k| open(k) < 0.25).collect();
+    let closed: Vec<usize> = (0..n).filter(|&k| open(k) < LOOP).collect();
     let area_of = |k: usize| {
         let hull = convex_hull(&ink.strokes[k].points);
         if hull.len() > 2 { signed_area(&hull) } else { 0.0 }
@@ -146,7 +150,7 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
         (band.len() as f64 / count, across / wide)
     };
     let (low, middle, high) = (part(0.0, 0.2), part(0.4, 0.6), part(0.8, 1.0));
-    let lines: Vec<usize> = (0..n).filter(|&k| open(k) > 0.8).collect();
+    let lines: Vec<usize> = (0..n).filter(|&k| open(k) > LINE).collect();
     let run = |k: usize| {
         let s = &ink.strokes[k].points;
         (s[s.len() - 1] - s[0]).abs()
@@ -155,7 +159,7 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
     let upright: Vec<usize> = lines.iter().copied().filter(|&k| run(k).y > 2.0 * run(k).x).collect();
     let level: Vec<usize> = lines.iter().copied().filter(|&k| run(k).x > 2.0 * run(k).y).collect();
     let foot = |s: &ink::InkStroke| s.points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    let feet = ink.strokes.iter().filter(|s| foot(s) < lo.y + 0.1 * tall).count() as f64;
+    let feet = ink.strokes.iter().filter(|s| foot(s) < lo.y + LOW * tall).count() as f64;
     let log = |x: f64| ops::ln(1.0 + x) / 4.0;
     [
         log(n as f64),

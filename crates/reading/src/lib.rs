@@ -17,6 +17,7 @@
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
+//! | `thresholds` | numbers that several of these compare with, and where all such numbers come from | |
 
 mod aside;
 mod attach;
@@ -44,6 +45,7 @@ mod several;
 mod steady;
 #[cfg(test)]
 mod tests;
+mod thresholds;
 mod validate;
 mod veins;
 

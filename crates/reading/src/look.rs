@@ -10,6 +10,7 @@ use ink::{Ink, InkStroke};
 
 use crate::grid::{Grid, Hole};
 use crate::near::bounds;
+use crate::thresholds::ROUNDING;
 
 /// Bands into which the height is cut.
 const BANDS: usize = 8;
@@ -67,13 +68,47 @@ pub(crate) const COUNT: usize = {
 /// Cells along the longer side: of a fine grid, and of a wide one in which small gaps close.
 const FINE: usize = 44;
 const WIDE: usize = 18;
+// Where the numbers are cut. The model learns what each is worth, so how they are cut matters little; all that depends on the
+// cuts is learnt anew when one is changed (`cargo xtask train-kinds`).
+
+/// What is divided by less is nothing: *geometry*.
+const NOTHING: f64 = 1e-12;
+/// Ends nearer than this share of the length: a loop. Farther than that: a line.
+pub(crate) const LOOP: f64 = 0.25;
+pub(crate) const LINE: f64 = 0.8;
+/// Strokes by their openness: closed, bent, straight.
+const OPENNESS: [f64; 2] = [0.2, 0.7];
+/// A stroke without ends.
+const CLOSED: f64 = 0.1;
+/// Strokes by length and loops by size, shares of the drawing's longer side; holes by area, shares of its box.
+const LENGTHS: [f64; 4] = [0.08, 0.25, 0.7, 1.8];
+const LOOP_SIZES: [f64; 2] = [0.12, 0.45];
+const HOLES: [f64; 2] = [0.01, 0.08];
+/// Tangent of an eighth of half a turn, which parts level, slanting and upright lines evenly (*geometry*, rounded).
+const EIGHTH: f64 = 0.414;
+/// A corner turns by more than this angle, a hairpin by more than that: 52 and 120 degrees.
+const CORNER: f64 = 0.9;
+const HAIRPIN: f64 = 2.1;
+/// A line turns back by more than this share of the drawing's longer side.
+const TURNS_BACK: f64 = 0.05;
+/// What stands is narrower than this share of the widest row; a line has less ink than that share in its row.
+const NARROW: f64 = 0.35;
+const LINE_INK: f64 = 0.12;
+/// Most runs of ink in a row of two lines: a third may lie between them.
+const TWO_LINES: f64 = 3.0;
+/// The first row wider than this share of the widest is where the plant widens.
+const WIDENS: f64 = 0.7;
+/// Ends meet where they are nearer than this share of the drawing's longer side.
+const MEETS: f64 = 0.04;
+/// Most ends that are kept of one place.
+const CELL_CAP: usize = 8;
 
 fn log(x: f64) -> f64 {
     ops::ln(1.0 + x) / 4.0
 }
 
 fn share(part: f64, whole: f64) -> f64 {
-    if whole > 1e-12 { part / whole } else { 0.0 }
+    if whole > NOTHING { part / whole } else { 0.0 }
 }
 
 fn to_f64(n: usize) -> f64 {
@@ -187,7 +222,7 @@ fn holes(fine: &Grid, wide: &Grid, row: &mut Vec<f64>) {
         let count = |from: f64, to: f64| {
             log(to_f64(grid.holes.iter().filter(|h| h.area >= from && h.area < to).count()))
         };
-        [count(0.0, 0.01), count(0.01, 0.08), count(0.08, 2.0)]
+        [count(0.0, HOLES[0]), count(HOLES[0], HOLES[1]), count(HOLES[1], 2.0)]
     };
     let first = |grid: &Grid, k: usize| grid.holes.get(k).copied().unwrap_or_default();
     row.extend(sizes(fine));
@@ -210,8 +245,8 @@ fn ways(frame: &Frame<'_>, row: &mut Vec<f64>) {
             let (u, v) = (d.x.abs(), d.y.abs());
             let rises_right = d.x * d.y > 0.0;
             let way = match () {
-                () if v < 0.414 * u => 0,
-                () if u < 0.414 * v => 2,
+                () if v < EIGHTH * u => 0,
+                () if u < EIGHTH * v => 2,
                 () if rises_right == (p.x > frame.centre.x) => 1,
                 () => 3,
             };
@@ -244,13 +279,13 @@ fn turns(frame: &Frame<'_>, row: &mut Vec<f64>) {
             turning[band] += a.abs() / to_f64(k);
             (sum, size) = (sum + a / to_f64(k), size + a.abs() / to_f64(k));
             let around = &angles[j.saturating_sub(k)..(j + k + 1).min(angles.len())];
-            let sharpest = a.abs() > 0.9 && around.iter().all(|b| b.abs() <= a.abs() + 1e-9);
+            let sharpest = a.abs() > CORNER && around.iter().all(|b| b.abs() <= a.abs() + ROUNDING);
             // Of equals side by side, one.
-            if !sharpest || (j > 0 && (angles[j - 1].abs() - a.abs()).abs() <= 1e-9) {
+            if !sharpest || (j > 0 && (angles[j - 1].abs() - a.abs()).abs() <= ROUNDING) {
                 continue;
             }
             corners[band] += 1.0;
-            if a.abs() > 2.1 {
+            if a.abs() > HAIRPIN {
                 hairpins[band] += 1.0;
             }
             let tip = (p - s.points[j].midpoint(s.points[j + 2 * k])).normalize_or_zero();
@@ -275,7 +310,7 @@ fn turns(frame: &Frame<'_>, row: &mut Vec<f64>) {
 
 /// How often a stroke turns back along an axis, by more than a twentieth of the drawing.
 fn reversals(s: &InkStroke, long: f64, of: impl Fn(DVec2) -> f64) -> f64 {
-    let least = 0.05 * long;
+    let least = TURNS_BACK * long;
     let (mut low, mut high) = (of(s.points[0]), of(s.points[0]));
     let (mut way, mut count) = (0, 0.0);
     for &p in &s.points {
@@ -369,19 +404,19 @@ fn foot(fine: &Grid) -> [f64; 8] {
     };
     // The lowest row is often a ground or the foot of a trunk.
     let from = (n / 20 + 1).min(n - 1);
-    let narrow = |r: &crate::grid::GridRow| r.across < 0.35 * widest;
+    let narrow = |r: &crate::grid::GridRow| r.across < NARROW * widest;
     let low: Vec<f64> = rows[..n.div_ceil(3)].iter().map(|r| r.across / widest).collect();
     let thin = low.iter().copied().fold(1.0, f64::min);
     let jump = rows.windows((n / 8).max(2)).map(|w| w[w.len() - 1].across - w[0].across).fold(0.0, f64::max);
     [
         upto(from, &narrow),
-        upto(from, &|r| r.runs <= 1.0 && r.ink < 0.12 * widest.max(1.0)),
-        upto(from, &|r| narrow(r) && r.runs >= 2.0 && r.runs <= 3.0),
+        upto(from, &|r| r.runs <= 1.0 && r.ink < LINE_INK * widest.max(1.0)),
+        upto(from, &|r| narrow(r) && r.runs >= 2.0 && r.runs <= TWO_LINES),
         share(low.iter().sum(), to_f64(low.len())),
         thin,
         jump.min(2.0),
         share(to_f64(rows.iter().filter(|r| r.runs == 2.0).count()), to_f64(n)),
-        share(to_f64(rows.iter().position(|r| r.across > 0.7 * widest).unwrap_or(0)), to_f64(n)),
+        share(to_f64(rows.iter().position(|r| r.across > WIDENS * widest).unwrap_or(0)), to_f64(n)),
     ]
 }
 
@@ -395,33 +430,33 @@ fn strokes(frame: &Frame<'_>, row: &mut Vec<f64>) {
     let mut sorted: Vec<f64> = Vec::new();
     for s in frame.strokes {
         let o = openness(s);
-        open[if o < 0.2 {
+        open[if o < OPENNESS[0] {
             0
-        } else if o < 0.7 {
+        } else if o < OPENNESS[1] {
             1
         } else {
             2
         }] += 1.0;
         let l = s.length / frame.long;
         sorted.push(s.length / frame.total);
-        lengths[[0.08, 0.25, 0.7, 1.8].iter().filter(|&&x| l > x).count()] += 1.0;
+        lengths[LENGTHS.iter().filter(|&&x| l > x).count()] += 1.0;
         let Some((lo, hi)) = bounds(&s.points) else { continue };
         let (size, middle) = ((hi - lo).max_element() / frame.long, lo.midpoint(hi));
-        if o < 0.25 {
-            loops[if size < 0.12 {
+        if o < LOOP {
+            loops[if size < LOOP_SIZES[0] {
                 0
-            } else if size < 0.45 {
+            } else if size < LOOP_SIZES[1] {
                 1
             } else {
                 2
             }] += 1.0;
             loop_height += frame.height(middle);
         }
-        if o > 0.8 {
+        if o > LINE {
             let d = s.points[s.points.len() - 1] - s.points[0];
             let way = match () {
-                () if d.y.abs() < 0.414 * d.x.abs() => 0,
-                () if d.x.abs() < 0.414 * d.y.abs() => 1,
+                () if d.y.abs() < EIGHTH * d.x.abs() => 0,
+                () if d.x.abs() < EIGHTH * d.y.abs() => 1,
                 () if (d.x * d.y > 0.0) == (middle.x > frame.centre.x) => 2,
                 () => 3,
             };
@@ -445,12 +480,12 @@ fn strokes(frame: &Frame<'_>, row: &mut Vec<f64>) {
 
 /// How ends meet other strokes: at an end, in the middle, not at all.
 fn ends(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
-    let near = 0.04 * frame.long;
+    let near = MEETS * frame.long;
     let at_end = EndGrid::new(frame, near);
     let (mut joined, mut on, mut loose) = (0.0, 0.0, 0.0);
     let mut loose_by = [0.0; 3];
     for (k, s) in frame.strokes.iter().enumerate() {
-        if openness(s) < 0.1 {
+        if openness(s) < CLOSED {
             continue;
         }
         for p in [s.points[0], s.points[s.points.len() - 1]] {
@@ -481,7 +516,7 @@ impl EndGrid {
         for (k, s) in frame.strokes.iter().enumerate() {
             for p in [s.points[0], s.points[s.points.len() - 1]] {
                 let own = grid.cells.entry(Self::key(p, near)).or_default();
-                if own.len() < 8 {
+                if own.len() < CELL_CAP {
                     own.push((p, k));
                 }
             }

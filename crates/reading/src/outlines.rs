@@ -13,6 +13,7 @@ use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::near::bounds;
 use crate::rings::{Ring, rings};
+use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, STRAIGHT, WELL_SHORT};
 use crate::{Attachment, Kind, OrganWord, RegionKind};
 
 /// More bodies than this are scribbles: the smaller ones become plain lines (keeps the work linear).
@@ -21,6 +22,36 @@ const MOST_BODIES: usize = 100;
 const THIN: f64 = 0.008;
 /// The base of an arm lies this near to the body.
 const ARM: f64 = 0.03;
+/// The sides of a trunk drawn in one go with its crown: the crown closes where its stroke comes nearer to itself than this
+/// share of the gap between its ends, and a side is straighter than that share of its length.
+const SIDE_NEAR: f64 = 0.75;
+const SIDE_STRAIGHT: f64 = 0.75;
+/// What ends within this of the foot of a crown ends at it: four steps of the pen (*sampled*). A trunk is wider.
+const FOOT: f64 = 0.02;
+/// What hangs below a crown by more than this is its trunk.
+const HANGS: f64 = 0.08;
+/// Half a body: one gap of more than this share of its height, from its foot to a top that is higher by more than that and lies
+/// this far to the side, all shares of its height.
+const GAP: f64 = 0.1;
+const LEFT_OFF: f64 = 0.3;
+const AT_FOOT: f64 = 0.08;
+const SLANTS: f64 = 0.04;
+/// An axis that runs this deep into a contour, as a share of its size, bears it.
+const DEEP: f64 = 0.3;
+/// A trunk that goes on into a crown ends below this share of its height over its heart, and this near to it, as a share of its
+/// size and at least.
+const ABOVE_HEART: f64 = 0.25;
+const LED: f64 = 0.35;
+const LED_LEAST: f64 = 0.05;
+/// A crown nearer to the ground than this share of its height stands on it; one higher than that needs a trunk of its own.
+const ON_GROUND: f64 = 0.2;
+const NEEDS_TRUNK: f64 = 0.35;
+/// A bush meets the ground with this lowest share of its height.
+const MEETS_GROUND: f64 = 0.25;
+/// Shading is a trunk if it is so many times as tall as wide.
+const SHADED: f64 = 1.2;
+/// A thorn is shorter than this share of the body's height.
+const THORN: f64 = 0.3;
 
 /// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or what hangs below the crown.
 pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
@@ -30,11 +61,13 @@ pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
     }
     let ink = draft.ink;
     for k in draft.of_class(StrokeClass::Crown).into_iter().take(MOST_REGIONS) {
-        let (crown, ends) = split_stalks(&ink.strokes[k].points, 0.75);
+        let (crown, ends) = split_stalks(&ink.strokes[k].points, SIDE_NEAR);
         let foot = bounds(&crown).map_or(0.0, |b| b.0.y);
         let side = |l: &Vec<DVec2>| {
             let (free, at) = (l[0], l[l.len() - 1]);
-            free.y < foot + 0.02 && at.y - free.y > 0.06 && free.distance(at) > 0.75 * polyline_length(l)
+            free.y < foot + FOOT
+                && at.y - free.y > WELL_SHORT
+                && free.distance(at) > SIDE_STRAIGHT * polyline_length(l)
         };
         if !ends.is_empty() && ends.iter().all(side) {
             draft.sides.extend(ends.into_iter().map(|l| (k, l)));
@@ -45,8 +78,8 @@ pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
         let Some((outline, low)) = crown_outline(points).and_then(|o| bounds(&o).map(|b| (o, b.0.y))) else {
             continue;
         };
-        let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < low - 0.01).collect();
-        if bounds(&below).is_some_and(|(lo, hi)| hi.y - lo.y > 0.08 && hi.x - lo.x > 0.02) {
+        let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < low - SAME_PLACE).collect();
+        if bounds(&below).is_some_and(|(lo, hi)| hi.y - lo.y > HANGS && hi.x - lo.x > FOOT) {
             draft.sides.push((k, below));
             draft.loops.insert(k, outline);
         }
@@ -77,7 +110,7 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
         // The trunk of a palm may be one line; it is as thick as it would be drawn.
         if draft.kind == Some(Kind::Palm) && ring.parts.len() == 1 {
             let line = points[ring.parts[0]];
-            if line[0].distance(line[line.len() - 1]) > 0.7 * polyline_length(line) {
+            if line[0].distance(line[line.len() - 1]) > STRAIGHT * polyline_length(line) {
                 ring = thick(line, ring.parts);
             }
         }
@@ -128,14 +161,14 @@ fn plumb(ring: &mut Ring) {
     let Some((lo, hi)) = bounds(&ring.points) else { return };
     let wide = |&g: &usize| {
         let (a, b) = ring.gap(ring.gaps[g]);
-        a.distance(b) > 0.1 * (hi.y - lo.y)
+        a.distance(b) > GAP * (hi.y - lo.y)
     };
     let [at] = (0..ring.gaps.len()).filter(wide).collect::<Vec<_>>()[..] else { return };
     let gap = ring.gaps[at];
     let (a, b) = ring.gap(gap);
     let (top, foot) = if a.y > b.y { (a, b) } else { (b, a) };
-    let high = top.y - foot.y > 0.3 * (hi.y - lo.y) && foot.y < lo.y + 0.08 * (hi.y - lo.y);
-    let wide = (top.x - foot.x).abs() > 0.04 * (hi.y - lo.y) && (top.x - foot.x).abs() < top.y - foot.y;
+    let high = top.y - foot.y > LEFT_OFF * (hi.y - lo.y) && foot.y < lo.y + AT_FOOT * (hi.y - lo.y);
+    let wide = (top.x - foot.x).abs() > SLANTS * (hi.y - lo.y) && (top.x - foot.x).abs() < top.y - foot.y;
     if !(high && wide) {
         return;
     }
@@ -253,7 +286,7 @@ pub(crate) fn bear_regions(draft: &mut Draft<'_>) -> Vec<Vec<usize>> {
     let mut all = Vec::new();
     for region in &regions {
         let mut rows = inside_rows(draft, region, &index, drawn);
-        let deep = rows.iter().any(|&r| depth_inside(&draft.forest, r, region) > 0.3);
+        let deep = rows.iter().any(|&r| depth_inside(&draft.forest, r, region) > DEEP);
         if region.kind == RegionKind::Crown && !deep {
             let led = lead_into(draft, region, &tops, floor);
             rows.extend(led.into_iter().filter(|r| !rows.contains(r)).collect::<Vec<_>>());
@@ -310,12 +343,12 @@ fn lead_into(draft: &mut Draft<'_>, region: &RegionDraft, tops: &[DVec2], floor:
         .iter()
         .enumerate()
         .filter(|&(r, _)| draft.forest.axes[r].kind != AxisKind::Root && !draft.led.contains(&r))
-        .filter(|(_, p)| p.y < goal.y + 0.25 * (hi.y - lo.y))
+        .filter(|(_, p)| p.y < goal.y + ABOVE_HEART * (hi.y - lo.y))
         .map(|(r, p)| (near(*p) - 0.5 * draft.forest.half_width(r, f64::INFINITY), r))
-        .filter(|(d, _)| *d < (0.35 * size).max(0.05))
+        .filter(|(d, _)| *d < (LED * size).max(LED_LEAST))
         .min_by(|a, b| {
             let long = |r: usize| draft.forest.length(r);
-            a.0.max(0.02).total_cmp(&b.0.max(0.02)).then(long(b.1).total_cmp(&long(a.1)))
+            a.0.max(FOOT).total_cmp(&b.0.max(FOOT)).then(long(b.1).total_cmp(&long(a.1)))
         });
     if let Some((_, row)) = end {
         let tip = tops[row];
@@ -329,13 +362,13 @@ fn lead_into(draft: &mut Draft<'_>, region: &RegionDraft, tops: &[DVec2], floor:
             .map(|t| tip.lerp(bend, t).lerp(bend.lerp(goal, t), t))
             .collect();
         let width = 0.25 * draft.forest.half_width(row, f64::INFINITY);
-        if way > 0.02 {
+        if way > FOOT {
             draft.forest.extend(row, &more, width);
         }
         draft.led.push(row);
         return vec![row];
     }
-    let on_ground = region.kind == RegionKind::Crown && lo.y < floor + 0.2 * (hi.y - lo.y);
+    let on_ground = region.kind == RegionKind::Crown && lo.y < floor + ON_GROUND * (hi.y - lo.y);
     if !on_ground
         && let Some((bearer, gap)) = draft.forest.nearest(goal, 0.6 * size + 0.1)
         && gap > 0.0
@@ -356,14 +389,14 @@ fn stems_below(draft: &mut Draft<'_>, region: &RegionDraft, floor: f64) -> Vec<u
     let (width, height) = (hi.x - lo.x, hi.y - lo.y);
     let heart = region.heart();
     let mut rows = Vec::new();
-    if lo.y > floor + 0.35 * height {
+    if lo.y > floor + NEEDS_TRUNK * height {
         let line: Vec<DVec2> =
             (0..=24).map(|i| DVec2::new(heart.x, floor).lerp(heart, f64::from(i) / 24.0)).collect();
         rows.extend(draft.forest.push(line, Vec::new(), None, None));
     } else {
         // The stems stand where the crown meets the ground.
         let foot: Vec<f64> =
-            region.outline.iter().filter(|p| p.y < lo.y + 0.25 * height).map(|p| p.x).collect();
+            region.outline.iter().filter(|p| p.y < lo.y + MEETS_GROUND * height).map(|p| p.x).collect();
         let (left, right) = foot.iter().fold((hi.x, lo.x), |(l, r), x| (l.min(*x), r.max(*x)));
         let (middle, spread) = (0.5 * (left + right), (0.4 * (right - left)).min(0.12 * width));
         let stems = if width > 2.0 * height { 5 } else { 3 };
@@ -394,8 +427,8 @@ pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
         let below = draft
             .regions
             .iter()
-            .any(|r| middle.y < r.heart().y && hi.y > r.bounds.0.y - 0.05 && r.bounds.0.y > lo.y);
-        (below && hi.y - lo.y > 1.2 * (hi.x - lo.x)).then_some((k, hull))
+            .any(|r| middle.y < r.heart().y && hi.y > r.bounds.0.y - LED_LEAST && r.bounds.0.y > lo.y);
+        (below && hi.y - lo.y > SHADED * (hi.x - lo.x)).then_some((k, hull))
     });
     if let Some((k, hull)) = found {
         let source = Some(draft.ink.strokes[k].index);
@@ -417,11 +450,11 @@ pub(crate) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachmen
     for line in std::mem::take(&mut draft.lines) {
         let length = polyline_length(&line.points);
         let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
-        let touch = |p| draft.forest.nearest(p, 0.03);
+        let touch = |p| draft.forest.nearest(p, STOPPED_SHORT);
         let (at, bt) = (touch(a), touch(b));
         let nearer_a = at.map_or(f64::INFINITY, |x| x.1) <= bt.map_or(f64::INFINITY, |x| x.1);
         let bearer = if nearer_a { at } else { bt }.map(|x| x.0);
-        if let (true, Some(bearer)) = (length < 0.3 * height, bearer) {
+        if let (true, Some(bearer)) = (length < THORN * height, bearer) {
             let mut points = line.points;
             // Both ends on the body: the one farther from its middle line is the tip.
             let from_middle =

@@ -3,6 +3,8 @@
 use base::ops;
 use ink::Ink;
 
+use crate::thresholds::STRAIGHT;
+
 /// Pressures that differ by less than this share are those of a pen that measures none.
 const ALIKE: f64 = 0.1;
 /// The boldest and the lightest line beside the usual one, by pressure and by speed.
@@ -22,7 +24,7 @@ pub(crate) fn pressed(ink: &Ink) -> Vec<(u32, f64)> {
     let speeds = ink.strokes.iter().filter_map(|s| {
         let times = s.times_ms.as_ref()?;
         let took = times.last()? - times.first()?;
-        let line = s.points.first()?.distance(*s.points.last()?) > 0.7 * s.length;
+        let line = s.points.first()?.distance(*s.points.last()?) > STRAIGHT * s.length;
         (line && took > 1.0).then(|| (s.index, s.length / took))
     });
     let speeds: Vec<(u32, f64)> = speeds.collect();

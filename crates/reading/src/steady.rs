@@ -6,6 +6,8 @@ use glam::DVec2;
 const SPREAD: f64 = 0.022;
 /// Shorter lines are left as they are: there short waves are what was drawn.
 const LEAST: f64 = 0.12;
+/// Fewer points show no waves: five waves of four points each, and some more (*geometry*).
+const FEWEST_POINTS: usize = 24;
 /// Waves of tremor: at least so many, each at most this high, as shares of the length.
 const WAVES: usize = 5;
 const HIGHEST: f64 = 0.012;
@@ -19,7 +21,7 @@ const PARTS: usize = 3;
 /// `points`: even steps.
 pub(crate) fn steady(points: &[DVec2]) -> Option<Vec<DVec2>> {
     let length = geom::polyline_length(points);
-    if length < LEAST || points.len() < 24 {
+    if length < LEAST || points.len() < FEWEST_POINTS {
         return None;
     }
     let smooth = smoothed(points, length);

@@ -5,6 +5,7 @@ use core::fmt;
 use geom::{point_at, polyline_length, self_crossings, signed_area};
 use glam::DVec2;
 
+use crate::thresholds::NO_LENGTH;
 use crate::{Attachment, BladeReading, Reading};
 
 /// Something that no reading may have.
@@ -55,7 +56,7 @@ impl Reading {
                 check(self.on_axis(b), "axis", row, "is borne outside its bearer");
                 let foot = self.axes.get(b.axis).and_then(|a| point_at(&a.points, b.at));
                 let base = axis.points.first();
-                let together = foot.zip(base).is_some_and(|(f, p)| f.distance(*p) < 1e-6);
+                let together = foot.zip(base).is_some_and(|(f, p)| f.distance(*p) < NO_LENGTH);
                 check(together, "axis", row, "does not begin on its bearer");
             }
         }
@@ -91,7 +92,7 @@ impl Reading {
     }
 
     fn on_axis(&self, b: Attachment) -> bool {
-        self.axes.get(b.axis).is_some_and(|a| b.at >= 0.0 && b.at <= polyline_length(&a.points) + 1e-6)
+        self.axes.get(b.axis).is_some_and(|a| b.at >= 0.0 && b.at <= polyline_length(&a.points) + NO_LENGTH)
     }
 
     fn blade(&self, b: &BladeReading) -> bool {

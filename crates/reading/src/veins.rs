@@ -21,6 +21,13 @@ const VEIN_INSIDE: f64 = 0.25;
 const STEM_INSIDE: f64 = 0.9;
 /// What is so surely a vein is one, though no blade was found around it.
 const SURE_VEIN: f64 = 0.8;
+/// What sticks out of a blade by more than this share of its size is its stalk.
+const STALK: f64 = 0.1;
+/// A midrib runs along more than this share of its blade, keeps this near to the line from root to tip, and begins within
+/// this share of the root; shares of the blade's length.
+const RIB_RUN: f64 = 0.4;
+const RIB_ASIDE: f64 = 0.35;
+const RIB_START: f64 = 0.4;
 
 /// Takes the lines that lie inside blades out of the draft's vein and axis strokes.
 ///
@@ -52,7 +59,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
                     let (inner, outer) = part(&points, &draft.blades[blade].outline);
                     let source = Some(draft.ink.strokes[k].index);
                     for stalk in outer {
-                        if polyline_length(&stalk) > 0.1 * draft.blades[blade].size {
+                        if polyline_length(&stalk) > STALK * draft.blades[blade].size {
                             draft.lines.push(Line { points: stalk, source });
                         }
                     }
@@ -116,7 +123,7 @@ pub(crate) fn choose_midrib(
         let run = (b - a).dot(along).abs() / reach;
         let aside = v.iter().map(|p| (*p - root).perp_dot(along).abs()).fold(0.0, f64::max) / reach;
         let start = (a - root).dot(along).min((b - root).dot(along)) / reach;
-        if run > 0.4 && aside < 0.35 && start < 0.4 { run - 0.5 * aside } else { 0.0 }
+        if run > RIB_RUN && aside < RIB_ASIDE && start < RIB_START { run - 0.5 * aside } else { 0.0 }
     };
     let best =
         (0..veins.len()).max_by(|&a, &b| score(&veins[a]).total_cmp(&score(&veins[b])).then(b.cmp(&a)));

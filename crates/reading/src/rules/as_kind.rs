@@ -7,16 +7,53 @@ use geom::{contains, convex_hull, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{openness, share_inside, unsure, whole_flower, whole_tree};
+use super::{STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whole_flower, whole_tree};
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
+use crate::thresholds::{MOUTH, STRAIGHT};
 use crate::{Kind, READ_AS};
 
-/// Ends nearer than this share of the length: an outline.
-const SHUT: f64 = 0.35;
 /// Feet within this share of the height stand on the ground.
 const FOOT: f64 = 0.15;
+/// A level line rises by less than this share of its width.
+const LEVEL: f64 = 0.25;
+/// Wood is narrower than this share of the drawing.
+const NARROW: f64 = 0.55;
+/// A part of a crown has more than this share of the area of the largest part; a fruit in it less than that.
+const MAIN_CROWN: f64 = 0.12;
+const FRUIT: f64 = 0.05;
+/// A level line below this is the ground under a palm, and under a cactus below that.
+const LOW: f64 = 0.2;
+const LOWEST: f64 = 0.1;
+/// Fronds in one stroke: dips of this share of the reach, more of them than so many.
+const FROND_DIP: f64 = 0.2;
+const FRONDS: usize = 4;
+/// What the classifier gives this share to be a pot stays one under a cactus; a share of 1.
+const POT_SHARE: f64 = 0.3;
+/// An arm of a cactus is larger than this share of the drawing's diagonal; a thorn is smaller.
+const ARM: f64 = 0.25;
+/// A row of grass: dips of this share of the stroke's height, both ends among them, at least so many.
+const GRASS_DIP: f64 = 0.3;
+const GRASS_DIPS: usize = 4;
+/// A vein lies in its leaf with this share of its points; a leaflet beside it has more than that share of its area.
+const VEIN: f64 = 0.6;
+const LEAFLET: f64 = 0.4;
+/// A body beside the largest has more than this share of its area; what lies in one with more than that share of its points is
+/// its skin.
+const BODY: f64 = 0.25;
+const SKIN: f64 = 0.7;
+/// A pot drawn in lines, shares of the drawing: its lines begin below the first, one of them below the second and wider than
+/// the third.
+const POT_FOOT: f64 = 0.45;
+const POT_BOTTOM: f64 = 0.08;
+const POT_WIDE: f64 = 0.15;
+/// A pot drawn in one go: its bottom and top lie below these shares of the drawing's height, it is wider than this share of its
+/// own height, and fills that share of its box.
+const BOX_BOTTOM: f64 = 0.06;
+const BOX_TOP: f64 = 0.65;
+const BOX_WIDE: f64 = 0.4;
+const BOX_FULL: f64 = 0.4;
 
 struct Part {
     stroke: usize,
@@ -37,11 +74,11 @@ impl Part {
     }
 
     fn is_line(&self) -> bool {
-        self.open > 0.7
+        self.open > STRAIGHT
     }
 
     fn is_level(&self) -> bool {
-        self.is_line() && self.tall() < 0.25 * self.wide()
+        self.is_line() && self.tall() < LEVEL * self.wide()
     }
 }
 
@@ -100,7 +137,7 @@ type Classes = Vec<(usize, StrokeClass)>;
 /// What stands and is narrow is wood.
 fn is_wood(p: &Part, (low, high): (DVec2, DVec2)) -> bool {
     let tall = high.y - low.y;
-    p.lo.y < low.y + FOOT * tall && p.wide() < 1.2 * p.tall() && p.wide() < 0.55 * (high.x - low.x)
+    p.lo.y < low.y + FOOT * tall && p.wide() < STANDS * p.tall() && p.wide() < NARROW * (high.x - low.x)
 }
 
 /// A line is an axis; two lines, or anything that has an inside, are a trunk.
@@ -120,16 +157,16 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
     let green: Vec<&Part> = parts.iter().filter(|p| kind == Kind::Bush || !is_wood(p, all)).collect();
     let largest = green.iter().map(|p| p.area).fold(0.0, f64::max);
     let mut found = wood(&trunk);
-    let main: Vec<&&Part> = green.iter().filter(|p| p.area > 0.12 * largest && !p.is_level()).collect();
+    let main: Vec<&&Part> = green.iter().filter(|p| p.area > MAIN_CROWN * largest && !p.is_level()).collect();
     let around: Vec<DVec2> = main.iter().flat_map(|p| p.hull.iter().copied()).collect();
     let hull = convex_hull(&around);
     for p in &green {
-        let inside = share_inside(&draft.ink.strokes[p.stroke].points, 3, &hull) > 0.8;
+        let inside = share_inside(&draft.ink.strokes[p.stroke].points, STRIDE, &hull) > WITHIN;
         let class = if p.is_level() && p.lo.y < all.0.y + FOOT {
             StrokeClass::Ground
-        } else if p.area > 0.12 * largest {
+        } else if p.area > MAIN_CROWN * largest {
             StrokeClass::Crown
-        } else if inside && p.open < SHUT && p.area < 0.05 * largest {
+        } else if inside && p.open < MOUTH && p.area < FRUIT * largest {
             StrokeClass::Fruit
         } else if inside && p.is_line() {
             StrokeClass::Axis
@@ -155,11 +192,11 @@ fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
         let middle = p.lo.midpoint(p.hi);
         let away: Vec<f64> = points.iter().map(|q| q.distance(middle)).collect();
         let reach = away.iter().copied().fold(0.0, f64::max);
-        let class = if p.is_level() && p.hi.y < all.0.y + 0.2 {
+        let class = if p.is_level() && p.hi.y < all.0.y + LOW {
             StrokeClass::Ground
-        } else if dips(&away, 0.2 * reach).len() > 4 {
+        } else if dips(&away, FROND_DIP * reach).len() > FRONDS {
             StrokeClass::Corolla
-        } else if p.open < SHUT {
+        } else if p.open < MOUTH {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
@@ -173,7 +210,7 @@ fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
 fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Fruit, TrunkOutline, Vein};
     let class = |p: &Part| match draft.class[p.stroke] {
-        TrunkOutline | Vein if p.open > SHUT => Some(Axis),
+        TrunkOutline | Vein if p.open > MOUTH => Some(Axis),
         Crown if flower => Some(Corolla),
         TrunkOutline | Crown | Fruit => Some(Blade),
         Corolla if !flower => Some(Blade),
@@ -185,11 +222,11 @@ fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
 fn cactus(draft: &Draft<'_>, parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     let size = low.distance(high);
     let class = |p: &Part| {
-        let pot = draft.said[p.stroke].shares[StrokeClass::Pot.place()] > 0.3;
-        if pot || (p.is_level() && p.lo.y < low.y + 0.1) {
+        let pot = draft.said[p.stroke].shares[StrokeClass::Pot.place()] > POT_SHARE;
+        if pot || (p.is_level() && p.lo.y < low.y + LOWEST) {
             return None;
         }
-        let large = p.lo.distance(p.hi) > 0.25 * size;
+        let large = p.lo.distance(p.hi) > ARM * size;
         Some(if large { StrokeClass::TrunkOutline } else { StrokeClass::Axis })
     };
     parts.iter().filter_map(|p| Some((p.stroke, class(p)?))).collect()
@@ -199,11 +236,11 @@ fn grass(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         let s = &draft.ink.strokes[p.stroke];
         let heights: Vec<f64> = s.points.iter().map(|q| q.y).collect();
-        if p.is_level() && dips(&heights, 0.3 * p.tall()).len() < 4 {
+        if p.is_level() && dips(&heights, GRASS_DIP * p.tall()).len() < GRASS_DIPS {
             StrokeClass::Ground
-        } else if dips(&heights, 0.3 * p.tall()).len() >= 4 {
+        } else if dips(&heights, GRASS_DIP * p.tall()).len() >= GRASS_DIPS {
             StrokeClass::Corolla
-        } else if p.open < SHUT {
+        } else if p.open < MOUTH {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
@@ -218,9 +255,9 @@ fn leaf(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         if p.stroke == blade.stroke {
             StrokeClass::Blade
-        } else if share_inside(&draft.ink.strokes[p.stroke].points, 3, &blade.hull) > 0.6 {
+        } else if share_inside(&draft.ink.strokes[p.stroke].points, STRIDE, &blade.hull) > VEIN {
             StrokeClass::Vein
-        } else if p.area > 0.4 * largest {
+        } else if p.area > LEAFLET * largest {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
@@ -236,14 +273,14 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let lines = !parts.iter().any(|p| p.open < 0.5 && p.area > 0.5 * largest);
     let bodies: Vec<&Part> = parts
         .iter()
-        .filter(|p| p.area > 0.25 * largest && (lines || p.open < 0.5 || p.area >= largest))
+        .filter(|p| p.area > BODY * largest && (lines || p.open < 0.5 || p.area >= largest))
         .collect();
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
         bodies.iter().any(|b| {
             b.stroke != p.stroke
                 && b.area > p.area
-                && share_inside(&draft.ink.strokes[p.stroke].points, 3, &b.hull) > 0.7
+                && share_inside(&draft.ink.strokes[p.stroke].points, STRIDE, &b.hull) > SKIN
                 && contains(&b.hull, p.lo.midpoint(p.hi))
         })
     };
@@ -252,7 +289,7 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
             StrokeClass::Other
         } else if body(p) {
             StrokeClass::Fruit
-        } else if p.open < SHUT {
+        } else if p.open < MOUTH {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
@@ -277,8 +314,8 @@ fn house_plant(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classe
 /// A pot that was drawn in several lines: what lies low, is not tall, and spans what is level there.
 fn pot_of_lines(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     let tall = high.y - low.y;
-    let bottom = |p: &&Part| p.hi.y < low.y + 0.5 * tall && p.lo.y < low.y + 0.45 * tall;
-    let lowest = |p: &&Part| p.lo.y < low.y + 0.08 * tall && p.wide() > 0.15 * (high.x - low.x);
+    let bottom = |p: &&Part| p.hi.y < low.y + 0.5 * tall && p.lo.y < low.y + POT_FOOT * tall;
+    let lowest = |p: &&Part| p.lo.y < low.y + POT_BOTTOM * tall && p.wide() > POT_WIDE * (high.x - low.x);
     if !parts.iter().filter(bottom).any(|p| lowest(&p)) {
         return Vec::new();
     }
@@ -290,8 +327,12 @@ fn pot(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     let tall = high.y - low.y;
     let found = parts
         .iter()
-        .filter(|p| p.lo.y < low.y + 0.06 * tall && p.hi.y < low.y + 0.65 * tall && p.wide() > 0.4 * p.tall())
-        .filter(|p| p.area > 0.4 * p.wide() * p.tall())
+        .filter(|p| {
+            p.lo.y < low.y + BOX_BOTTOM * tall
+                && p.hi.y < low.y + BOX_TOP * tall
+                && p.wide() > BOX_WIDE * p.tall()
+        })
+        .filter(|p| p.area > BOX_FULL * p.wide() * p.tall())
         .max_by(|a, b| a.area.total_cmp(&b.area));
     found.map(|p| (p.stroke, StrokeClass::Pot)).into_iter().collect()
 }

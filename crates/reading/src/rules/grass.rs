@@ -4,10 +4,11 @@ use geom::crossing_points;
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{Findings, STRAIGHT, any, openness, unsure};
+use super::{Findings, any, openness, unsure};
 use crate::corolla::{dips, winding};
 use crate::draft::Draft;
 use crate::near::bounds;
+use crate::thresholds::STRAIGHT;
 
 /// A tangle is known by its first so many crossings.
 const MOST_CROSSINGS: usize = 500;
@@ -23,6 +24,17 @@ const AROUND: f64 = 4.5;
 const FEWEST_STALKS: usize = 4;
 /// A blade of grass is no longer than its chord by more than this share.
 const BARE: f64 = 0.85;
+/// A row goes on to the side by more than this share of its width.
+const ONWARDS: f64 = 0.6;
+/// It dips by this share of its height.
+const DIP: f64 = 0.3;
+/// A leg of a tuft is longer than this share of the stroke's diagonal, and apart from the other by this share of the shorter
+/// one.
+const LEG: f64 = 0.25;
+const APART: f64 = 0.15;
+/// The turn between the legs, at this share of the diagonal from the root, is sharper than 114 degrees (the cosine).
+const AT_TURN: f64 = 0.06;
+const SHARP: f64 = 0.4;
 
 /// A line that crosses itself again and again all over the place is a scribble, not petals: those cross in the middle.
 pub(super) fn tangles(draft: &Draft<'_>) -> Findings {
@@ -52,8 +64,8 @@ pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
         let s = &draft.ink.strokes[k];
         let Some((lo, hi)) = bounds(&s.points) else { return false };
         let heights: Vec<f64> = s.points.iter().map(|p| p.y - lo.y).collect();
-        let on = (s.points[s.points.len() - 1].x - s.points[0].x).abs() > 0.6 * (hi.x - lo.x);
-        let cuts = dips(&heights, 0.3 * (hi.y - lo.y)).len();
+        let on = (s.points[s.points.len() - 1].x - s.points[0].x).abs() > ONWARDS * (hi.x - lo.x);
+        let cuts = dips(&heights, DIP * (hi.y - lo.y)).len();
         on && cuts >= FEWEST_DIPS && winding(&s.points, lo.midpoint(hi)) < AROUND
     };
     let rows: Vec<usize> = (0..draft.class.len())
@@ -103,15 +115,15 @@ fn two_legs(points: &[DVec2]) -> Option<[Vec<DVec2>; 2]> {
     let (left, right) = (&points[..=low], &points[low..]);
     let bare = |leg: &[DVec2]| {
         let run = leg[0].distance(leg[leg.len() - 1]);
-        run > BARE * geom::polyline_length(leg) && run > 0.25 * lo.distance(hi)
+        run > BARE * geom::polyline_length(leg) && run > LEG * lo.distance(hi)
     };
     let (a, b) = (points[0] - points[low], points[points.len() - 1] - points[low]);
     // Sharp at the turn itself, too: a trough is no root.
-    let far = |p: &&DVec2| p.distance(points[low]) > 0.06 * lo.distance(hi);
+    let far = |p: &&DVec2| p.distance(points[low]) > AT_TURN * lo.distance(hi);
     let turn = left.iter().rev().find(far).zip(right.iter().find(far));
     let turn = turn.map(|(u, v)| (*u - points[low], *v - points[low]));
-    let sharp = turn.is_some_and(|(u, v)| u.dot(v) > -0.4 * u.length() * v.length());
-    let apart = (a - b).length() > 0.15 * a.length().min(b.length());
+    let sharp = turn.is_some_and(|(u, v)| u.dot(v) > -SHARP * u.length() * v.length());
+    let apart = (a - b).length() > APART * a.length().min(b.length());
     (bare(left) && bare(right) && sharp && apart).then(|| [left.to_vec(), right.to_vec()])
 }
 

@@ -4,8 +4,8 @@
 //! stands on and what is missing around it can. Each rule is a row of [`RULES`]; they are applied in that order, and none
 //! changes a class that the user set. `cargo xtask train-strokes` says what each is worth.
 //!
-//! Numbers are in ink units (the drawing's diagonal is 1) or shares of something that the rule names. They were chosen by
-//! looking at drawings by the public; the named ones are shared by several tests or say what a line is.
+//! Their numbers stand at the top of each module, those of several below; `thresholds` says in which unit they are and where
+//! they come from.
 
 mod as_kind;
 mod grass;
@@ -22,6 +22,7 @@ use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
+use crate::thresholds::STRAIGHT;
 
 pub(crate) use as_kind::take_for;
 
@@ -236,16 +237,25 @@ fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
     draft.united.extend(found.united);
 }
 
-/// Ends farther apart than this share of the length: a line that is rather straight, as in [`ink::LONE_LINE`].
-const STRAIGHT: f64 = 0.7;
 /// Ends nearer than this share of the length: an outline that the pen meant to close.
 const CLOSED: f64 = 0.2;
-/// Up to here a stroke may still be an outline with a wide mouth: what is left of a circle without a third of it.
-const MOUTH: f64 = 0.35;
+/// Of an outline of a crown or a flower, nearer than this: they are drawn with less care than a box.
+const SHUT: f64 = 0.24;
 /// Of a closed outline with a stalk, the share of the length that the loop has at least.
 const STALK: f64 = 0.35;
 /// A trunk's top is at most this far from its crown.
 const REACH: f64 = 0.07;
+/// What stands is at most so many times as wide as tall: a trunk with a flared foot.
+const STANDS: f64 = 1.2;
+/// A line stands if it is higher than this share of its width.
+const UPRIGHT: f64 = 0.8;
+/// Two sides of a trunk are farther apart than this, or the line was drawn twice: three steps of the pen (*sampled*).
+const SIDES_APART: f64 = 0.015;
+/// Every so many points of a stroke are looked at, where its share inside something counts: ink is *sampled* more densely than
+/// outlines bend.
+const STRIDE: usize = 3;
+/// What lies inside a crown does so with this share of its points: it may stick out a little.
+const WITHIN: f64 = 0.8;
 
 fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
     draft.class.iter().any(|c| classes.contains(c))
@@ -286,7 +296,7 @@ fn outside(outline: &[DVec2], p: DVec2) -> f64 {
 fn upright(draft: &Draft<'_>, k: usize) -> bool {
     let s = &draft.ink.strokes[k];
     let (top, foot) = ends(&s.points);
-    openness(s) > STRAIGHT && top.y - foot.y > 0.8 * (top.x - foot.x).abs()
+    openness(s) > STRAIGHT && top.y - foot.y > UPRIGHT * (top.x - foot.x).abs()
 }
 
 /// Upper and lower ends of the upright lines of a class.

@@ -8,6 +8,7 @@ use super::{Findings, any, openness, unsure, upright};
 use crate::contour::width_at;
 use crate::draft::Draft;
 use crate::near::bounds;
+use crate::thresholds::{SAME_PLACE, WELL_SHORT};
 
 /// A pot is at least this wide.
 const NARROWEST: f64 = 0.05;
@@ -22,6 +23,19 @@ const LEVEL: f64 = 0.95;
 const WIDE: f64 = 0.6;
 /// What begins at the ground begins this near to it.
 const NEAR: f64 = 0.025;
+/// What stands in a pot begins at its rim, or inside it by less than this share of its height.
+const INSIDE: f64 = 0.4;
+/// Its foot is its lowest part, of this share of its height.
+const LOWEST: f64 = 0.05;
+/// A pot's rim and bottom are measured at these shares of its height, and the rim is nearly as wide as the bottom.
+const UPPER: f64 = 0.93;
+const LOWER: f64 = 0.1;
+const WIDENS: f64 = 0.95;
+/// A pot fills this share of its box.
+const FULL: f64 = 0.6;
+/// The ground rises by less than this share of its width, and what stands on it by more than so many times [`NEAR`].
+const FLAT: f64 = 0.08;
+const RISES: f64 = 4.0;
 
 /// A box at the bottom with a flat top on which the plant stands is its pot.
 pub(super) fn pots(draft: &Draft<'_>) -> Findings {
@@ -40,7 +54,7 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
         let (lo, hi) = boxes[k];
         let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
         if !unsure(draft, k)
-            || lo.y > low + 0.01
+            || lo.y > low + SAME_PLACE
             || wide < NARROWEST
             || !(TALL.start * wide..TALL.end * wide).contains(&tall)
         {
@@ -52,14 +66,14 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
             .filter(|&j| j != k && [Axis, TrunkOutline].contains(&draft.class[j]))
             .filter(|&j| {
                 let (l, h) = boxes[j];
-                l.y > hi.y - 0.4 * tall && l.y < hi.y + 0.06 && h.y > hi.y + 0.5 * tall
+                l.y > hi.y - INSIDE * tall && l.y < hi.y + WELL_SHORT && h.y > hi.y + 0.5 * tall
             })
             .filter_map(|j| {
                 let foot: Vec<DVec2> = draft.ink.strokes[j]
                     .points
                     .iter()
                     .copied()
-                    .filter(|p| p.y < boxes[j].0.y + 0.05 * (boxes[j].1.y - boxes[j].0.y))
+                    .filter(|p| p.y < boxes[j].0.y + LOWEST * (boxes[j].1.y - boxes[j].0.y))
                     .collect();
                 bounds(&foot).filter(|(l, h)| l.x > lo.x && h.x < hi.x).map(|(l, h)| (j, h.x - l.x))
             })
@@ -69,8 +83,8 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
         let is_pot = match draft.class[k] {
             TrunkOutline | Fruit => simple_outline(points).is_some_and(|o| {
                 let at = |t: f64| width_at(&o, lo.y + t * tall);
-                let flat = at(0.93) > RIM * wide && at(0.93) >= 0.95 * at(0.1);
-                flat && signed_area(&o) > 0.6 * wide * tall && feet.iter().any(|f| f.1 < FOOT * wide)
+                let flat = at(UPPER) > RIM * wide && at(UPPER) >= WIDENS * at(LOWER);
+                flat && signed_area(&o) > FULL * wide * tall && feet.iter().any(|f| f.1 < FOOT * wide)
             }),
             Corolla | Scribble => feet.len() >= 3,
             _ => false,
@@ -84,7 +98,8 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
 }
 
 fn contained(inner: (DVec2, DVec2), outer: (DVec2, DVec2)) -> bool {
-    inner.0.cmpge(outer.0 - DVec2::splat(0.01)).all() && inner.1.cmple(outer.1 + DVec2::splat(0.01)).all()
+    inner.0.cmpge(outer.0 - DVec2::splat(SAME_PLACE)).all()
+        && inner.1.cmple(outer.1 + DVec2::splat(SAME_PLACE)).all()
 }
 
 /// A long level line on which the plant stands, with nothing but lines below it, is the ground, and what is below are roots.
@@ -97,7 +112,7 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
     }
     for (k, s) in strokes.iter().enumerate() {
         let (lo, hi) = boxes[k];
-        let level = openness(s) > LEVEL && hi.y - lo.y < 0.08 * (hi.x - lo.x);
+        let level = openness(s) > LEVEL && hi.y - lo.y < FLAT * (hi.x - lo.x);
         let others = || boxes.iter().enumerate().filter(|(j, _)| *j != k);
         let reach = others().map(|(_, b)| *b).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let wide = reach.is_some_and(|(l, h)| hi.x - lo.x > WIDE * (h.x - l.x));
@@ -109,7 +124,7 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
             others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
         let lines = below.iter().all(|&j| openness(&strokes[j]) > 0.5 && unsure(draft, j));
         let stands = others().any(|(j, b)| {
-            b.1.y > y + 4.0 * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
+            b.1.y > y + RISES * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
         });
         // Roots hang from the ground or from one another: what lies apart is something else.
         let hangs = below.iter().any(|&j| boxes[j].1.y > y - NEAR);

@@ -4,11 +4,14 @@ use geom::{convex_hull, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{CLOSED, Findings, REACH, any, openness, outside, share_inside, standing, unsure, upright};
+use super::{
+    CLOSED, Findings, REACH, SIDES_APART, any, openness, outside, share_inside, standing, unsure, upright,
+};
 use crate::contour::{crown_outline, neck};
 use crate::draft::Draft;
 use crate::near::bounds;
 use crate::rings::rings;
+use crate::thresholds::{SAME_PLACE, WELL_SHORT};
 
 /// A crown fills this share of its hull; the arms of a cactus leave hollows.
 const FULL: f64 = 0.78;
@@ -28,6 +31,35 @@ const LINE: f64 = 0.6;
 const STRAIGHT_LINE: f64 = 0.85;
 /// A fruit covers less than this share of its crown.
 const SMALL: f64 = 0.03;
+/// The longest piece of a body has more than this share of the length of all.
+const MAIN: f64 = 0.7;
+/// What hangs below a crown in one stroke is a trunk: narrower than this share of it, higher than that share of all, and wider
+/// than a line that was drawn twice (four steps of the pen, *sampled*). Such a crown fills this share of its hull.
+const HUNG_WIDTH: f64 = 0.4;
+const HUNG_HEIGHT: f64 = 0.2;
+const NO_LINE: f64 = 0.02;
+const HEAD_FULL: f64 = 0.6;
+/// Sides of a trunk are nearer to one another than so many times the shorter one's length; so many times as far apart above as
+/// below at most; and both feet stand within this of the lowest point.
+const BESIDE: f64 = 1.3;
+const SPREAD: f64 = 1.6;
+const FEET: f64 = 0.15;
+/// A trunk that bears fronds is slimmer than this share of its length, and so many ends at least meet at its top.
+const SLIM: f64 = 0.3;
+const FAN: usize = 4;
+/// The tops of a trunk's sides lie below this share of their crown's height.
+const INTO: f64 = 0.6;
+/// A crown has no outline beside it of more than this share of its area.
+const LONE: f64 = 0.25;
+/// A stalk drawn as two lines is narrower than this share of its leaf; a trunk is wider.
+const TRUNK_WIDE: f64 = 0.1;
+/// Lines make up an outline where their ends meet within this share of its diagonal.
+const MEETS: f64 = 0.25;
+/// Every so many points of a ring are looked at: those of fruits are short, and all of one is in or out.
+const FRUIT_STRIDE: usize = 4;
+/// The line of the ground rises by less than this share of its width, and lies in this lowest share of the crown over it.
+const FLAT: f64 = 0.3;
+const CROWN_FOOT: f64 = 0.2;
 
 /// An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.
 pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
@@ -40,7 +72,7 @@ pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
     let bodies: Vec<usize> = (0..draft.class.len()).filter(|&k| draft.class[k] == TrunkOutline).collect();
     let total: f64 = bodies.iter().map(|&k| length(k)).sum();
     // One of several pieces of a body is no tree.
-    let main: Vec<usize> = bodies.into_iter().filter(|&k| length(k) > 0.7 * total).collect();
+    let main: Vec<usize> = bodies.into_iter().filter(|&k| length(k) > MAIN * total).collect();
     for k in main {
         let points = &draft.ink.strokes[k].points;
         let Some(outline) = unsure(draft, k).then(|| simple_outline(points)).flatten() else { continue };
@@ -57,11 +89,13 @@ pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
 /// The pen met its own line where crown and trunk meet: the outline is the crown, and the rest hangs below it.
 fn closes_above_its_trunk(points: &[DVec2], outline: &[DVec2]) -> bool {
     let (Some((lo, hi)), Some(all)) = (bounds(outline), bounds(points)) else { return false };
-    let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < lo.y - 0.01).collect();
+    let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < lo.y - SAME_PLACE).collect();
     let hangs = bounds(&below).is_some_and(|(l, h)| {
-        h.x - l.x < 0.4 * (hi.x - lo.x) && lo.y - l.y > 0.2 * (all.1.y - all.0.y) && h.x - l.x > 0.02
+        h.x - l.x < HUNG_WIDTH * (hi.x - lo.x)
+            && lo.y - l.y > HUNG_HEIGHT * (all.1.y - all.0.y)
+            && h.x - l.x > NO_LINE
     });
-    hangs && signed_area(outline) > 0.6 * signed_area(&convex_hull(outline))
+    hangs && signed_area(outline) > HEAD_FULL * signed_area(&convex_hull(outline))
 }
 
 /// Two single lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.
@@ -94,11 +128,11 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
             let (long, short) = (draft.ink.strokes[a].length, draft.ink.strokes[b].length);
             let gaps = (a_top.distance(b_top), a_foot.distance(b_foot));
             let alike = short.min(long) > ALIKE * short.max(long);
-            let beside = gaps.0.max(gaps.1) < 1.3 * short.min(long)
-                && gaps.0 > 0.015
-                && gaps.0 < 1.6 * gaps.1
+            let beside = gaps.0.max(gaps.1) < BESIDE * short.min(long)
+                && gaps.0 > SIDES_APART
+                && gaps.0 < SPREAD * gaps.1
                 && (a_foot.x < b_foot.x) == (a_top.x < b_top.x);
-            let deep = a_foot.y.max(b_foot.y) < low + 0.15;
+            let deep = a_foot.y.max(b_foot.y) < low + FEET;
             if !(alike && beside && deep && unsure(draft, a) && unsure(draft, b)) {
                 continue;
             }
@@ -114,10 +148,10 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
             let hub = a_top.midpoint(b_top);
             let fan = all_ends
                 .iter()
-                .filter(|(k, p)| *k != a && *k != b && p.distance(hub) < 0.5 * gaps.0 + 0.06)
+                .filter(|(k, p)| *k != a && *k != b && p.distance(hub) < 0.5 * gaps.0 + WELL_SHORT)
                 .count();
-            let slim = gaps.0.max(gaps.1) < 0.3 * short.min(long);
-            if crowned || (fan >= 4 && slim && crowns.is_empty()) {
+            let slim = gaps.0.max(gaps.1) < SLIM * short.min(long);
+            if crowned || (fan >= FAN && slim && crowns.is_empty()) {
                 sides = Some((a, b));
             }
         }
@@ -159,14 +193,14 @@ pub(super) fn crown_on_trunk(draft: &Draft<'_>) -> Findings {
     }
     let carry = sides.len() >= 2
         && sides.iter().all(|(_, top, foot)| {
-            outside(outline, *top) < REACH && foot.y < lo.y && top.y < lo.y + 0.6 * (hi.y - lo.y)
+            outside(outline, *top) < REACH && foot.y < lo.y && top.y < lo.y + INTO * (hi.y - lo.y)
         });
     let over = sides.iter().all(|s| s.1.x > lo.x && s.1.x < hi.x);
     let wide = sides.iter().map(|s| s.1.x).fold(f64::NEG_INFINITY, f64::max)
         - sides.iter().map(|s| s.1.x).fold(f64::INFINITY, f64::min);
-    let lone = others < 0.25 * area && *area > CROWN_AREA;
+    let lone = others < LONE * area && *area > CROWN_AREA;
     // A leaf on a stalk that was drawn as two lines is no tree: trunks are thicker.
-    let trunk = outlined > 0 || wide > 0.1 * (hi.x - lo.x);
+    let trunk = outlined > 0 || wide > TRUNK_WIDE * (hi.x - lo.x);
     if carry && lone && over && trunk && wide < NARROW * (hi.x - lo.x) {
         parts.iter().for_each(|&k| found.set(k, Crown));
         sides[outlined..].iter().for_each(|s| found.set(s.0, TrunkOutline));
@@ -192,7 +226,7 @@ fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
         let Some((lo, hi)) = bounds(&ring.points).filter(|_| ring.parts.len() > 1) else { continue };
         let meets = |&g: &usize| {
             let (a, b) = ring.gap(g);
-            a.distance(b) < 0.25 * lo.distance(hi)
+            a.distance(b) < MEETS * lo.distance(hi)
         };
         if let Some(outline) = simple_outline(&ring.points).filter(|_| ring.gaps.iter().all(meets)) {
             found.push((signed_area(&outline), ring.parts.iter().map(|&p| open[p]).collect(), outline));
@@ -212,7 +246,7 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
             continue;
         }
         let s = &draft.ink.strokes[k];
-        let around = crowns.iter().find(|c| share_inside(&s.points, 4, c) >= IN_CROWN);
+        let around = crowns.iter().find(|c| share_inside(&s.points, FRUIT_STRIDE, c) >= IN_CROWN);
         let (Some(crown), hull) = (around, convex_hull(&s.points)) else { continue };
         let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };
         let round = (hi.x - lo.x).min(hi.y - lo.y) > ROUND * (hi.x - lo.x).max(hi.y - lo.y);
@@ -234,10 +268,10 @@ pub(super) fn line_is_no_fruit(draft: &Draft<'_>) -> Findings {
         let Some((lo, hi)) = bounds(&s.points).filter(|_| unsure(draft, k) && openness(s) > LINE) else {
             continue;
         };
-        let flat = hi.y - lo.y < 0.3 * (hi.x - lo.x);
+        let flat = hi.y - lo.y < FLAT * (hi.x - lo.x);
         let foot = crowns
             .iter()
-            .any(|(l, h)| lo.midpoint(hi).y < l.y + 0.2 * (h.y - l.y) && hi.x > l.x && lo.x < h.x);
+            .any(|(l, h)| lo.midpoint(hi).y < l.y + CROWN_FOOT * (h.y - l.y) && hi.x > l.x && lo.x < h.x);
         if flat && foot {
             found.set(k, Ground);
         } else if openness(s) > STRAIGHT_LINE {

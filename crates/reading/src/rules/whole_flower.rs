@@ -7,11 +7,12 @@ use geom::{contains, convex_hull, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{Findings, openness, unsure};
+use super::{Findings, SHUT, openness, unsure};
 use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
+use crate::thresholds::STRAIGHT;
 
 /// Petals round a disc at least.
 const FEWEST: usize = 4;
@@ -19,10 +20,31 @@ const FEWEST: usize = 4;
 const UNDER: f64 = 0.4;
 /// Between two neighbouring petals at most this angle, radians.
 const WIDEST: f64 = 2.2;
-/// The pen meant to close an outline whose ends are nearer than this share of its length.
-const SHUT: f64 = 0.24;
 /// More outlines are no flower in a few strokes: each is compared with each.
 const MOST: usize = 80;
+/// An outline of less area is a dot; one whose length squared is so many times its area is a scribble (12.6 of a circle,
+/// *geometry*).
+const NO_AREA: f64 = 1e-5;
+const SCRIBBLE: f64 = 60.0;
+/// Of a ring, the shorter side of its box over the longer one at least.
+const ROUND: f64 = 0.6;
+/// A petal beside the disc keeps this share of the disc's radius away from its middle; its own middle lies this far out; and it
+/// begins within so many radii of the disc and that share of its own radius.
+const BESIDE: f64 = 0.2;
+const OUTSIDE: f64 = 0.8;
+const AT_DISC: f64 = 1.5;
+const AT_PETAL: f64 = 0.1;
+/// Circles touch where their middles are nearer than so many times both radii (1 of true circles, *geometry*); a berry behind
+/// others has between these shares of their usual radius.
+const TOUCH: f64 = 1.15;
+const BERRY: core::ops::Range<f64> = 0.6..1.6;
+/// A disc is smaller than so many times its petals.
+const LARGEST_DISC: f64 = 2.5;
+/// The disc of a lobed corolla: this near to its middle, and between these shares of its radius. A lobe dips by that share of
+/// the reach.
+const CENTRAL: f64 = 0.25;
+const SIZED: core::ops::Range<f64> = 0.1..0.7;
+const LOBE: f64 = 0.12;
 
 struct Loop {
     stroke: usize,
@@ -67,7 +89,7 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     // What bears them is a stem, and what the stem bears are leaves.
     let sides: Vec<usize> = (0..draft.class.len())
         .filter(|&k| draft.class[k] == StrokeClass::TrunkOutline && unsure(draft, k))
-        .filter(|&k| openness(&draft.ink.strokes[k]) > 0.7)
+        .filter(|&k| openness(&draft.ink.strokes[k]) > STRAIGHT)
         .collect();
     if let [stem] = sides[..] {
         found.settle(stem, StrokeClass::Axis);
@@ -84,7 +106,7 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
     let (lo, hi) = bounds(&s.points).filter(|_| hull.len() > 2)?;
     let area = signed_area(&hull);
     // Not a scribble.
-    if area < 1e-5 || s.length * s.length > 60.0 * area {
+    if area < NO_AREA || s.length * s.length > SCRIBBLE * area {
         return None;
     }
     let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
@@ -92,7 +114,7 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
         stroke: k,
         middle: geom::centroid(&hull),
         radius: (area / ops::PI).sqrt(),
-        round: wide.min(tall) > 0.6 * wide.max(tall),
+        round: wide.min(tall) > ROUND * wide.max(tall),
         hull,
     })
 }
@@ -123,9 +145,12 @@ fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Opt
             let l = &loops[i];
             let (way, (gap, far)) = (l.middle.distance(disc.middle), reach(l));
             // A petal begins beside the disc, or under it and then at its own end.
-            let beside = !contains(&l.hull, disc.middle) && gap > 0.2 * disc.radius;
+            let beside = !contains(&l.hull, disc.middle) && gap > BESIDE * disc.radius;
             let begins = beside || way > UNDER * far;
-            i != d && begins && way > 0.8 * disc.radius && gap < 1.5 * disc.radius + 0.1 * l.radius
+            i != d
+                && begins
+                && way > OUTSIDE * disc.radius
+                && gap < AT_DISC * disc.radius + AT_PETAL * l.radius
         })
         .collect();
     if petals.len() < FEWEST {
@@ -144,19 +169,19 @@ fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Opt
     // A disc is no larger than its petals are long; berries have berries behind them.
     let behind = free.iter().any(|&i| {
         let l = &loops[i];
-        let touches = |p: &usize| loops[*p].middle.distance(l.middle) < 1.15 * (loops[*p].radius + l.radius);
+        let touches = |p: &usize| loops[*p].middle.distance(l.middle) < TOUCH * (loops[*p].radius + l.radius);
         let beyond = petals.iter().any(|p| {
             touches(p)
                 && l.middle.distance(disc.middle) > loops[*p].middle.distance(disc.middle) + 0.5 * usual
         });
         i != d
             && !petals.contains(&i)
-            && l.radius > 0.6 * usual
-            && l.radius < 1.6 * usual
+            && l.radius > BERRY.start * usual
+            && l.radius < BERRY.end * usual
             && l.round
             && beyond
     });
-    let fits = petals.len() >= FEWEST && widest < WIDEST && disc.radius < 2.5 * usual && !behind;
+    let fits = petals.len() >= FEWEST && widest < WIDEST && disc.radius < LARGEST_DISC * usual && !behind;
     fits.then_some(petals)
 }
 
@@ -169,12 +194,12 @@ fn lobed(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Vec<(usize, usize
             .collect();
         let [d] = inside[..] else { continue };
         let disc = &loops[d];
-        let central = disc.middle.distance(outer.middle) < 0.25 * outer.radius;
-        let sized = disc.radius > 0.1 * outer.radius && disc.radius < 0.7 * outer.radius;
+        let central = disc.middle.distance(outer.middle) < CENTRAL * outer.radius;
+        let sized = disc.radius > SIZED.start * outer.radius && disc.radius < SIZED.end * outer.radius;
         let points = &draft.ink.strokes[outer.stroke].points;
         let away: Vec<f64> = points.iter().map(|q| q.distance(disc.middle)).collect();
         let reach = away.iter().copied().fold(0.0, f64::max);
-        let lobes = dips(&away, 0.12 * reach).len();
+        let lobes = dips(&away, LOBE * reach).len();
         if central && sized && disc.round && lobes > FEWEST && simple_outline(points).is_some() {
             found.push((i, d));
         }

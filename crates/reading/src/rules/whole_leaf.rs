@@ -6,12 +6,13 @@ use geom::{closest_on_polyline, convex_hull, pca2, polyline_length, signed_area,
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{Findings, MOUTH, STALK, openness, share_inside, unsure};
+use super::{Findings, STALK, openness, share_inside, unsure};
 use crate::Kind;
 use crate::blade::{first_round, split_stalks};
 use crate::draft::Draft;
 use crate::near::bounds;
 use crate::rings::rings;
+use crate::thresholds::MOUTH;
 
 /// The margin is at least this share of the drawing, corner to corner.
 const LARGE: f64 = 0.5;
@@ -36,6 +37,12 @@ const SLENDER: f64 = 1.25;
 const LENGTHWISE: f64 = 0.85;
 /// The longest strokes, of which the margin is made.
 const LONGEST: usize = 5;
+/// Of side veins one in so many may be something else.
+const ODD: usize = 8;
+/// The farthest point of a line drawn there and back lies half its length away (*geometry*), or nearly.
+const THERE_AND_BACK: core::ops::Range<f64> = 0.45..0.55;
+/// Points of a line that are looked at.
+const SAMPLES: usize = 40;
 
 /// A margin and what it is made of.
 struct Margin {
@@ -131,7 +138,7 @@ fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
     let rest: Vec<usize> = (0..draft.class.len()).filter(|k| !margin.strokes.contains(k)).collect();
     let inside = |k: usize| {
         let points = &draft.ink.strokes[k].points;
-        share_inside(points, points.len().div_ceil(40), &margin.outline)
+        share_inside(points, points.len().div_ceil(SAMPLES), &margin.outline)
     };
     let pca = pca2(&margin.outline)?;
     let length = pca.extent[0].max(pca.extent[1]);
@@ -158,7 +165,7 @@ fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
     let lines =
         side.iter().filter(|&&k| is_line(&draft.ink.strokes[k].points, 0.5) && inside(k) > INSIDE).count();
     // A piece of the margin or of the petiole may be left over.
-    if lines + side.len() / 8 + usize::from(side.len() > 2) < side.len() {
+    if lines + side.len() / ODD + usize::from(side.len() > 2) < side.len() {
         return None;
     }
     // It begins at the midrib, or crosses it.
@@ -180,7 +187,7 @@ fn is_line(points: &[DVec2], straight: f64) -> bool {
     let (a, b) = far_ends(points);
     let length = polyline_length(points);
     let once = points[0].distance(points[points.len() - 1]) > straight * length;
-    once || (a.distance(b) > 0.45 * length && a.distance(b) < 0.55 * length)
+    once || (a.distance(b) > THERE_AND_BACK.start * length && a.distance(b) < THERE_AND_BACK.end * length)
 }
 
 /// The first point, and the one farthest from it.

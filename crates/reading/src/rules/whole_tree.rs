@@ -6,7 +6,7 @@ use geom::{contains, convex_hull, crossing_points, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{Findings, openness, outside, share_inside, unsure};
+use super::{Findings, SHUT, SIDES_APART, STANDS, STRIDE, WITHIN, openness, outside, share_inside, unsure};
 use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
@@ -20,14 +20,66 @@ const BARE: f64 = 0.1;
 const REACH: f64 = 0.08;
 /// Feet within this share of the height of the lowest point stand on the ground.
 const FOOT: f64 = 0.12;
-/// The pen meant to close an outline whose ends are nearer than this share of its length.
-const SHUT: f64 = 0.24;
 /// A crown drawn as an outline fills this share of its hull.
 const FULL: f64 = 0.6;
 /// Crossings of a line at least, all over the place, before it is a scribble.
 const TANGLED: usize = 8;
 /// A scribble is this many times as long as the hull around it.
 const LONG: f64 = 1.9;
+/// The line of the ground: more open than the first, rising by less than the second share of its width, lower than the third and
+/// wider than the fourth.
+const GROUND_OPEN: f64 = 0.6;
+const GROUND_FLAT: f64 = 0.2;
+const GROUND_LOW: f64 = 0.3;
+const GROUND_WIDE: f64 = 0.15;
+/// A crown has these shares of the tree's height in height and in width at least: a smaller head on its stalk is a flower's or a
+/// fruit's.
+const CROWN_HEIGHT: f64 = 0.2;
+const CROWN_WIDTH: f64 = 0.22;
+/// A trunk ends below this share of its crown's height, and is off its middle by less than that share of its width.
+const INTO: f64 = 0.75;
+const UNDER: f64 = 0.4;
+/// A trunk of one or two lines: ends farther apart than this share of the length, wide by less than that share of the height.
+const LINE_OPEN: f64 = 0.75;
+const LINE_LEANS: f64 = 0.45;
+/// A trunk drawn as an outline may be open above or below, where its ends differ in height by less than this share of it; it is
+/// narrower than this share of its height, and fills that share of its box.
+const OPENING: f64 = 0.35;
+const TRUNK_NARROW: f64 = 0.8;
+const TRUNK_FULL: f64 = 0.55;
+/// The sides of a trunk are nearer than so many times the lower one's height.
+const SIDES_NEAR: f64 = 1.1;
+/// A lobe has more than this share of the area of the largest, and that one more than this area.
+const MAIN: f64 = 0.2;
+const CROWN_AREA: f64 = 0.01;
+/// The shorter side of a crown over the longer one at least: of one that is high, and of one that is wide.
+const SLENDEREST: f64 = 0.4;
+const FLATTEST: f64 = 0.25;
+/// A ring of more area than this in the very middle, within this share of the crown's size, is the disc of a flower.
+const RING_AREA: f64 = 1e-4;
+const CENTRAL: f64 = 0.15;
+/// Petals, in one stroke with dips of this share of the reach, or one by one, are at least so many; petals one by one are at
+/// least this evenly far from their middle, the nearest over the farthest.
+const PETAL_DIP: f64 = 0.27;
+const PETALS: usize = 4;
+const UNEVEN: f64 = 0.6;
+/// Crossings that are looked at, and those farther from the middle than this share of the stroke's diagonal are all over the
+/// place.
+const MOST_CROSSINGS: usize = 400;
+const MIDDLE: f64 = 0.12;
+/// A line that sweeps to and fro by this share of its width so many times, both ends among them, is shading.
+const SWEEP: f64 = 0.4;
+const SWEEPS: usize = 6;
+/// Most lobes of one crown, and how near they come to one another.
+const MOST_LOBES: usize = 9;
+const LOBES_TOUCH: f64 = 0.02;
+/// A cloud has at least so many dips of this share of its reach, both ends among them.
+const CLOUD_DIP: f64 = 0.04;
+const CLOUDY: usize = 7;
+/// A vein is more open than this, and longer than that share of its leaf; a leaf is so many times as tall as wide.
+const VEIN_OPEN: f64 = 0.8;
+const VEIN_LONG: f64 = 0.4;
+const LEAF_TALL: f64 = 1.45;
 
 struct Part {
     stroke: usize,
@@ -80,15 +132,18 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
         })
         .collect();
     // The line of the ground is neither.
-    let (ground, parts): (Vec<Part>, Vec<Part>) = parts
-        .into_iter()
-        .partition(|p| p.open > 0.6 && p.height() < 0.2 * p.width() && p.hi.y < 0.3 && p.width() > 0.15);
+    let (ground, parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|p| {
+        p.open > GROUND_OPEN
+            && p.height() < GROUND_FLAT * p.width()
+            && p.hi.y < GROUND_LOW
+            && p.width() > GROUND_WIDE
+    });
     let Some((low, high)) = parts.iter().map(|p| (p.lo, p.hi)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     else {
         return found;
     };
     let tall = high.y - low.y;
-    let stands = |p: &Part| p.lo.y < low.y + FOOT * tall && p.width() < 1.2 * p.height();
+    let stands = |p: &Part| p.lo.y < low.y + FOOT * tall && p.width() < STANDS * p.height();
     let (wood, green): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(stands);
     let Some(kind) = trunk(draft, &wood) else { return found };
     let Some(crown) = crown(draft, &green, kind) else { return found };
@@ -98,12 +153,12 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
     let tip = DVec2::new(foot.midpoint(top).x, top.y);
     let fits = top.x - foot.x < NARROW * wide
         && lo.y - foot.y > BARE * tall
-        && height > 0.2 * tall
+        && height > CROWN_HEIGHT * tall
         && outside(&crown.hull, tip) < REACH
-        && top.y < lo.y + 0.75 * height
-        && (tip.x - lo.midpoint(hi).x).abs() < 0.4 * wide
+        && top.y < lo.y + INTO * height
+        && (tip.x - lo.midpoint(hi).x).abs() < UNDER * wide
         // A head that is small for its stalk is a flower's or a fruit's.
-        && wide > 0.22 * tall;
+        && wide > CROWN_WIDTH * tall;
     if !fits || (kind == Wood::Line && leaf_on_a_stalk(draft, &crown, &wood[0], (lo, hi))) {
         return found;
     }
@@ -126,21 +181,23 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
 
 /// What stands is one trunk: a line, two lines side by side, or one outline that is higher than wide.
 fn trunk(draft: &Draft<'_>, wood: &[Part]) -> Option<Wood> {
-    let line = |p: &Part| p.open > 0.75 && p.width() < 0.45 * p.height();
+    let line = |p: &Part| p.open > LINE_OPEN && p.width() < LINE_LEANS * p.height();
     match wood {
         [one] if line(one) => Some(Wood::Line),
         [one] => {
             let s = &draft.ink.strokes[one.stroke];
             let (a, b) = (s.points[0], s.points[s.points.len() - 1]);
             // Closed, open above or open below; not open to one side.
-            let level = (a.y - b.y).abs() < 0.35 * one.height();
-            let narrow = one.width() < 0.8 * one.height() && one.area() > 0.55 * one.width() * one.height();
+            let level = (a.y - b.y).abs() < OPENING * one.height();
+            let narrow = one.width() < TRUNK_NARROW * one.height()
+                && one.area() > TRUNK_FULL * one.width() * one.height();
             (narrow && (one.open < SHUT || level)).then_some(Wood::Outline)
         }
         [a, b] if line(a) && line(b) => {
             let alike = a.height().min(b.height()) > 0.5 * a.height().max(b.height());
             let apart = (a.middle().x - b.middle().x).abs();
-            (alike && apart > 0.015 && apart < 1.1 * a.height().min(b.height())).then_some(Wood::TwoLines)
+            (alike && apart > SIDES_APART && apart < SIDES_NEAR * a.height().min(b.height()))
+                .then_some(Wood::TwoLines)
         }
         _ => None,
     }
@@ -157,26 +214,26 @@ struct Green {
 
 fn crown(draft: &Draft<'_>, green: &[Part], wood: Wood) -> Option<Green> {
     let largest = green.iter().map(Part::area).fold(0.0, f64::max);
-    let (main, small): (Vec<&Part>, Vec<&Part>) = green.iter().partition(|p| p.area() > 0.2 * largest);
+    let (main, small): (Vec<&Part>, Vec<&Part>) = green.iter().partition(|p| p.area() > MAIN * largest);
     let points: Vec<DVec2> = main.iter().flat_map(|p| p.hull.iter().copied()).collect();
     let hull = convex_hull(&points);
-    if hull.len() < 3 || largest < 0.01 {
+    if hull.len() < 3 || largest < CROWN_AREA {
         return None;
     }
     // Everything else lies in it.
-    let stray = |p: &&Part| share_inside(&draft.ink.strokes[p.stroke].points, 3, &hull) < 0.8;
+    let stray = |p: &&Part| share_inside(&draft.ink.strokes[p.stroke].points, STRIDE, &hull) < WITHIN;
     if small.iter().any(stray) {
         return None;
     }
     let (lo, hi) = bounds(&hull)?;
     let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
-    if wide < 0.4 * tall || tall < 0.25 * wide {
+    if wide < SLENDEREST * tall || tall < FLATTEST * wide {
         return None;
     }
-    let rings: Vec<&&Part> = small.iter().filter(|p| p.open < SHUT && p.area() > 1e-4).collect();
+    let rings: Vec<&&Part> = small.iter().filter(|p| p.open < SHUT && p.area() > RING_AREA).collect();
     // One ring in the very middle is the disc of a flower.
     let centre = geom::centroid(&hull);
-    let central = |p: &&&Part| p.middle().distance(centre) < 0.15 * wide.max(tall);
+    let central = |p: &&&Part| p.middle().distance(centre) < CENTRAL * wide.max(tall);
     if rings.len() < 3 && rings.iter().any(central) {
         return None;
     }
@@ -220,8 +277,8 @@ fn petals(draft: &Draft<'_>, p: &Part, wood: Wood) -> bool {
     let centre = geom::centroid(&p.hull);
     let away: Vec<f64> = points.iter().map(|q| q.distance(centre)).collect();
     let reach = away.iter().copied().fold(0.0, f64::max);
-    let cuts = dips(&away, 0.27 * reach).len();
-    wood == Wood::Line && cuts >= 4
+    let cuts = dips(&away, PETAL_DIP * reach).len();
+    wood == Wood::Line && cuts >= PETALS
 }
 
 /// A line round and round all over the place.
@@ -230,11 +287,11 @@ fn tangled(draft: &Draft<'_>, p: &Part) -> bool {
     if s.length < LONG * perimeter(&p.hull) {
         return false;
     }
-    let crossings = crossing_points(&s.points, 400);
+    let crossings = crossing_points(&s.points, MOST_CROSSINGS);
     let middle = p.middle();
-    let wide = crossings.iter().filter(|q| q.distance(middle) > 0.12 * p.lo.distance(p.hi)).count();
+    let wide = crossings.iter().filter(|q| q.distance(middle) > MIDDLE * p.lo.distance(p.hi)).count();
     let sideways: Vec<f64> = s.points.iter().map(|q| q.x).collect();
-    let to_and_fro = dips(&sideways, 0.4 * p.width()).len() >= 6;
+    let to_and_fro = dips(&sideways, SWEEP * p.width()).len() >= SWEEPS;
     (crossings.len() > TANGLED || to_and_fro) && 2 * wide >= crossings.len()
 }
 
@@ -243,12 +300,12 @@ fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool 
     let round = |p: &&&Part| {
         p.open < 0.5 && p.width().min(p.height()) > 0.5 * p.width().max(p.height()) && p.hull.len() > 2
     };
-    if !lobes.iter().all(|p| round(&p)) || lobes.len() > 9 {
+    if !lobes.iter().all(|p| round(&p)) || lobes.len() > MOST_LOBES {
         return false;
     }
     let touches = |a: &Part, b: &Part| {
         let points = &draft.ink.strokes[a.stroke].points;
-        points.iter().step_by(3).any(|&q| contains(&b.hull, q) || outside(&b.hull, q) < 0.02)
+        points.iter().step_by(STRIDE).any(|&q| contains(&b.hull, q) || outside(&b.hull, q) < LOBES_TOUCH)
     };
     let mut joined = vec![false; lobes.len()];
     joined[0] = true;
@@ -267,7 +324,7 @@ fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool 
     let covered = lobes.iter().filter(|p| contains(&p.hull, centre)).count();
     let far: Vec<f64> = lobes.iter().map(|p| p.middle().distance(centre)).collect();
     let (near, most) = far.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &d| (a.min(d), b.max(d)));
-    lobes.len() < 4 || covered > 0 || near < 0.6 * most
+    lobes.len() < PETALS || covered > 0 || near < UNEVEN * most
 }
 
 /// An outline on a single line is a leaf if it is long or pointed, or if the line runs on through it.
@@ -280,11 +337,11 @@ fn leaf_on_a_stalk(draft: &Draft<'_>, crown: &Green, line: &Part, (lo, hi): (DVe
     let centre = geom::centroid(&crown.hull);
     let away: Vec<f64> = points.iter().map(|q| q.distance(centre)).collect();
     let reach = away.iter().copied().fold(0.0, f64::max);
-    let cloudy = dips(&away, 0.04 * reach).len() >= 7;
+    let cloudy = dips(&away, CLOUD_DIP * reach).len() >= CLOUDY;
     let through = line.hi.y > lo.y + 0.5 * tall;
     let veined = crown.inner.iter().any(|&k| {
         let s = &draft.ink.strokes[k];
-        openness(s) > 0.8 && s.length > 0.4 * tall
+        openness(s) > VEIN_OPEN && s.length > VEIN_LONG * tall
     });
-    (!cloudy && (through || veined || tall > 1.45 * wide)) || (through && veined)
+    (!cloudy && (through || veined || tall > LEAF_TALL * wide)) || (through && veined)
 }
