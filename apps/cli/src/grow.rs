@@ -34,7 +34,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
     let inputs = inputs.chain(&args.growth.leaf_template).chain(&args.surface.skin.materials);
     let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
@@ -58,14 +58,17 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     outputs.check()?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
-        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.skin.spec() },
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
         leaf,
         lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
+        copies: args.instances,
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, mut model, mut lods, mut item, .. } = made.map_err(|e| failure(args, &spec, e))?;
-    lods.iter_mut().chain([&mut model]).for_each(|m| m.offset_m = origin.offset_m);
+    let MadeTree { grown, mut model, mut lods, mut copies, mut item } =
+        made.map_err(|e| failure(args, &spec, e))?;
+    let without = copies.iter_mut().map(|(rest, _)| rest);
+    lods.iter_mut().chain([&mut model]).chain(without).for_each(|m| m.offset_m = origin.offset_m);
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
@@ -74,7 +77,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let (goal, plant) = ((path, format, args.surface.packing()), (&grown.plant, &model));
+        let form = levels::Form::of(&args.surface).with(&copies);
+        let (goal, plant) = ((path, format, form), (&grown.plant, &model));
         levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(path) = &args.qsm {
@@ -112,7 +116,8 @@ fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     let written = args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes());
     let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
+    args.surface.check_used(given, glb)?;
+    given.only_if(glb, &["instances"], "models as .glb", "none is made")?;
     let read = !args.growth.obstacle.is_empty() || args.points.attractors.is_some();
     given.check_axes(written || read || !args.points.root.is_empty())
 }

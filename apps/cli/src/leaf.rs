@@ -88,7 +88,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
         let plain = format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty();
         let axes = if plain { &AxesArgs::default() } else { &args.axes };
-        let (goal, plant) = ((path, format, None), (&made.plant, &made.model));
+        let (goal, plant) = ((path, format, levels::Form::default()), (&made.plant, &made.model));
         levels::write(&mut outputs, goal, plant, &lods, axes, &mut items, &machine)?;
     }
     if let Some(png) = &args.png {

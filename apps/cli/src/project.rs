@@ -127,7 +127,7 @@ pub(crate) fn make(
     let failed = |e: SceneError| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) };
     let none = || Failure::Bug("no plant was made".into());
     let mut scene = SceneEvaluator::default();
-    scene.set_wind(surface.skin.wind);
+    scene.set_wind(surface.skin.wind || surface.sway);
     scene.update(id, document, &machine.run()).map_err(failed)?;
     let chosen = document.plant(id).ok_or_else(none)?;
     let levels = (1..=surface.lods).map(|level| scene.at_level(chosen, document, level, &machine.run()));

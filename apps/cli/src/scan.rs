@@ -57,7 +57,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
     let inputs: Vec<&PathBuf> = inputs.into_iter().flatten().collect();
     let mut outputs = Outputs::new(&outputs, &inputs)?;
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
@@ -65,7 +65,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    args.given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
+    args.surface.check_used(&args.given, glb)?;
     let mut told = Report::default();
     let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
     if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
@@ -95,7 +95,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let options = ScanTreeOptions {
         scan: TreeScanSpec { at, cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
         leaves,
-        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.skin.spec() },
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
     };
     let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
     let made = machine
@@ -110,7 +110,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let goal = (path, format, args.surface.packing());
+        let goal = (path, format, levels::Form::of(&args.surface));
         let plant = (&made.plant, &made.model);
         levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
     }

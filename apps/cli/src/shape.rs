@@ -49,7 +49,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
         outputs.write("--schema", path, |file| Ok(writeln!(file, "{text}")?))?;
     }
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     check_used(args, format)?;
     if args.template {
@@ -79,7 +79,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let goal = (path, format, args.surface.packing());
+        let goal = (path, format, levels::Form::of(&args.surface));
         levels::write(&mut outputs, goal, (&plant, &model), &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(png) = &args.png {
@@ -127,7 +127,7 @@ fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
+    args.surface.check_used(given, glb)?;
     given.check_axes(format.is_some_and(|f| !f.fixed_axes()))
 }
 
@@ -206,9 +206,8 @@ fn make(
 }
 
 fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
-    let skin = &args.surface.skin;
-    let materials = skin.materials.as_deref().map(Materials::read).transpose()?;
-    Ok(SkinSpec { worn: materials.unwrap_or_default().worn(), ..skin.spec() })
+    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
+    Ok(SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() })
 }
 
 /// A flower in full bloom.

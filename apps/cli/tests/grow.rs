@@ -559,3 +559,50 @@ fn structure_and_measures_are_written_for_programs_of_the_field() {
     let told = plant["wood_volume_m3"].as_f64().unwrap();
     assert!((volume / told - 1.0).abs() < 1e-3, "cylinders of {volume} and wood of {told} cubic metres");
 }
+
+/// The JSON of a GLB.
+fn gltf(path: &Path) -> Value {
+    let glb = fs::read(path).unwrap();
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&glb[20..20 + length]).unwrap()
+}
+
+#[test]
+fn levels_instances_and_joints_are_in_the_file() {
+    let dir = folder("grow-forms");
+    spec(&dir, "bush.toml", SMALL);
+    let plain = ["bush.toml", "--no-textures", "--lods", "2", "-o"];
+    let one = item(&dir, &[&plain[..], &["one.glb", "--lod-file", "one"]].concat());
+    assert!(!dir.join("one-lod1.glb").exists(), "all levels are in one file");
+    let json = gltf(&dir.join("one.glb"));
+    assert_eq!(json["nodes"][0]["extensions"]["MSFT_lod"]["ids"].as_array().map(Vec::len), Some(2));
+    item(&dir, &[&plain[..], &["each.glb"]].concat());
+    assert!(dir.join("each-lod2.glb").exists());
+
+    let glb = |name: &str, more: &[&str]| {
+        item(&dir, &[&["bush.toml", "--no-textures", "-o", name], more].concat());
+        fs::metadata(dir.join(name)).unwrap().len()
+    };
+    let flat = glb("flat.glb", &[]);
+    let light = glb("light.glb", &["--instances"]);
+    assert!(3 * light < 2 * flat, "{light} of {flat} bytes");
+    glb("packed.glb", &["--instances", "--pack", "meshopt"]);
+    for name in ["light.glb", "packed.glb"] {
+        let info: Value = serde_json::from_str(&good(&dir, &["info", name, "--json"])).unwrap();
+        let triangles = one["counts"]["triangles"].as_u64().unwrap();
+        assert!(
+            info.to_string().contains(&triangles.to_string()),
+            "{name}: {triangles} triangles are not in {info}"
+        );
+    }
+
+    let swaying = glb("sway.glb", &["--sway"]);
+    let json = gltf(&dir.join("sway.glb"));
+    assert!(swaying > flat && json["skins"].as_array().map(Vec::len) == Some(1));
+    assert_eq!(json["animations"][0]["name"], "wind");
+    let refused = |more: &[&str]| bad(&dir, &[&["grow", "bush.toml", "--no-textures", "-o"], more].concat());
+    assert!(refused(&["x.glb", "--sway", "--lods", "1", "--lod-file", "one"]).contains("--sway"));
+    assert!(refused(&["x.glb", "--lod-file", "one"]).contains("--lod-file"));
+    assert!(refused(&["x.obj", "--instances"]).contains("--instances"));
+    assert!(refused(&["x.obj", "--sway"]).contains("--sway"));
+}

@@ -54,6 +54,7 @@ const VALUES: &[(&str, &str)] = &[
     ("leaves", "4"),
     ("length", "0.35"),
     ("list", "1"),
+    ("lod-file", "one"),
     ("lods", "1"),
     ("marks", "found.csv"),
     ("materials", "materials.toml"),

@@ -6,10 +6,12 @@ use burgeon::TreeSpec;
 use burgeon::formats::Packing;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
+use burgeon::skin::SkinSpec;
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
 use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
+use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -38,6 +40,10 @@ pub(crate) struct GrowArgs {
     pub(crate) points: PointsArgs,
     #[command(flatten)]
     pub(crate) surface: TreeSurfaceArgs,
+    /// Write each form of leaf once, and where its copies stand (`EXT_mesh_gpu_instancing`): a smaller .glb that is drawn
+    /// faster, for programs that know it.
+    #[arg(long, help_heading = "Surface", conflicts_with_all = ["wind", "sway"])]
+    pub(crate) instances: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
@@ -120,12 +126,51 @@ pub(crate) struct TreeSurfaceArgs {
     /// (docs/exports.md).
     #[arg(long, value_enum, value_name = "HOW")]
     pub(crate) pack: Option<PackWord>,
+    /// Where the coarser copies go: each into a file of its own, or all into the .glb (`MSFT_lod`) [default: each].
+    #[arg(long, value_enum, value_name = "WHERE")]
+    pub(crate) lod_file: Option<LodFileWord>,
+    /// Let the .glb sway: an animation in a loop, with a joint for each limb (docs/exports.md).
+    #[arg(long, conflicts_with_all = ["wind", "pack"])]
+    pub(crate) sway: bool,
 }
 
 impl TreeSurfaceArgs {
     pub(crate) fn packing(&self) -> Option<Packing> {
         self.pack.map(PackWord::packing)
     }
+
+    /// The coarser copies go into the model's own file.
+    pub(crate) fn in_one_file(&self) -> bool {
+        self.lod_file == Some(LodFileWord::One)
+    }
+
+    /// Coarser copies with files of their own.
+    pub(crate) fn lod_files(&self) -> u32 {
+        if self.in_one_file() { 0 } else { self.lods }
+    }
+
+    /// How the meshes are made; what sways needs the columns of the wind.
+    pub(crate) fn spec(&self) -> SkinSpec {
+        let skin = self.skin.spec();
+        SkinSpec { wind: skin.wind || self.sway, ..skin }
+    }
+
+    /// Fails on options that nothing uses. `glb`: the model is one.
+    pub(crate) fn check_used(&self, given: &Given, glb: bool) -> Outcome {
+        given.only_if(glb, &["pack", "lod_file", "sway"], "models as .glb", "none is made")?;
+        given.only_if(self.lods > 0, &["lod_file"], "coarser copies (--lods)", "none is made")?;
+        let apart = !(self.in_one_file() && self.sway);
+        given.only_if(apart, &["sway"], "levels in files of their own", "--lod-file one puts them into one")
+    }
+}
+
+/// Where coarser copies go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LodFileWord {
+    /// Beside the model: OUT-lod1, OUT-lod2, ...
+    Each,
+    /// Into the model's own file, as levels of its node
+    One,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
