@@ -90,8 +90,12 @@ impl Made {
         let written = match (extension, self.levels.first()) {
             ("glb", Some(level)) => formats::write_glb(&level.model, &mut bytes),
             ("mtg", _) => formats::write_mtg(&self.plant, &ExportSpec::default(), &mut bytes),
+            #[cfg(feature = "makers")]
             ("opf", _) => burgeon::write_opf(&self.plant, &ExportSpec::default(), &mut bytes),
-            (other, _) => return Err(Refused::choice("files", other, "glb, mtg, opf")),
+            (other, _) => {
+                let known = if cfg!(feature = "makers") { "glb, mtg, opf" } else { "glb, mtg" };
+                return Err(Refused::choice("files", other, known));
+            }
         };
         written.map_err(|e| Refused::plain("write", e.to_string()))?;
         Ok(bytes)
