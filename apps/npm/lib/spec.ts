@@ -28,6 +28,7 @@ export const TREES = [
   'rose',
   'grass',
   'beech',
+  'cedar',
 ] as const;
 
 /** The species of flowers. */
@@ -755,6 +756,16 @@ export type Light =
 
 /** Colours and bark. */
 export type Look = {
+  /** Colour of leaves in autumn; default none: an evergreen. */
+  autumn_color?: 
+    | Colour
+    | null;
+  /** Colour towards which single leaves vary in autumn; default `autumn_color`. */
+  autumn_color_to?: 
+    | Colour
+    | null;
+  /** Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'. */
+  autumn_outside?: boolean;
   /** What the bark is like. */
   bark?: Bark;
   /** Mean colour of the bark of trunk and branches. */
@@ -767,12 +778,14 @@ export type Look = {
   foot_height?: number;
   /** Colour of leaves. */
   leaf_color?: Colour;
-  /** Colour towards which single leaves vary (autumn, young growth); default that of leaves. */
+  /** Colour towards which single leaves vary (young growth); default that of leaves. */
   leaf_color_to?: 
     | Colour
     | null;
   /** How far they vary, 0 to 1, default 0.5. */
   leaf_variation?: number;
+  /** The season, 0 to 1, default 0: leaves as in summer; 0.5: all in the colours of autumn; 1: all fallen. */
+  season?: number;
   /** Mean colour of the bark of twigs. */
   twig_color?: Colour;
 };
