@@ -45,3 +45,12 @@ export function wrong(field: string, value: unknown, range: string): BurgeonErro
     message: `${field} must be ${range}, not ${shown}`,
   });
 }
+
+/** An option that there is not, before anything goes to the core: a misspelt one would do nothing. */
+export function unknown(name: string, choices: readonly string[]): BurgeonError {
+  return new BurgeonError({
+    code: 'spec-unknown',
+    fields: { path: '', name, choices: choices.join(', ') },
+    message: `there is no option ${name}; there are ${choices.join(', ')}`,
+  });
+}

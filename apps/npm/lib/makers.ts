@@ -1,6 +1,6 @@
 /** What is asked for -> plants. The same specs, ranges and defaults as the command line has. */
 import type { Engine } from './engine.js';
-import { wrong } from './errors.js';
+import { unknown, wrong } from './errors.js';
 import { findThree, Plant } from './plant.js';
 import type { Asking } from './protocol.js';
 import type { FLOWERS, FlowerSpec, LeafSpec, SketchSpec, SkinSpec, TREES, TreeSpec } from './spec.js';
@@ -94,7 +94,13 @@ export interface Makers {
 
 const SKIN = ['detail', 'sides', 'textures'] as const;
 
-function common(options: Common & SkinFields & { readonly fields?: object }): Asked {
+const COMMON = ['seed', 'wind', 'lods', 'budget', 'files', 'measures', 'signal', 'fields'] as const;
+
+/** `more`: the options that not all makers have. */
+function common(options: Common & SkinFields & { readonly fields?: object }, more: readonly string[]): Asked {
+  const all = [...COMMON, ...more];
+  const strange = Object.keys(options).find((name) => !all.includes(name));
+  if (strange !== undefined) throw unknown(strange, all);
   const skin: Record<string, Json> = {};
   for (const name of SKIN) if (options[name] !== undefined) skin[name] = options[name] as Json;
   return {
@@ -155,7 +161,7 @@ export function makers(engine: Engine): Makers {
   return {
     async grow(tree, options = {}) {
       const asked: TreeAsked = {
-        common: common(options),
+        common: common(options, [...SKIN, 'texture_size', 'height_m']),
         preset: typeof tree === 'string' ? tree : null,
         toml: typeof tree === 'object' && tree ? tree.toml : null,
         height_m: options.height_m ?? null,
@@ -173,7 +179,7 @@ export function makers(engine: Engine): Makers {
               : undefined;
       if (bytes && bytes.length === 0) throw wrong('drawing', '0 bytes', 'a file, or strokes');
       const asked: SketchAsked = {
-        common: common(options),
+        common: common(options, [...SKIN, 'texture_size', 'name', 'yUp', 'classes', 'day']),
         name: options.name ?? 'drawing',
         classes: { ...options.classes },
         day: options.day ?? null,
@@ -182,12 +188,12 @@ export function makers(engine: Engine): Makers {
       return make({ kind: 'sketch', asked: text(asked), ...ink }, options);
     },
     async leaf(file = '', options = {}) {
-      const asked: LeafAsked = { common: common(options), name: options.name ?? null, text: file ?? '' };
+      const asked: LeafAsked = { common: common(options, ['name']), name: options.name ?? null, text: file ?? '' };
       return make({ kind: 'leaf', asked: text(asked) }, options);
     },
     async bloom(flower = 'lily', options = {}) {
       const asked: FlowerAsked = {
-        common: common(options),
+        common: common(options, ['day']),
         preset: typeof flower === 'string' ? flower : null,
         toml: typeof flower === 'object' && flower ? flower.toml : null,
         day: options.day ?? null,

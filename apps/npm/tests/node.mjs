@@ -122,6 +122,8 @@ test('what is wrong is named: field, value and range', async () => {
   };
   const trees = TREES.join(', ').slice(0, 20);
   await wrong(grow('oka'), { code: 'spec-choice', field: 'preset', value: 'oka', range: trees });
+  await wrong(grow('oak', { sed: 3 }), { code: 'spec-unknown', field: 'sed', range: 'seed, wind, lods, bu' });
+  await wrong(bloom('rose', { detail: 1 }), { code: 'spec-unknown', field: 'detail', range: 'seed, wind, lods, bu' });
   await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
   await wrong(grow('oak', { detail: 99 }), { code: 'field-range', field: 'detail', value: '99', range: '0.1 to 8' });
   await wrong(grow('oak', { fields: { age: 'old' } }), { code: 'spec-kind', field: 'age', value: 'old' });
