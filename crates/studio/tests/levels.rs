@@ -71,6 +71,7 @@ fn each_level_of_the_other_species_does_so_too() {
 }
 
 /// Of every second species, from this one on.
+#[expect(clippy::print_stdout, reason = "figures for the table of levels in docs/exports.md")]
 fn holds_of(first: usize) {
     let options = TreeOptions {
         skin: SkinSpec { textures: false, ..SkinSpec::default() },
