@@ -149,6 +149,8 @@ describe('a document', () => {
   it('is written whole when its journal is long, with what comes meanwhile behind it', async () => {
     const k = keeper();
     for (let i = 0; i < 501; i += 1) k.record(stroke());
+    // The whole is on its way.
+    await Promise.resolve();
     k.record(stroke());
     await settle();
     expect(disk.whole).toBe('whole 1');
@@ -160,12 +162,41 @@ describe('a document', () => {
     const k = keeper();
     for (let i = 0; i < 501; i += 1) k.record(stroke());
     // The whole is on its way: it does not hold the steps either.
+    await Promise.resolve();
     k.record(undo());
     expect(standing).toBe('saving');
     await settle();
     expect(disk.whole).toBe('whole 2');
     expect(kinds()).toEqual([]);
     expect(standing).toBe('saved');
+  });
+
+  it('is written whole after the step that made it necessary, not before it', async () => {
+    // What the worker was asked, in its order.
+    const asked: string[] = [];
+    const kept = new Keeper('me', {
+      standing: () => undefined,
+      created: () => undefined,
+      taken: () => undefined,
+      save: async () => {
+        asked.push('save');
+        return new Uint8Array();
+      },
+      name: () => 'plant',
+    });
+    kept.open(undefined, []);
+    const ask = (request: Request): void => {
+      kept.record(request);
+      asked.push(request.kind);
+    };
+    for (let i = 0; i <= 500; i += 1) ask(stroke());
+    await settle();
+    expect(asked.at(-1)).toBe('save');
+    for (let i = 0; i < 3; i += 1) {
+      ask(undo());
+      await settle();
+      expect(asked.slice(-2)).toEqual(['undo', 'save']);
+    }
   });
 
   it('can be opened long, and is made short', async () => {

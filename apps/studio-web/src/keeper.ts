@@ -158,7 +158,8 @@ export class Keeper {
     this.tell();
     // What failed is tried again now and then, not with every stroke.
     if (this.failed) this.later();
-    else this.pump();
+    // Whoever asks goes to the worker right after this: a document that was saved before would lack what made it necessary.
+    else queueMicrotask(() => this.pump());
   }
 
   /** It was refused, and need not be asked again when the document is opened. */
