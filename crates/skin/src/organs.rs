@@ -130,11 +130,23 @@ pub(crate) fn organs(
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
-/// The mesh of each shape as it is drawn at scale 1, its veins included; empty of one that nothing uses.
-pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
+/// What is told of each shape as it is drawn at scale 1; the default of one that nothing uses.
+fn of_each<T: Default>(
+    plant: &Plant,
+    spec: &SkinSpec,
+    budget: &Budget,
+    of: impl Fn(ShapeMesh) -> T,
+) -> Vec<T> {
     let ground = Ground::new(plant, spec);
     let drawn = |(shape, used): (&Shape, Option<Use>)| {
-        let made = used.map(|used| ground.wish(shape, used, budget).mesh(shape)).unwrap_or_default();
+        used.map(|used| of(ground.wish(shape, used, budget).mesh(shape))).unwrap_or_default()
+    };
+    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+}
+
+/// The mesh of each shape as it is drawn at scale 1, its veins included; empty of one that nothing uses.
+pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
+    of_each(plant, spec, budget, |made| {
         let mut all = TriMesh::default();
         for mesh in [made.surface, made.veins] {
             all.append(&TriMesh { uvs: Vec::new(), colors: Vec::new(), ..mesh.clone() });
@@ -142,33 +154,25 @@ pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Tri
             all.uvs.resize(all.positions.len(), [0.0; 2]);
         }
         all
-    };
-    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+    })
 }
 
 /// The vertices of each shape as it is drawn at scale 1; none of one that nothing uses.
 pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
-    let ground = Ground::new(plant, spec);
-    let drawn = |(shape, used): (&Shape, Option<Use>)| {
-        let mesh = used.map(|used| ground.wish(shape, used, budget).mesh(shape));
-        let places = mesh.iter().flat_map(|m| &m.surface.positions);
-        places.map(|p| DVec3::from(p.map(f64::from))).collect()
-    };
-    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+    of_each(plant, spec, budget, |made| {
+        made.surface.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect()
+    })
 }
 
 /// The area of each shape as it is drawn at scale 1, one side, square metres; 0 of one that nothing uses.
 pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
-    let ground = Ground::new(plant, spec);
-    let drawn = |(shape, used): (&Shape, Option<Use>)| {
-        let mesh = used.map(|used| ground.wish(shape, used, budget).mesh(shape));
-        let area = |m: &TriMesh, t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| m.position(i));
+    of_each(plant, spec, budget, |made| {
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| made.surface.position(i));
             0.5 * (b - a).cross(c - a).length()
         };
-        mesh.map_or(0.0, |m| m.surface.triangles.iter().map(|t| area(&m.surface, t)).sum())
-    };
-    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+        made.surface.triangles.iter().map(area).sum()
+    })
 }
 
 /// How far from the margin each vertex of a shape is, for shapes that wear a pattern of the margin; empty for others.
