@@ -378,6 +378,7 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     let left =
         |season: &str| item(&at, &["deciduous.toml", "--season", season])["growth"]["leaves_kept"].clone();
     assert_eq!((left("0"), left("0.5"), left("1")), (all.into(), all.into(), 0.into()));
+    assert_eq!((left("-1"), left("-0.1")), (0.into(), all.into()));
     for args in [&["bush.toml", "--season", "0.5"][..], &["deciduous.toml", "--season", "1.5"]] {
         assert!(bad(&at, &[&["grow"], args, &["--json"]].concat()).contains("season"), "{args:?}");
     }

@@ -764,7 +764,7 @@ export type Look = {
   autumn_color_to?: 
     | Colour
     | null;
-  /** Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'. */
+  /** Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'; in spring they unfold nearly together, not one after another. */
   autumn_outside?: boolean;
   /** What the bark is like. */
   bark?: Bark;
@@ -784,7 +784,7 @@ export type Look = {
     | null;
   /** How far they vary, 0 to 1, default 0.5. */
   leaf_variation?: number;
-  /** The season, 0 to 1, default 0: leaves as in summer; 0.5: all in the colours of autumn; 1: all fallen. */
+  /** The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, from where leaves unfold; 0.5: all in the colours of autumn; 1: all fallen. */
   season?: number;
   /** Mean colour of the bark of twigs. */
   twig_color?: Colour;

@@ -374,7 +374,7 @@ async function seen({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, oak);
 }
 
-/** From summer to winter and back: leaf by leaf, seen before it is exported; an evergreen has no autumn. */
+/** From spring to winter and back: leaf by leaf, seen before it is exported; an evergreen has no autumn. */
 async function seasons({ page, url, shot }) {
   await begin(page, url);
   await add(page, 'tree', 'hazel');
@@ -389,8 +389,14 @@ async function seasons({ page, url, shot }) {
     }, to);
   const word = page.locator('label:has([data-path=season]) output');
   assert.equal(await word.textContent(), 'summer');
+  await slide(-0.7);
+  const spring = await changed(page, summer, 'leaves unfold');
+  assert.ok((await count(page, 'triangles')) < all);
+  assert.equal(await word.textContent(), 'unfolding');
+  await page.waitForTimeout(900);
+  await shot('grove-spring');
   await slide(0.5);
-  const autumn = await changed(page, summer, 'autumn');
+  const autumn = await changed(page, spring, 'autumn');
   assert.equal(await count(page, 'triangles'), all, 'no leaf has fallen');
   assert.equal(await word.textContent(), 'autumn');
   await page.waitForTimeout(900);

@@ -93,10 +93,11 @@ const LEAF_FORM = ['length_m', 'width', 'widest', 'veins', 'vein_angle_deg', 'lo
 );
 const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
 
-/** The season of leaves, 0 to 1, in a word. */
+/** The season of leaves, -1 to 1, in a word. */
 function seasonOf(x: number): string {
-  if (x <= 0) return t('tree.season.summer');
-  if (x >= 1) return t('tree.season.bare');
+  if (Math.abs(x) >= 1) return t('tree.season.bare');
+  if (x < 0) return t(x < -0.3 ? 'tree.season.unfolding' : 'tree.season.spring');
+  if (x === 0) return t('tree.season.summer');
   return t(x < 0.45 ? 'tree.season.turning' : x <= 0.55 ? 'tree.season.autumn' : 'tree.season.falling');
 }
 
@@ -283,7 +284,7 @@ export class MakerPanel {
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
     const look = spec['look'] as Fields | undefined;
     const season = Number(look?.['season'] ?? 0);
-    const seasons = this.slider('season', t('tree.season'), 0, 1, 0.01, season, (x) => {
+    const seasons = this.slider('season', t('tree.season'), -1, 1, 0.01, season, (x) => {
       seasons.querySelector('output')!.textContent = seasonOf(x);
       return { tree: [plant.id, { 'set-field': ['/look/season', x] }] };
     });

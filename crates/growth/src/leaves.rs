@@ -129,7 +129,7 @@ pub struct LeafCount {
     pub placed: usize,
     /// Of these, in an obstacle and left out.
     pub buried: usize,
-    /// Fallen for want of light.
+    /// Fallen for want of light, or not there in this season.
     pub fallen: usize,
     /// On the plant.
     pub kept: usize,

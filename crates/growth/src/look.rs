@@ -153,21 +153,21 @@ pub struct Look {
     /// How far they vary, 0 to 1, default 0.5.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_variation: f64,
-    /// The season, 0 to 1, default 0: leaves as in summer; 0.5: all in the colours of autumn; 1: all fallen. Evergreens
-    /// stay as they are.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, from where leaves unfold; 0.5: all in
+    /// the colours of autumn; 1: all fallen. Evergreens stay as they are.
+    #[schemars(range(min = -1.0, max = 1.0))]
     pub season: f64,
     /// Colour of leaves in autumn; default none: an evergreen.
     pub autumn_color: Option<Colour>,
     /// Colour towards which single leaves vary in autumn; default `autumn_color`.
     pub autumn_color_to: Option<Colour>,
-    /// Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'.
-    /// Default false.
+    /// Leaves turn and fall at the outside of the crown first, as beeches' and maples', not in its inside, as birches'; in
+    /// spring they unfold nearly together, not one after another. Default false.
     pub autumn_outside: bool,
 }
 
 impl Look {
-    /// The season of its leaves, 0 to 1: that of summer for an evergreen.
+    /// The season of its leaves, -1 to 1: that of summer for an evergreen.
     pub fn leaf_season(&self) -> f64 {
         self.autumn_color.map_or(0.0, |_| self.season)
     }

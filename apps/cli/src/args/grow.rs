@@ -57,7 +57,7 @@ const GROW_EXAMPLES: &str = "Examples:
   burgeon grow pine -o pine.glb --leaf-keep 0.4 --lods 3         pine.glb, pine-lod1.glb, ...
   burgeon grow oak -o oak.glb --obstacle house.obj               around a house
   burgeon grow alder -o young.glb --age 12
-  burgeon grow beech -o autumn.glb --season 0.5                  in the colours of autumn; bare at 1
+  burgeon grow beech -o autumn.glb --season 0.5                  in the colours of autumn; -0.5: spring
   burgeon grow oak -o oak.glb --leaf-template leaf.csv           with a leaf of your own (burgeon leaf --help)
   burgeon grow oak -o oak.mtg --qsm oak.csv --report oak.json    structure and measures for programs of the field
   burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
@@ -85,8 +85,8 @@ pub(crate) struct GrowthArgs {
     /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
     #[arg(long, value_name = "N")]
     pub(crate) age: Option<u32>,
-    /// The season of its leaves, 0 to 1: 0 summer, 0.5 all in the colours of autumn, 1 bare; not for evergreens [default:
-    /// the preset's, mostly 0].
+    /// The season of its leaves, -1 to 1: -1 bare, leaves unfold to 0, summer; 0.5 all in the colours of autumn, 1 bare; not
+    /// for evergreens [default: the preset's, mostly 0].
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<TreeSpec>(s, "look.season"))]
     pub(crate) season: Option<f64>,
 }

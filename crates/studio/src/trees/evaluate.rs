@@ -85,6 +85,9 @@ const SMALL: usize = 4_000;
 /// crowns of small leaves are bare.
 const LOOK_LEVEL: u32 = 2;
 
+/// The season from which on there are flowers.
+const EARLIEST_FLOWERS: f64 = -0.9;
+
 /// What a model is made from, besides its plant.
 pub(super) type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
@@ -191,12 +194,12 @@ impl TreeEvaluator {
             return;
         }
         let mut grown = raw.grown.clone();
-        let fallen = tint(&spec.look, &mut grown.plant, pictured, seed);
-        (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - fallen, grown.leaves.fallen + fallen);
-        // Nothing flowers in autumn.
-        if spec.look.leaf_season() <= 0.0 {
+        // They come before leaves, in the places of some. Nothing flowers in autumn, or before spring.
+        if (EARLIEST_FLOWERS..=0.0).contains(&spec.look.leaf_season()) {
             add_blossom(&spec.blossom, &mut grown.plant, obstacles, seed);
         }
+        let away = tint(&spec.look, &mut grown.plant, pictured, seed);
+        (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - away, grown.leaves.fallen + away);
         if let Some(height) = height {
             scale_to_height(&mut grown, height);
         }

@@ -11,39 +11,86 @@ use plant::{Organ, OrganKind, Paint, Plant};
 use skin::{BarkKind, BarkSpec, SkinSpec, Venation};
 use spec::Colour;
 
-/// Gives each leaf its colour, and takes those that have fallen by the season; how many. Leaves that have a picture only
-/// vary in brightness.
+/// Colour towards which leaves are lighter when they unfold: they have their size before their chlorophyll.
+const YOUNG: Colour = Colour([0xc4, 0xd6, 0x5c]);
+/// How far they are, at the beginning.
+const YOUNG_SHARE: f64 = 0.6;
+/// Size of a leaf as it leaves its bud, relative to the grown one.
+const BURST: f64 = 0.12;
+/// How long a leaf takes to unfold, and how much later than the first the last one begins, of the time from bare to summer:
+/// where leaves follow one another, and where they come nearly together (Koike 1990).
+const UNFOLDING: f64 = 0.4;
+const SPREAD: [f64; 2] = [0.6, 0.25];
+
+/// Gives each leaf its colour, and takes those that have not unfolded or have fallen by the season; how many. Leaves that have
+/// a picture only vary in brightness.
 pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -> usize {
     let pair = |from: Colour, to: Option<Colour>| [from.linear(), to.unwrap_or(from).linear()];
     let plain = [[1.0; 3], [0.8; 3]];
     let summer = if pictured { plain } else { pair(look.leaf_color, look.leaf_color_to) };
-    let autumn = look.autumn_color.filter(|_| look.season > 0.0).map(|color| {
-        let colours = if pictured { plain } else { pair(color, look.autumn_color_to) };
-        (colours, lateness(plant, look.autumn_outside, seed))
-    });
+    let season = look.leaf_season();
+    let late = match season {
+        s if s > 0.0 => lateness(plant, look.autumn_outside, seed),
+        // The inside is warmer and in leaf first.
+        s if s < 0.0 => lateness(plant, false, seed),
+        _ => Vec::new(),
+    };
+    let autumn = look
+        .autumn_color
+        .filter(|_| season > 0.0)
+        .map(|color| if pictured { plain } else { pair(color, look.autumn_color_to) });
+    let spread = SPREAD[usize::from(look.autumn_outside)];
     for (row, organ) in plant.organs.iter_mut().enumerate().filter(|(_, o)| o.kind == OrganKind::Leaf) {
         let share = look.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
         let mixed = |[from, to]: [[f64; 3]; 2]| [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share));
-        let color = autumn.as_ref().map_or_else(
-            || mixed(summer),
-            |(colours, late)| {
-                let (green, gold) = (mixed(summer), mixed(*colours));
-                let turned = turned(look.season, late[row]);
-                if turned < 1.0 { [0, 1, 2].map(|i| ops::lerp(green[i], gold[i], turned)) } else { gold }
-            },
-        );
+        let towards =
+            |from: [f64; 3], to: [f64; 3], share: f64| [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share));
+        let green = mixed(summer);
+        let color = match autumn {
+            Some(colours) => {
+                let turned = turned(season, late[row]);
+                let gold = mixed(colours);
+                if turned < 1.0 { towards(green, gold, turned) } else { gold }
+            }
+            None if season < 0.0 => {
+                let Spring { open, age } = Spring::of(season, spread * late[row]);
+                organ.scale *= ops::lerp(BURST, 1.0, open);
+                if pictured { green } else { towards(green, YOUNG.linear(), YOUNG_SHARE * (1.0 - age)) }
+            }
+            None => green,
+        };
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
         let color = color.map(|c| c as f32);
         organ.paint = if pictured { Paint::Natural(color) } else { Paint::Tinted(color) };
     }
-    let Some((_, late)) = autumn else { return 0 };
+    if late.is_empty() {
+        return 0;
+    }
     let before = plant.organs.len();
     let mut late = late.into_iter();
     plant.organs.retain(|o| {
         let late = late.next().unwrap_or(0.0);
-        o.kind != OrganKind::Leaf || !has_fallen(look.season, late)
+        let away = if season < 0.0 { season + 1.0 <= spread * late } else { has_fallen(season, late) };
+        o.kind != OrganKind::Leaf || !away
     });
     before - plant.organs.len()
+}
+
+/// A leaf in spring.
+struct Spring {
+    /// How far it has unfolded, 0 to 1.
+    open: f64,
+    /// The share of its way from the bud to summer that is behind it.
+    age: f64,
+}
+
+impl Spring {
+    /// A leaf that leaves its bud at a share of the time from bare to summer.
+    fn of(season: f64, begins: f64) -> Self {
+        let (now, left) = (season + 1.0, 1.0 - begins);
+        let age = ((now - begins) / left).clamp(0.0, 1.0);
+        Self { open: ops::smoothstep(begins, begins + UNFOLDING, now), age }
+    }
 }
 
 /// How far the colour of a leaf is changed, 0 to 1: the last ones turn when the first are about to fall.
@@ -56,7 +103,7 @@ fn has_fallen(season: f64, late: f64) -> bool {
     season >= 1.0 || season - 0.5 > 0.5 * late
 }
 
-/// By organ: how late in autumn it turns and falls, 0 to below 1.
+/// By organ: how late in autumn it turns and falls, or unfolds in spring, 0 to below 1.
 ///
 /// Trees of early successions turn from the inside of the crown outwards, others from its outside (Koike 1990); twigs and
 /// leaves differ beside that.

@@ -106,6 +106,52 @@ fn leaves_turn_and_fall_one_by_one_and_evergreens_keep_theirs() {
 }
 
 #[test]
+fn leaves_unfold_one_by_one_lighter_than_in_summer() {
+    let size = |spec: &TreeSpec, season: f64| {
+        let mut spec = spec.clone();
+        spec.look.season = season;
+        let made = plain(&spec);
+        let leaves = || made.grown.plant.organs.iter().filter(|o| o.kind == plant::OrganKind::Leaf);
+        let light: f64 = leaves().map(|o| f64::from(o.paint.rgb().iter().sum::<f32>())).sum();
+        (leaves().map(|o| o.scale * o.scale).sum::<f64>(), light / leaves().count().max(1) as f64)
+    };
+    for key in ["birch", "beech"] {
+        let spec = young(key);
+        let (all, _) = leaves_in(&spec, 0.0);
+        assert!(leaves_in(&spec, -1.0).0.is_empty(), "{key} is bare before spring");
+        let (mut last, mut area) = (std::collections::BTreeSet::new(), 0.0);
+        for season in [-0.85, -0.7, -0.5, -0.35] {
+            let (leaves, _) = leaves_in(&spec, season);
+            assert!(
+                last.is_subset(&leaves) && leaves.is_subset(&all) && !leaves.is_empty(),
+                "{key} at {season}"
+            );
+            let (now, light) = size(&spec, season);
+            assert!(now > area && light > 1.05 * size(&spec, 0.0).1, "{key} at {season}: {now} after {area}");
+            (last, area) = (leaves, now);
+        }
+        // Just before summer it is what it is in summer, within a part in a million.
+        let ((before, _), (summer, _)) = (size(&spec, -1e-7), size(&spec, 0.0));
+        assert!(leaves_in(&spec, -1e-7).0 == all && (before / summer - 1.0).abs() < 1e-6, "{key}");
+    }
+    // A birch's leaves follow one another, a beech's come together.
+    let share = |key: &str| {
+        let spec = young(key);
+        leaves_in(&spec, -0.8).0.len() as f64 / leaves_in(&spec, 0.0).0.len() as f64
+    };
+    let (beech, birch) = (share("beech"), share("birch"));
+    assert!(beech > birch + 0.2, "{beech}, {birch}");
+    // Flowers come before leaves.
+    let flowers = |season: f64| {
+        let mut cherry = young("cherry");
+        cherry.look.season = season;
+        plain(&cherry).item.counts.flowers
+    };
+    let counts = [-1.0, -0.85, 0.0].map(flowers);
+    assert!(counts[0] == Some(0) && counts[1] > Some(100) && counts[1] == counts[2], "{counts:?}");
+}
+
+#[test]
 fn a_beech_turns_from_its_outside_and_a_birch_from_its_inside() {
     // Mean distance from the trunk of the leaves that are left, over that of all.
     let out = |key: &str, season: f64| {
