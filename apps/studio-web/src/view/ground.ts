@@ -1,6 +1,6 @@
 /** Grass and soil under the plants: a painted disc that fades into the haze, and blades or pebbles around the stems. */
 import * as THREE from 'three';
-import type { GroundKind } from './moods';
+import type { GroundKind, Vec3 } from './moods';
 
 /** Rings of the disc, and how many of them have a depth: what lies beyond is haze, which nothing touches. */
 const RINGS = 40;
@@ -8,7 +8,7 @@ const NEAR_RINGS = 18;
 /** As far as the ground reaches, in heights of what stands on it. */
 const FAR = 60;
 /** How bright the ground looks beside the horizon. */
-const GROUND_SHOWN = 0.38;
+const GROUND_SHOWN = 0.44;
 /** Of each ground, linear: what it throws back up. */
 export const ALBEDO: Record<GroundKind, THREE.Color> = {
   plain: new THREE.Color(0xdfe2cf),
@@ -16,6 +16,17 @@ export const ALBEDO: Record<GroundKind, THREE.Color> = {
   soil: new THREE.Color(0x6b5440),
   none: new THREE.Color(0xb0b0a8),
 };
+
+/**
+ * How much of what an upright face turned to the sun would receive a ground receives beside what falls on it from above: blades
+ * of grass stand upright, so that a meadow is bright in the evening too; soil is flat.
+ */
+const UPRIGHT: Record<GroundKind, number> = { plain: 0, grass: 0.35, soil: 0.06, none: 0 };
+
+/** What the sun gives to a ground of this kind, relative to a face turned to it. */
+export function litBy(kind: GroundKind, [x, y, z]: Vec3): number {
+  return Math.max(0, y) + UPRIGHT[kind] * Math.hypot(x, z);
+}
 
 /** The share of the horizon in a linear mixture that looks as a share of haze does where colours are mixed as shown. */
 function linearHaze(haze: number, horizon: number): number {
@@ -57,12 +68,12 @@ function tiled(
 
 function paintGrass(c: CanvasRenderingContext2D, size: number): void {
   const next = draws(7);
-  c.fillStyle = hsl(80, 28, 29);
+  c.fillStyle = hsl(78, 32, 36);
   c.fillRect(0, 0, size, size);
   for (let i = 0; i < 70; i += 1) {
     // Patches: a lawn of one green is a billiard table.
     const [x, y, r] = [next() * size, next() * size, size * (0.05 + 0.13 * next())];
-    const style = `hsl(${62 + 34 * next()} ${22 + 16 * next()}% ${25 + 17 * next()}% / 40%)`;
+    const style = `hsl(${62 + 34 * next()} ${26 + 16 * next()}% ${31 + 17 * next()}% / 40%)`;
     tiled(size, x, y, r, (px, py) => {
       const g = c.createRadialGradient(px, py, 0, px, py, r);
       g.addColorStop(0, style);
@@ -75,7 +86,7 @@ function paintGrass(c: CanvasRenderingContext2D, size: number): void {
   for (let i = 0; i < size * 16; i += 1) {
     const [x, y, a] = [next() * size, next() * size, next() * 2 * Math.PI];
     const length = size * (0.008 + 0.018 * next());
-    c.strokeStyle = hsl(66 + 32 * next(), 24 + 18 * next(), 20 + 30 * next() ** 1.3);
+    c.strokeStyle = hsl(66 + 32 * next(), 26 + 18 * next(), 26 + 30 * next() ** 1.3);
     c.lineWidth = size * (0.0012 + 0.0016 * next());
     const bend = a + (next() - 0.5) * 1.4;
     tiled(size, x, y, length, (px, py) => {
@@ -172,7 +183,7 @@ function disc(): THREE.BufferGeometry {
   return geometry;
 }
 
-/** A blade of grass one high, seen from both sides, lit as the ground that it grows from. */
+/** A blade of grass one high, seen from both sides. */
 function blade(): THREE.BufferGeometry {
   const rows = [
     [0, 0.045, 0],
@@ -213,6 +224,8 @@ export class Ground {
   private readonly sheet: THREE.Mesh;
   private built = '';
   private toned: number | undefined;
+  /** Which way all of the ground is turned, as far as its light goes: up, and to the sun as far as it stands upright. */
+  private readonly turned = { value: new THREE.Vector3(0, 1, 0) };
   /** How much is seen of each corner of the disc. */
   private readonly clear: Float32Array;
 
@@ -233,6 +246,13 @@ export class Ground {
     [this.kind, this.metre, this.fine] = [kind, step, fine];
     this.group.visible = kind === 'grass' || kind === 'soil';
     if (this.group.visible) this.build();
+  }
+
+  /** The way to the sun. */
+  setSun(way: Vec3): void {
+    const [x, , z] = way;
+    const share = UPRIGHT[this.kind];
+    this.turned.value.set(share * x, 1, share * z).normalize();
   }
 
   private build(): void {
@@ -277,10 +297,23 @@ export class Ground {
     colors.needsUpdate = true;
   }
 
-  private look(of: THREE.MeshLambertMaterialParameters): THREE.Material {
-    return this.fine
+  /** `stands`: lit as the ground that it is of, whichever way its faces look. */
+  private look(of: THREE.MeshLambertMaterialParameters, stands = true): THREE.Material {
+    const material = this.fine
       ? new THREE.MeshPhysicalMaterial({ ...of, roughness: 1, metalness: 0, specularIntensity: 0 })
       : new THREE.MeshLambertMaterial(of);
+    if (!stands) return material;
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms['groundTurned'] = this.turned;
+      shader.vertexShader = shader.vertexShader
+        .replace('#include <common>', '#include <common>\nuniform vec3 groundTurned;')
+        .replace(
+          '#include <defaultnormal_vertex>',
+          '#include <defaultnormal_vertex>\ntransformedNormal = normalMatrix * groundTurned;',
+        );
+    };
+    material.customProgramCacheKey = () => 'ground';
+    return material;
   }
 
   private meadow(): THREE.InstancedMesh {
@@ -313,7 +346,7 @@ export class Ground {
     const n = 420;
     const next = draws(31);
     const size = Math.min(0.016, Math.max(0.003, 0.014 * this.metre));
-    const mesh = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(1, 1), this.look({}), n);
+    const mesh = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(1, 1), this.look({}, false), n);
     const [at, tint] = [new THREE.Object3D(), new THREE.Color()];
     for (let i = 0; i < n; i += 1) {
       const r = 0.02 + 1.8 * next();

@@ -2,7 +2,8 @@
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/examples/jsm/environments/RoomEnvironment.js';
 import { Sky } from 'three/examples/jsm/objects/Sky.js';
-import type { Light, StageSetting } from './moods';
+import { ALBEDO, litBy } from './ground';
+import type { GroundKind, Light, StageSetting } from './moods';
 
 export interface Baked {
   /** What is seen behind everything; none for the studio, whose sky the stage draws itself. */
@@ -130,14 +131,14 @@ function paler(c: THREE.Color): THREE.Color {
 }
 
 /** The floor of what lights from below: it is lit itself. */
-function floor(albedo: THREE.Color, light: Light, up: THREE.Color): THREE.Mesh {
+function floor(ground: GroundKind, light: Light, up: THREE.Color): THREE.Mesh {
   const lit = up
     .clone()
     .multiplyScalar(light.ambient)
-    .add(colour(light.colour, (light.power * Math.max(0, light.way[1])) / Math.PI));
+    .add(colour(light.colour, (light.power * litBy(ground, light.way)) / Math.PI));
   const mesh = new THREE.Mesh(
     new THREE.CircleGeometry(80, 32),
-    new THREE.MeshBasicMaterial({ color: lit.multiply(albedo), depthTest: false }),
+    new THREE.MeshBasicMaterial({ color: lit.multiply(ALBEDO[ground]), depthTest: false }),
   );
   mesh.rotation.x = -Math.PI / 2;
   mesh.position.y = -1;
@@ -153,12 +154,11 @@ function empty(scene: THREE.Scene): void {
   });
 }
 
-/** Draws the sky of a light. `albedo`: of the ground, linear; `fine`: surfaces are glossy. */
+/** Draws the sky of a light. `fine`: surfaces are glossy. */
 export function bake(
   renderer: THREE.WebGLRenderer,
   setting: StageSetting,
   light: Light,
-  albedo: THREE.Color,
   fine: boolean,
 ): Baked {
   if (setting.sky === 'studio') return studio(renderer, fine);
@@ -201,7 +201,7 @@ export function bake(
   if (fine) {
     empty(scene);
     scene.clear();
-    scene.add(dome(zenith, around, false), floor(albedo, light, up));
+    scene.add(dome(zenith, around, false), floor(setting.ground, light, up));
     const generator = new THREE.PMREMGenerator(renderer);
     lighting = generator.fromScene(scene, 0, 0.1, 1000);
     generator.dispose();

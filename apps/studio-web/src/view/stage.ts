@@ -1,7 +1,7 @@
 /** Sky, ground and light around the plant. Everything is about one unit high: the plant is scaled, not the world. */
 import * as THREE from 'three';
 import type { Contact } from './contact';
-import { ALBEDO, Ground } from './ground';
+import { ALBEDO, Ground, litBy } from './ground';
 import { FIRST, type Light, lightOf, type StageSetting } from './moods';
 import type { Baked } from './sky';
 
@@ -384,6 +384,8 @@ export class Stage {
       this.renderer.toneMappingExposure = light.exposure;
     }
     this.ground.set(setting.ground, this.metre, this.fine);
+    const { x, y, z } = this.sun.position.clone().sub(this.sun.target.position).normalize();
+    this.ground.setSun([x, y, z]);
     this.wantSky();
     this.lightBySky();
     this.show();
@@ -409,7 +411,7 @@ export class Stage {
     void import('./sky').then(({ bake, stars }) => {
       if (key !== this.bakedFor) return;
       const old = this.baked;
-      this.baked = bake(this.renderer, this.setting, this.light, ALBEDO[this.setting.ground], this.fine);
+      this.baked = bake(this.renderer, this.setting, this.light, this.fine);
       old?.dispose();
       if (this.light.night > 0 && !this.stars) {
         this.stars = stars();
@@ -434,7 +436,9 @@ export class Stage {
       this.fill.groundColor
         .copy(baked.up)
         .multiplyScalar(light.ambient)
-        .add(this.sun.color.clone().multiplyScalar((light.power * Math.max(0, light.way[1])) / Math.PI))
+        .add(
+          this.sun.color.clone().multiplyScalar((light.power * litBy(setting.ground, light.way)) / Math.PI),
+        )
         .multiply(ALBEDO[setting.ground])
         .multiplyScalar(1 / light.ambient);
       this.fill.intensity = DIFFUSE * light.ambient;
