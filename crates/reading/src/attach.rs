@@ -9,9 +9,9 @@ use crate::blade::{Sheetlet, found_midrib, midrib, tip};
 use crate::branches::{Line, oriented};
 use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
-use crate::near::Near;
-use crate::near::bounds;
-use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
+use crate::kept::{alike, same_bits};
+use crate::near::{Near, bounds};
+use crate::thresholds::{ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{Veins, choose_midrib};
 use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord};
 
@@ -187,12 +187,14 @@ pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots:
         let apart = flower.petals.iter().map(|&i| roots[i].distance(flower.centre)).fold(0.0, f64::max);
         reach.push((0.75 * petals + 0.5 * apart).max(flower.disc.map_or(0.0, |d| 3.0 * d.radius)));
     }
+    // Both ends lie within the reach of the flower, and so does what lies between.
+    let farthest = reach.iter().copied().fold(ROUNDING, f64::max).min(0.3);
     let longest = draft.longest();
     let alone = draft.lines.len() == 1;
     for line in std::mem::take(&mut draft.lines) {
         let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
         let length = polyline_length(&line.points);
-        let found = index.nearest(a.midpoint(b), 0.3, |f| {
+        let found = index.nearest(a.midpoint(b), farthest, |f| {
             let centre = flowers[f].centre;
             let disc = flowers[f].disc.map_or(0.0, |d| 1.35 * d.radius);
             let (near, far) =
@@ -275,16 +277,14 @@ pub(crate) fn organs(
         if flower.petals.is_empty() && flower.disc.is_none() {
             continue;
         }
-        let rings = whorls(draft, &flower, roots);
         let mut petals = Vec::new();
-        for (&i, whorl) in flower.petals.iter().zip(rings) {
+        for &i in &flower.petals {
             is_petal[i] = true;
             draft.organ[draft.blades[i].stroke] = OrganWord::Petal;
-            petals.push(BladeReading {
-                whorl,
-                ..blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i]))
-            });
+            petals.push(blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i])));
         }
+        let rings = whorls(draft, &flower, &petals);
+        petals.iter_mut().zip(rings).for_each(|(petal, whorl)| petal.whorl = whorl);
         if let Some(disc) = flower.disc {
             draft.set_organ(disc.source, OrganWord::Disc);
         }
@@ -314,23 +314,40 @@ pub(crate) fn organs(
 
 fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
     let blade = &draft.blades[i];
-    let far = tip(&blade.outline, root);
+    let s = &draft.ink.strokes[blade.stroke];
+    let read = draft.kept.borrow_mut().leaves.get(
+        s.index,
+        |(outline, at, lines)| {
+            same_bits(*at, root)
+                && alike(outline, &blade.outline)
+                && lines.len() == veins.len()
+                && lines.iter().zip(&veins).all(|(a, b)| alike(a, b))
+        },
+        || (blade.outline.clone(), root, veins.clone()),
+        || ribbed(&blade.outline, root, veins.clone()),
+    );
+    BladeReading { source: Some(s.index), color: s.color, ..read }
+}
+
+/// A blade with its tip and midrib.
+fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
+    let far = tip(outline, root);
     let (rib, veins) = choose_midrib(veins, root, far);
     let veins = veins.into_iter().filter(|v| v.len() > 1).collect();
     let rib = match rib {
         Some(drawn) => midrib(&drawn, root, far),
-        None => found_midrib(&blade.outline, root, far),
+        None => found_midrib(outline, root, far),
     };
     BladeReading {
-        outline: blade.outline.clone(),
+        outline: outline.to_vec(),
         root,
         tip: far,
         midrib: rib,
         veins,
         bearer: None,
         whorl: 0,
-        source: Some(draft.ink.strokes[blade.stroke].index),
-        color: draft.ink.strokes[blade.stroke].color,
+        source: None,
+        color: None,
     }
 }
 

@@ -5,13 +5,13 @@
 //! cross a bearer are split there; what touches nothing is led to the nearest axis or stands on its own; two
 //! strokes of one stem are joined; lines that go down from a base are roots.
 
-use geom::{closest_on_polyline, point_at, polyline_length};
+use geom::{closest_on_polyline, distance_to_polyline, point_at, polyline_length};
 use glam::DVec2;
 use plant::AxisKind;
 
 use crate::body::Limb;
-use crate::near::{Entry, Near};
-use crate::thresholds::{NO_LENGTH, WELL_SHORT};
+use crate::near::{Near, bounds};
+use crate::thresholds::{NO_LENGTH, ROUNDING, WELL_SHORT};
 use crate::{Attachment, AxisReading};
 
 /// An end this near to a line touches it: a finger's width on a sheet.
@@ -20,6 +20,8 @@ const TOUCH: f64 = 0.045;
 const REACH: f64 = 0.15;
 /// Shorter pieces of a crossing line are overshoot.
 const OVERSHOOT: f64 = 0.025;
+/// Half widths of wood at most: a stroke of a broad brush. Nothing thicker is looked for from its surface.
+const THICKEST: f64 = 0.15;
 /// Lines that one end is compared with, nearest first.
 const MOST_CONTACTS: usize = 16;
 /// In a drawing of more lines than this what does not touch is not led anywhere (keeps it linear).
@@ -64,6 +66,8 @@ pub(crate) struct Forest {
     pub(crate) axes: Vec<AxisReading>,
     pub(crate) order: Vec<u32>,
     near: Near,
+    /// Largest half width.
+    thickest: f64,
     joins: usize,
 }
 
@@ -78,7 +82,7 @@ struct Contact {
 
 impl Forest {
     pub(crate) fn new() -> Self {
-        Self { axes: Vec::new(), order: Vec::new(), near: Near::new(TOUCH), joins: 0 }
+        Self { axes: Vec::new(), order: Vec::new(), near: Near::new(TOUCH), thickest: 0.0, joins: 0 }
     }
 
     /// Adds the limbs of a body; `bearer` bears the first one. Returns the row of the first, if there is one.
@@ -130,6 +134,7 @@ impl Forest {
         }
         let row = self.axes.len();
         self.near.add_line(row, &points);
+        self.thickest = half_width.iter().copied().fold(self.thickest, f64::max);
         self.order.push(bearer.map_or(0, |b| self.order[b.axis] + 1));
         self.axes.push(AxisReading { points, kind: AxisKind::Stem, bearer, half_width, source });
         Some(row)
@@ -156,19 +161,39 @@ impl Forest {
 
     /// The axis whose surface is nearest to `p` within `r`, the place on it and the distance of its surface.
     pub(crate) fn nearest(&self, p: DVec2, r: f64) -> Option<(Attachment, f64)> {
+        let row = self.nearest_axis(p, r)?;
+        let c = closest_on_polyline(&self.axes[row].points, p)?;
+        let surface = (c.distance - self.half_width(row, c.at)).max(0.0);
+        Some((Attachment { axis: row, at: c.at }, surface))
+    }
+
+    /// The distance alone of [`Forest::nearest`].
+    fn clearance(&self, p: DVec2, r: f64) -> Option<f64> {
+        let row = self.nearest_axis(p, r)?;
+        if self.axes[row].half_width.is_empty() {
+            return distance_to_polyline(&self.axes[row].points, p);
+        }
+        self.nearest(p, r).map(|found| found.1)
+    }
+
+    /// The axis with the point whose surface is nearest to `p` within `r`.
+    fn nearest_axis(&self, p: DVec2, r: f64) -> Option<usize> {
         // A thick trunk's middle line is farther away than its surface.
-        let thickest = if self.axes.iter().take(64).any(|a| !a.half_width.is_empty()) { 0.15 } else { 0.0 };
-        let mut best: Option<(f64, Entry)> = None;
-        self.near.visit(p, r + thickest, |e, d| {
-            let surface = if thickest > 0.0 { d - self.half_width(e.owner, e.at) } else { d };
-            if surface <= r && best.is_none_or(|(b, _)| surface < b) {
-                best = Some((surface, *e));
-            }
-        });
-        let (_, e) = best?;
-        let c = closest_on_polyline(&self.axes[e.owner].points, p)?;
-        let surface = (c.distance - self.half_width(e.owner, c.at)).max(0.0);
-        Some((Attachment { axis: e.owner, at: c.at }, surface))
+        let thick = self.axes.iter().take(64).any(|a| !a.half_width.is_empty());
+        let thickest = if thick { THICKEST.min(self.thickest) } else { 0.0 };
+        let find = |r: f64| {
+            let mut best: Option<(f64, usize)> = None;
+            self.near.visit(p, r + thickest, |e, d| {
+                let surface = if thick { d - self.half_width(e.owner, e.at) } else { d };
+                if surface <= r && best.is_none_or(|(b, _)| surface < b) {
+                    best = Some((surface, e.owner));
+                }
+            });
+            best
+        };
+        // What is thicker may be nearer than what is found first.
+        let found = if self.thickest > THICKEST { find(r) } else { self.near.outwards(r, find) };
+        found.map(|found| found.1)
     }
 
     /// Length of an axis.
@@ -187,6 +212,7 @@ impl Forest {
                 axis.half_width.push(w + (end_width - w) * t);
             }
         }
+        self.thickest = axis.half_width.iter().copied().fold(self.thickest, f64::max);
         let points = axis.points.clone();
         self.near.add_line(row, &points[points.len().saturating_sub(more.len() + 1)..]);
     }
@@ -388,7 +414,7 @@ impl Forest {
         let stride = n.div_ceil(100).max(1);
         (1..n.saturating_sub(1))
             .step_by(stride)
-            .filter_map(|i| self.nearest(points[i], near).map(|(_, d)| (d, i)))
+            .filter_map(|i| self.clearance(points[i], near).map(|d| (d, i)))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, i)| i)
     }
@@ -434,22 +460,32 @@ fn contacts(lines: &[Line], order: &[usize], touch: f64) -> Vec<Vec<Contact>> {
         near.add_line(i, &lines[i].points);
     }
     let mut found: Vec<Vec<Contact>> = vec![Vec::new(); lines.len()];
+    // A little larger than within reach.
+    let reach = touch + ROUNDING;
+    let boxes: Vec<(DVec2, DVec2)> = lines
+        .iter()
+        .map(|line| {
+            bounds(&line.points).map_or((DVec2::ZERO, DVec2::ZERO), |(lo, hi)| (lo - reach, hi + reach))
+        })
+        .collect();
     for (j, line) in lines.iter().enumerate() {
         for last in [false, true] {
             let p = end(&line.points, last);
             // The index holds points half a cell apart.
             let mut hits: Vec<(usize, f64)> = Vec::new();
-            near.visit(p, 1.3 * touch, |e, d| {
-                if e.owner != j {
-                    hits.push((e.owner, d));
-                }
+            near.visit(p, 1.3 * touch, |e, d| match hits.iter_mut().rev().find(|h| h.0 == e.owner) {
+                Some(hit) => hit.1 = hit.1.min(d),
+                None if e.owner != j => hits.push((e.owner, d)),
+                None => {}
             });
-            base::sort_by(&mut hits, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-            hits.dedup_by_key(|h| h.0);
             base::sort_by(&mut hits, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             for (i, _) in hits.into_iter().take(MOST_CONTACTS) {
-                if let Some(c) = closest_on_polyline(&lines[i].points, p).filter(|c| c.distance <= touch) {
-                    found[i].push(Contact { line: j, last, distance: c.distance });
+                let (lo, hi) = boxes[i];
+                if p.x < lo.x || p.y < lo.y || p.x > hi.x || p.y > hi.y {
+                    continue;
+                }
+                if let Some(distance) = distance_to_polyline(&lines[i].points, p).filter(|d| *d <= touch) {
+                    found[i].push(Contact { line: j, last, distance });
                 }
             }
         }

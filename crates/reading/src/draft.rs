@@ -1,8 +1,8 @@
 //! The drawing half understood, and the small steps that belong to no other module.
 
-use base::LiteMap;
+use std::cell::RefCell;
 
-use base::Report;
+use base::{LiteMap, Report};
 use geom::{contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass, StrokeMode};
@@ -11,12 +11,13 @@ use plant::AxisKind;
 use crate::blade::{Sheetlet, split_stalks};
 use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
+use crate::kept::{Drawn, alike};
 use crate::near::bounds;
 use crate::steady::steady;
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
-    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, Reading, RegionKind,
-    RegionReading, StrokeReading, blade, rings,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
+    Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
@@ -62,6 +63,8 @@ impl RegionDraft {
 #[derive(Debug)]
 pub(crate) struct Draft<'a> {
     pub(crate) ink: &'a Ink,
+    /// Results of strokes that are as they were.
+    pub(crate) kept: &'a RefCell<KeptStrokes>,
     /// What the whole is taken for, if that is known.
     pub(crate) kind: Option<Kind>,
     pub(crate) class: Vec<StrokeClass>,
@@ -98,11 +101,12 @@ pub(crate) struct Draft<'a> {
 }
 
 impl<'a> Draft<'a> {
-    pub(crate) fn new(ink: &'a Ink, classes: &[Classified]) -> Self {
+    pub(crate) fn new(ink: &'a Ink, classes: &[Classified], kept: &'a RefCell<KeptStrokes>) -> Self {
         let said: Vec<Classified> =
             (0..ink.strokes.len()).map(|k| classes.get(k).copied().unwrap_or_default()).collect();
         Self {
             ink,
+            kept,
             kind: None,
             class: said.iter().map(|c| c.class).collect(),
             rule: vec![None; said.len()],
@@ -226,21 +230,22 @@ impl<'a> Draft<'a> {
         // Closed by itself, with or without a stalk; or so open that it may be one side of a leaf.
         let (mut open, mut thin) = (Vec::new(), Vec::new());
         for k in strokes {
-            if let Some(blade) = Sheetlet::with_rib(&ink.strokes[k].points, k) {
-                self.organ[k] = OrganWord::Leaf;
-                self.blades.push(blade);
-                continue;
-            }
-            let (line, stalks) = split_stalks(&ink.strokes[k].points, STALK_NEAR);
-            if stalks.is_empty() && gap(k) > SHUT {
-                open.push(k);
-            } else if let Some(blade) = Sheetlet::new(&line, k) {
-                self.organ[k] = OrganWord::Leaf;
-                self.blades.push(blade);
-                let source = Some(ink.strokes[k].index);
-                self.lines.extend(stalks.into_iter().map(|points| Line { points, source }));
-            } else {
-                thin.push(k);
+            let s = &ink.strokes[k];
+            let drawn = self.kept.borrow_mut().blades.get(
+                s.index,
+                |points| alike(points, &s.points),
+                || s.points.clone(),
+                || closed(&s.points, gap(k) > SHUT),
+            );
+            match drawn {
+                Drawn::Open => open.push(k),
+                Drawn::Thin => thin.push(k),
+                Drawn::Blade(blade, stalks) => {
+                    self.organ[k] = OrganWord::Leaf;
+                    self.blades.push(Sheetlet { stroke: k, ..blade });
+                    let source = Some(s.index);
+                    self.lines.extend(stalks.into_iter().map(|points| Line { points, source }));
+                }
             }
         }
         self.edge_on(thin);
@@ -250,7 +255,8 @@ impl<'a> Draft<'a> {
             let parts: Vec<usize> = ring.parts.iter().map(|&p| open[p]).collect();
             // Only a part that is clearly one side of a leaf is completed by another stroke.
             let sides = parts.len() > 1 && parts.iter().any(|&k| gap(k) > ONE_SIDE);
-            match Sheetlet::new(&ring.points, parts[0]).filter(|_| sides) {
+            let blade = if sides { Sheetlet::new(&ring.points, parts[0]) } else { None };
+            match blade {
                 Some(blade) => {
                     parts.iter().for_each(|&k| self.organ[k] = OrganWord::Leaf);
                     self.blades.push(blade);
@@ -502,6 +508,18 @@ impl<'a> Draft<'a> {
         let lines = self.lines.iter().map(|l| polyline_length(&l.points));
         lines.chain((0..self.forest.axes.len()).map(|r| self.forest.length(r))).fold(0.0, f64::max)
     }
+}
+
+/// What a stroke of a blade is by itself. `apart`: its ends are.
+fn closed(points: &[DVec2], apart: bool) -> Drawn {
+    if let Some(blade) = Sheetlet::with_rib(points, 0) {
+        return Drawn::Blade(blade, Vec::new());
+    }
+    let (line, stalks) = split_stalks(points, STALK_NEAR);
+    if stalks.is_empty() && apart {
+        return Drawn::Open;
+    }
+    Sheetlet::new(&line, 0).map_or(Drawn::Thin, |blade| Drawn::Blade(blade, stalks))
 }
 
 /// Green before all, and neither grey nor nearly black.

@@ -20,8 +20,8 @@ use crate::corolla::{Core, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::{Near, bounds};
 use crate::rings::Ring;
-use crate::thresholds::{FEWEST_PETALS, STOPPED_SHORT, WELL_SHORT};
-use crate::{DiscReading, OrganWord};
+use crate::thresholds::{FEWEST_PETALS, ROUNDING, STOPPED_SHORT, WELL_SHORT};
+use crate::{BladeReading, DiscReading, OrganWord};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
@@ -288,14 +288,19 @@ fn by_disc(
             continue;
         }
         let mut best: Option<(f64, usize, DVec2)> = None;
-        index.visit(blade.middle, blade.size.min(0.5) + 0.15, |e, _| {
+        index.visit(blade.middle, blade.size.min(0.5) + 0.15, |e, away| {
             let disc = &discs[e.owner].0;
+            let reach = disc.radius + (0.2 * blade.size).max(0.25 * disc.radius);
+            // No point of an outline is farther from its middle than its size.
+            if disc.radius >= 2.0 * blade.size || (roots[i].is_none() && away > blade.size + reach + ROUNDING)
+            {
+                return;
+            }
             let (p, d) = match roots[i] {
                 Some(r) => (r, r.distance(disc.centre)),
                 None => blade.nearest(disc.centre),
             };
-            let reach = disc.radius + (0.2 * blade.size).max(0.25 * disc.radius);
-            if d < reach && disc.radius < 2.0 * blade.size && best.is_none_or(|(b, ..)| d < b) {
+            if d < reach && best.is_none_or(|(b, ..)| d < b) {
                 best = Some((d, e.owner, p));
             }
         });
@@ -563,13 +568,14 @@ impl Bearers {
 }
 
 /// Rings of a flower, 0 outermost: a petal that stands in front of a clearly longer one is of an inner ring.
-pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, roots: &[DVec2]) -> Vec<u32> {
+pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, read: &[BladeReading]) -> Vec<u32> {
     let petals: Vec<(f64, f64, f64)> = flower
         .petals
         .iter()
-        .map(|&i| {
+        .zip(read)
+        .map(|(&i, read)| {
             let blade = &draft.blades[i];
-            let v = tip(&blade.outline, roots[i]) - flower.centre;
+            let v = read.tip - flower.centre;
             let reach = v.length().max(1e-9);
             let half = 0.5 * geom::signed_area(&blade.outline) / blade.size.max(1e-9);
             (reach, ops::atan2(v.y, v.x), ops::atan2(half, 0.6 * reach))

@@ -16,6 +16,7 @@
 //! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
+//! | `kept` | what single strokes gave, kept while they stay as they are | |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 //! | `thresholds` | numbers that several of these compare with, and where all such numbers come from | |
 
@@ -31,6 +32,7 @@ mod draft;
 mod flowers;
 mod grid;
 mod inertia;
+mod kept;
 mod kind;
 mod kinds;
 mod look;
@@ -51,9 +53,10 @@ mod veins;
 
 pub use aside::BESIDE_THE_PLANT;
 pub use inertia::AS_SHOWN;
+pub use kept::KeptStrokes;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
-pub use read::{UNLIKE_A_PLANT, kind_row, read, read_as, read_without};
+pub use read::{UNLIKE_A_PLANT, kind_row, read, read_again, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
     Reading, RegionKind, RegionReading, StrokeReading,

@@ -11,6 +11,7 @@ use crate::body::limbs;
 use crate::branches::{Forest, Line};
 use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
+use crate::kept::{alike, same_bits};
 use crate::near::bounds;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, STRAIGHT, WELL_SHORT};
@@ -127,7 +128,19 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
     for (i, (_, ring)) in found.iter().enumerate() {
         let base = arm_base(&draft.forest, ring, i > 0);
         let source = ring.parts.first().map(|&p| draft.ink.strokes[strokes[p]].index);
-        let closed = limbs(ring, base.map(|b| b.1));
+        let at = base.map(|b| b.1);
+        let closed = draft.kept.borrow_mut().bodies.get(
+            source.unwrap_or(0),
+            |(points, gaps, base)| {
+                let standing = match (base, at) {
+                    (Some(a), Some(b)) => same_bits(*a, b),
+                    (a, b) => a.is_none() && b.is_none(),
+                };
+                standing && *gaps == ring.gaps && alike(points, &ring.points)
+            },
+            || (ring.points.clone(), ring.gaps.clone(), at),
+            || limbs(ring, at),
+        );
         if closed.is_empty() {
             as_lines(draft, ring);
             continue;

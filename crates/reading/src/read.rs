@@ -1,14 +1,16 @@
 //! The order in which a drawing is understood: `Ink + classes -> Reading`.
 
+use std::cell::RefCell;
+
 use base::Report;
-use ink::{Classified, Ink, Source};
+use ink::{COMMON_GROUND, Classified, Ink, Source};
 use plant::AxisKind;
 
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::{
-    BESIDE_THE_PLANT, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers, inertia, kinds,
-    outlines, pressed, rules, several, veins,
+    BESIDE_THE_PLANT, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers,
+    inertia, kinds, outlines, pressed, rules, several, veins,
 };
 
 /// Understands a drawing.
@@ -35,18 +37,47 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
 
 /// As [`read`], taking every plant of the drawing for one kind, whatever it looks like.
 pub fn read_as(kind: Option<Kind>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    whole(&Asked { kind, off: &[] }, ink, classes, report)
+    read_again(kind, &[], (ink, classes), &mut KeptStrokes::default(), report)
 }
 
 /// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
 pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    whole(&Asked { kind: None, off }, ink, classes, report)
+    read_again(None, off, (ink, classes), &mut KeptStrokes::default(), report)
+}
+
+/// As [`read_as`], and as [`read_without`], of a drawing that changes: what the strokes that stay gave is kept.
+///
+/// Guaranteed: the same reading as with nothing kept.
+pub fn read_again(
+    kind: Option<Kind>,
+    off: &[&str],
+    (ink, classes): (&Ink, &[Classified]),
+    kept: &mut KeptStrokes,
+    report: &mut Report,
+) -> Reading {
+    let asked = Asked { kind, off, kept: &RefCell::new(core::mem::take(kept)) };
+    let other: Vec<Classified> = classes.iter().map(|said| without(off, said)).collect();
+    let reading = whole(&asked, ink, &other, report);
+    *kept = asked.kept.take();
+    kept.forget();
+    reading
+}
+
+/// What is said of a stroke where a rule that decided it is switched off.
+fn without(off: &[&str], said: &Classified) -> Classified {
+    match said.source {
+        // Nothing else was asked about the ground of several plants.
+        Source::Rule(COMMON_GROUND) if off.contains(&COMMON_GROUND) => Classified::default(),
+        Source::Rule(name) if off.contains(&name) => Classified::by_shares(said.shares),
+        _ => *said,
+    }
 }
 
 /// What a drawing of one plant measures, for the model of kinds: [`kind_features`](crate::kind_features) of its first
 /// reading.
 pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
-    let first = attempt(&[], None, ink, classes, &mut Report::default());
+    let asked = Asked { kind: None, off: &[], kept: &RefCell::default() };
+    let first = attempt(&asked, None, ink, classes, &mut Report::default());
     kinds::kind_features(ink, classes, &first)
 }
 
@@ -56,6 +87,7 @@ struct Asked<'a> {
     kind: Option<Kind>,
     /// Rules that are switched off.
     off: &'a [&'a str],
+    kept: &'a RefCell<KeptStrokes>,
 }
 
 impl Asked<'_> {
@@ -81,7 +113,7 @@ struct First {
 impl First {
     fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
-        let reading = attempt(asked.off, None, ink, classes, &mut said);
+        let reading = attempt(asked, None, ink, classes, &mut said);
         let shares = if ink.strokes.len() > MOST_JUDGED {
             // As it was read, and as nothing else.
             kinds::Shares {
@@ -191,10 +223,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let other = scores.iter().find(likelier).copied();
     if let Some(wanted) = asked.kind {
         (said, kind) = (Report::default(), wanted);
-        reading = attempt(asked.off, asked.kind, ink, classes, &mut said);
+        reading = attempt(asked, asked.kind, ink, classes, &mut said);
     } else if let Some(other) = other.filter(|_| !rooted && asked.is_free(ink, classes)) {
         let mut again = Report::default();
-        let tried = attempt(asked.off, Some(other.kind), ink, classes, &mut again);
+        let tried = attempt(asked, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.
         if other.kind.is_like(Kind::of(&tried)) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
@@ -204,7 +236,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
         let mut again = Report::default();
-        let mut tried = attempt(asked.off, taken, ink, &shown, &mut again);
+        let mut tried = attempt(asked, taken, ink, &shown, &mut again);
         let was = Kind::of(&tried);
         if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores) {
             inertia::tell(&mut tried, ink, classes);
@@ -265,19 +297,14 @@ const fn bears_no_flower(kind: Kind) -> bool {
 
 /// One reading of one plant, taken for a kind or for whatever its strokes say.
 fn attempt(
-    off: &[&str],
+    asked: &Asked<'_>,
     kind: Option<Kind>,
     ink: &Ink,
     classes: &[Classified],
     report: &mut Report,
 ) -> Reading {
-    let mut draft = Draft::new(ink, classes);
-    for (k, said) in draft.said.iter_mut().enumerate() {
-        if matches!(said.source, Source::Rule(name) if off.contains(&name)) {
-            *said = Classified::by_shares(said.shares);
-            draft.class[k] = said.class;
-        }
-    }
+    let off = asked.off;
+    let mut draft = Draft::new(ink, classes, asked.kept);
     if let Some(kind) = kind {
         draft.kind = Some(kind);
         rules::take_for(&mut draft, kind);

@@ -38,7 +38,8 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
     let mut veins: Veins = draft.blades.iter_mut().map(|b| b.rib.take().into_iter().collect()).collect();
     for (class, strokes) in [Vein, Axis].map(|class| (class, draft.of_class(class))) {
         for k in strokes {
-            let points = draft.ink.strokes[k].points.clone();
+            let ink = draft.ink;
+            let points = &ink.strokes[k].points;
             let decides = unsure(draft, k) && !off.contains(&VEINS_IN_BLADES);
             let vein = match draft.said[k].shares {
                 // Of what the classifier thinks of lines.
@@ -47,7 +48,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
                 }
                 _ => f64::from(u8::from(class == Vein)),
             };
-            let host = host(draft, &boxes, &points, STEM_INSIDE + (VEIN_INSIDE - STEM_INSIDE) * vein);
+            let host = host(draft, &boxes, points, STEM_INSIDE + (VEIN_INSIDE - STEM_INSIDE) * vein);
             let built = if host.is_some() || vein > SURE_VEIN { Vein } else { Axis };
             if decides && built != class {
                 draft.class[k] = built;
@@ -56,7 +57,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
             match host {
                 Some(blade) => {
                     draft.organ[k] = OrganWord::Vein;
-                    let (inner, outer) = part(&points, &draft.blades[blade].outline);
+                    let (inner, outer) = part(points, &draft.blades[blade].outline);
                     let source = Some(draft.ink.strokes[k].index);
                     for stalk in outer {
                         if polyline_length(&stalk) > STALK * draft.blades[blade].size {
@@ -79,7 +80,7 @@ fn host(draft: &Draft<'_>, boxes: &Boxes, points: &[DVec2], share: f64) -> Optio
     let mut samples = 0;
     for &p in points.iter().step_by(stride) {
         samples += 1;
-        for &b in boxes.around(p) {
+        for b in boxes.around(p) {
             if contains(&draft.blades[b].outline, p) {
                 match hits.iter_mut().find(|h| h.0 == b) {
                     Some(h) => h.1 += 1,

@@ -11,7 +11,7 @@ use glam::DVec2;
 use ink::{Classified, Drawing, Ink, KeptMeasures, StrokeClass};
 use mesh::{Model, Texture};
 use plant::Plant;
-use reading::{Kind, Reading};
+use reading::{KeptStrokes, Kind, Reading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, Pictures, SkinSpec, Traced};
 
@@ -54,6 +54,8 @@ pub struct Evaluator {
     /// Measures of the strokes of the last drawing.
     measures: KeptMeasures,
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
+    /// What single strokes of the last drawing gave.
+    understood: KeptStrokes,
     reading: Option<Kept<ReadFrom, Reading>>,
     /// Bodies of the contours of the last plant.
     bodies: KeptBodies,
@@ -151,6 +153,7 @@ impl Evaluator {
             (self.strokes, self.reading) = (other.strokes.clone(), None);
             self.taken = other.reading.as_ref().and_then(|r| taken(&r.value));
             (self.measures, self.bodies) = (other.measures.clone(), other.bodies.clone());
+            self.understood = other.understood.clone();
         }
         same
     }
@@ -247,11 +250,14 @@ impl Evaluator {
             }
         }
         let mut report = Report::default();
+        let kept = &mut self.understood;
         let reading =
             report.stage("structure", run.clock, |r| match self.taken.filter(|_| read_as.is_none()) {
-                Some(Taken::For(kind)) => reading::read_as(Some(kind), ink, &classes, r),
-                Some(Taken::Strokes) => reading::read_without(&[reading::READ_AS], ink, &classes, r),
-                None => reading::read_as(read_as, ink, &classes, r),
+                Some(Taken::For(kind)) => reading::read_again(Some(kind), &[], (ink, &classes), kept, r),
+                Some(Taken::Strokes) => {
+                    reading::read_again(None, &[reading::READ_AS], (ink, &classes), kept, r)
+                }
+                None => reading::read_again(read_as, &[], (ink, &classes), kept, r),
             });
         run.cancel.check()?;
         self.plant = None;
