@@ -437,18 +437,15 @@ fn alike(out: &mut Loaded, split: bool) {
     }
 }
 
-/// First and last shape, each a file.
-#[expect(clippy::too_many_arguments, reason = "two of everything; a struct would only name them twice")]
-pub(crate) fn load_pair(
-    first: &Path,
-    first_day: f64,
-    last: &Path,
-    last_day: f64,
+/// First and last shape, each a file; or one shape.
+pub(crate) fn load_files(
+    shapes: &[(&Path, f64)],
     options: Options,
     axes: &ExportSpec,
     seed: Seed,
     machine: &Machine,
 ) -> Outcome<Loaded> {
+    let first = shapes.first().map_or_else(|| Path::new(""), |s| s.0);
     let mut out = Loaded {
         name: files::stem(first),
         stages: vec![],
@@ -461,7 +458,7 @@ pub(crate) fn load_pair(
     let spec = SegmentSpec::default();
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;
-    for (path, day) in [(first, first_day), (last, last_day)] {
+    for &(path, day) in shapes {
         let (points, mesh, mut told) = prepare(path, day, axes, Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();

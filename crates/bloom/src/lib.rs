@@ -13,6 +13,7 @@
 //! | `forms` | [`choose`]: one law for several series, if they determine one |
 //! | `clean` | [`clean`]: stray points and the ground go |
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
+//! | `limb` | [`stem`], [`stalk`]: lines with radii of stems and stalks |
 //! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
@@ -38,6 +39,7 @@ mod forms;
 mod kernel;
 mod lattice;
 mod law;
+mod limb;
 mod logistic;
 mod motion;
 mod obb;
@@ -61,6 +63,7 @@ pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_sizes, fit_stages};
+pub use limb::{Limb, joint, stalk, stem, surface_places};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;

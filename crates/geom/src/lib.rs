@@ -14,11 +14,13 @@
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
+//! | `concave` | outlines that follow the bays of points; triangles within an outline |
 //! | `kd`, `cubes`, `voxels`, `step` | neighbours; few points for many; shortest ways |
 //! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (Wang et al. 2011) |
 
 mod cluster;
+mod concave;
 mod cone;
 mod cubes;
 mod curve;
@@ -39,6 +41,7 @@ mod voxels;
 mod wheel;
 
 pub use cluster::mean_shift;
+pub use concave::{AlphaOutline, AlphaShape, triangulate_within};
 pub use cone::{Cone, FlowerCone, Sheet, flower_cone};
 pub use cubes::{cubes, one_a_cube};
 pub use curve::{bezier_quadratic_c1, catmull_rom};

@@ -2,7 +2,7 @@
 
 use geom::{Ball, BallBSpline, NaturalCubic, SplineError, SplineSurface, subdivided};
 use glam::DVec3;
-use plant::{Chart, SplineBlade, Vein, Venation};
+use plant::{Chart, RimPoint, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
 use crate::spec::{LeafSpec, SurfaceKind, VeinParameters};
@@ -21,7 +21,7 @@ use crate::thickness::ThicknessRule;
 ///     midrib: Some(0.002),
 ///     ..MarkRow::default()
 /// };
-/// let marks = Marks { rows: vec![row(0.06), row(0.0)], tip: DVec3::Y * 0.1, tip_thickness: None };
+/// let marks = Marks { rows: vec![row(0.06), row(0.0)], tip: DVec3::Y * 0.1, ..Marks::default() };
 /// let full = marks.complete(&mut base::Report::default())?;
 /// let leaf = Leaf::new(&full, &LeafSpec::default())?;
 /// let middle = leaf.midrib.curve.ball(0.3);
@@ -40,6 +40,8 @@ pub struct Leaf {
     pub margins: [Vein; 2],
     /// The parameter u of the midrib.
     pub middle: f64,
+    /// The margin, where it is not that of the surface.
+    pub rim: Vec<RimPoint>,
 }
 
 impl Leaf {
@@ -91,7 +93,11 @@ impl Leaf {
             Ok(Vein { curve: blade.column_vein(us[j], &along(&radii)?)?, marks: vs.clone() })
         };
         let margins = [margin(0)?, margin(n - 1)?];
-        Ok(Self { blade, midrib, sides, margins, middle })
+        let mut leaf = Self { blade, midrib, sides, margins, middle, rim: Vec::new() };
+        if !marks.margin.is_empty() {
+            leaf.rim = marks.rim(&leaf.blade());
+        }
+        Ok(leaf)
     }
 
     /// The leaf as a shape of a plant, where it was measured; its texture is the leaf laid flat.
@@ -102,6 +108,7 @@ impl Leaf {
             surface: self.blade.clone(),
             middle: self.middle,
             veins: Venation { veins, fine: Vec::new(), margins: self.margins.to_vec() },
+            rim: self.rim.clone(),
             chart: Chart::Unrolled,
             form: 0,
         }

@@ -80,7 +80,7 @@ impl LeafForm {
         };
         let rows = (0..rows).map(row).chain((!lobed).then(|| self.below())).collect();
         let tip_thickness = Some(MIDRIB_SHARE[0] * MIDRIB_SHARE[1] * self.length_m);
-        Marks { rows, tip: DVec3::Y * self.length_m, tip_thickness }
+        Marks { rows, tip: DVec3::Y * self.length_m, tip_thickness, margin: Vec::new() }
     }
 
     /// Half the width at a share of the length, metres.

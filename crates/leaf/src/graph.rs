@@ -345,7 +345,7 @@ impl VeinGraph {
     /// The midrib is the thickest way from one end of the leaf to the other, its thicker end the base; side veins
     /// are the thickest ways from there to the margin, none crossing another. A pair leaves the midrib from one
     /// mark, half way between the two where they alternate. Marks lie at equal lengths along a vein, thickness is
-    /// twice the radius. The marks stand upright: the root at the origin, the tip on +Y, the upper side to +Z.
+    /// twice the radius. The margin is as close round the network as its meshes let it be. The marks stand upright: the root at the origin, the tip on +Y, the upper side to +Z.
     /// Not kept: the small veins between. Cost: n log n in the nodes, times the midrib's for their places.
     ///
     /// # Errors
@@ -380,7 +380,8 @@ impl VeinGraph {
             let all = ends.filter_map(|(&end, &(to, _))| side_vein(&net, &before, &axis, end, to)).collect();
             chosen(all, length)
         });
-        let (rows_of, lone) = rows(sides, &axis, &margins);
+        let outline = self.outline(&net.members);
+        let (rows_of, lone) = rows(sides, &axis, &margins, outline.as_deref());
         if rows_of.len() < 2 {
             return Err(GraphError::OneSided);
         }
@@ -402,9 +403,19 @@ impl VeinGraph {
         let frame = Frame { origin: axis.points[0], up: upright(&axis) };
         let mut rows: Vec<MarkRow> =
             rows_of.iter().rev().map(|[right, left]| frame.row(&axis, right, left, near)).collect();
-        rows.push(frame.base(&axis, &margins, near(0.0)));
+        rows.push(frame.base(&axis, (&margins, outline.as_deref()), near(0.0)));
         let tip = frame.place(axis.at(length));
-        Ok(Marks { rows, tip, tip_thickness: near(length) })
+        let margin = outline.into_iter().flatten().map(|p| frame.place(p)).collect();
+        let mut marks = Marks { rows, tip, tip_thickness: near(length), margin };
+        if marks.margin.is_empty() || marks.complete(&mut Report::default()).is_err() {
+            // Without the margin what is wrong with the marks is told where they are used.
+            marks.margin.clear();
+            report.warn(
+                "margin-not-found",
+                "the veins show no margin that goes once round them: the leaf ends where its side veins end",
+            );
+        }
+        Ok(marks)
     }
 }
 
@@ -481,7 +492,12 @@ fn paired(right: &[Side], left: &[Side], length: f64) -> Vec<(usize, usize)> {
 }
 
 /// Pairs of veins from the base up, right and left, and how many of them got a partner that was not there.
-fn rows([right, left]: [Vec<Side>; 2], axis: &Axis, margins: &[Vec<f64>; 2]) -> (Vec<[Side; 2]>, usize) {
+fn rows(
+    [right, left]: [Vec<Side>; 2],
+    axis: &Axis,
+    margins: &[Vec<f64>; 2],
+    outline: Option<&[DVec2]>,
+) -> (Vec<[Side; 2]>, usize) {
     let length = axis.length();
     let pairs = paired(&right, &left, length);
     let mut middles: Vec<f64> = pairs.iter().map(|&(i, j)| 0.5 * (right[i].from + left[j].from)).collect();
@@ -503,7 +519,7 @@ fn rows([right, left]: [Vec<Side>; 2], axis: &Axis, margins: &[Vec<f64>; 2]) -> 
             continue;
         }
         let Some(partner) =
-            partner(&vein, &ends[1 - k], axis, &margins[1 - k], if k == 0 { -1.0 } else { 1.0 })
+            partner(&vein, &ends[1 - k], axis, &margins[1 - k], (if k == 0 { -1.0 } else { 1.0 }, outline))
         else {
             continue;
         };
@@ -525,7 +541,13 @@ fn rows([right, left]: [Vec<Side>; 2], axis: &Axis, margins: &[Vec<f64>; 2]) -> 
 }
 
 /// A straight vein on the other side (right is 1), to where its neighbours' ends let one expect its own.
-fn partner(vein: &Side, ends: &[(f64, f64)], axis: &Axis, margin: &[f64], side: f64) -> Option<Side> {
+fn partner(
+    vein: &Side,
+    ends: &[(f64, f64)],
+    axis: &Axis,
+    margin: &[f64],
+    (side, outline): (f64, Option<&[DVec2]>),
+) -> Option<Side> {
     let after = ends.partition_point(|e| e.0 < vein.from);
     let to = match (after.checked_sub(1).map(|k| ends[k]), ends.get(after)) {
         (Some(a), Some(b)) => base::ops::lerp(a.1, b.1, (vein.from - a.0) / (b.0 - a.0)),
@@ -537,9 +559,17 @@ fn partner(vein: &Side, ends: &[(f64, f64)], axis: &Axis, margin: &[f64], side: 
     let across = DVec2::new(along.y, -along.x) * side;
     let end = axis.at(to) + across * (0.97 * reach_at(margin, to / length)).max(0.01 * length);
     let foot = axis.at(vein.from);
+    // A notch may be there.
+    let end = outline.map_or(end, |o| foot.lerp(end, share_within(o, foot, end)));
     let line = (0..=6).map(|k| foot.lerp(end, f64::from(k) / 6.0)).collect();
     let radii = (0..=6).map(|k| vein.radii[k * (vein.radii.len() - 1) / 6]).collect();
     Some(Side { from: vein.from, to, line, radii, strength: vein.strength })
+}
+
+/// The share of the way from the midrib outwards after which an end lies within the margin: at least a tenth.
+fn share_within(outline: &[DVec2], from: DVec2, to: DVec2) -> f64 {
+    let shares = (0..18).map(|k| 1.0 - 0.05 * f64::from(k));
+    shares.into_iter().find(|&s| geom::contains(outline, from.lerp(to, s))).unwrap_or(0.1)
 }
 
 /// From the graph's plane to the marks' space.
@@ -576,7 +606,12 @@ impl Frame {
     }
 
     /// The lowest row: across the leaf where the midrib begins, as wide as the leaf is there.
-    fn base(&self, axis: &Axis, margins: &[Vec<f64>; 2], midrib: Option<f64>) -> MarkRow {
+    fn base(
+        &self,
+        axis: &Axis,
+        (margins, outline): (&[Vec<f64>; 2], Option<&[DVec2]>),
+        midrib: Option<f64>,
+    ) -> MarkRow {
         let across = DVec2::new(self.up.y, -self.up.x);
         let length = axis.length();
         let mut row = MarkRow { midrib, ..MarkRow::default() };
@@ -585,7 +620,10 @@ impl Frame {
             let margin = if side > 0.0 { &margins[0] } else { &margins[1] };
             // Not wider than the leaf is a thirtieth farther up, not narrower than 1 % of its length.
             let wide = reach_at(margin, 0.0).min(reach_at(margin, 1.0 / 30.0)).max(0.01 * length);
-            row.points[j] = self.place(axis.points[0] + across * (side / 3.0 * wide));
+            // Within the margin there, if it has one of its own.
+            let end = axis.points[0] + across * (side.signum() * wide);
+            let part = outline.map_or(1.0, |o| share_within(o, axis.points[0], end));
+            row.points[j] = self.place(axis.points[0] + across * (side / 3.0 * wide * part));
         }
         row
     }

@@ -147,12 +147,16 @@ impl LeafGrowth {
         let length = ops::exp(log);
         let (ra, rb) = (a.marks.root(), b.marks.root());
         let root = ra.lerp(rb, t);
-        let raw = blend(
+        let mut raw = blend(
             &a.marks,
             &b.marks,
             |p, q| ((p - ra) / a.length).lerp((q - rb) / b.length, t),
             |x, y| ops::lerp(x, y, t),
         );
+        // The teeth of two days are not the same ones: those of the nearer day go with the blade.
+        if !a.marks.margin.is_empty() && !b.marks.margin.is_empty() {
+            raw.margin.clone_from(&if t < 0.5 { a } else { b }.marks.margin);
+        }
         // Straight lines between turned shapes are a little short: scaled back to the length.
         let scale = length / geom::polyline_length3(&raw.midrib()).max(f64::MIN_POSITIVE);
         Ok(raw.map(|p| root + p * scale, |t| t))
@@ -174,6 +178,7 @@ fn blend(
         rows: rows.collect(),
         tip: point(a.tip, b.tip),
         tip_thickness: thickness(a.tip_thickness, b.tip_thickness),
+        margin: Vec::new(),
     }
 }
 
@@ -217,7 +222,10 @@ fn with_rows(marks: FullMarks, rows: usize) -> FullMarks {
         let thickness = core::array::from_fn(|j| ops::lerp(radii(i, j), radii(i + 1, j), part));
         FullRow { points, thickness, midrib: leaf.midrib.curve.ball(v).radius }
     };
-    FullMarks { rows: (0..rows).rev().map(row).collect(), tip: marks.tip, tip_thickness: marks.tip_thickness }
+    let margin = marks.margin_places();
+    let more = FullMarks { rows: (0..rows).rev().map(row).collect(), margin: Vec::new(), ..marks };
+    let bare = more.clone();
+    more.within(&margin).unwrap_or(bare)
 }
 
 #[cfg(test)]

@@ -5,8 +5,10 @@
 //! | module | owns |
 //! |---|---|
 //! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
+//! | `margin` | [`MarginPoint`]: a margin of the leaf's own, that goes where the blade goes |
 //! | `form` | [`LeafForm`]: a few numbers -> marks |
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
+//! | `outline` | the margin that a network of veins shows |
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `pose` | curl and wilt |
@@ -23,7 +25,9 @@ mod form;
 mod graph;
 mod growth;
 mod lobes;
+mod margin;
 mod marks;
+mod outline;
 mod palmate;
 mod pose;
 mod profile;
@@ -36,6 +40,7 @@ pub use blade::Leaf;
 pub use form::LeafForm;
 pub use graph::{GraphError, VeinGraph};
 pub use growth::{LeafGrowth, StagesError};
+pub use margin::MarginPoint;
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};

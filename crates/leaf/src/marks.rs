@@ -3,6 +3,8 @@
 use base::Report;
 use glam::DVec3;
 
+use crate::margin::MarginPoint;
+
 /// Marks on each side vein, margin to margin; the fourth lies on the midrib.
 pub const MARKS_A_ROW: usize = 7;
 
@@ -23,6 +25,9 @@ pub struct Marks {
     pub tip: DVec3,
     /// Thickness of the midrib at the tip, metres.
     pub tip_thickness: Option<f64>,
+    /// The margin, metres: once round the blade, from any point on; empty where it is that of the rows' ends. The blade
+    /// then has its teeth and lobes.
+    pub margin: Vec<DVec3>,
 }
 
 /// One pair of side veins.
@@ -45,6 +50,8 @@ pub struct FullMarks {
     pub tip: DVec3,
     /// Thickness of the midrib at the tip.
     pub tip_thickness: f64,
+    /// The margin, counter-clockwise as one looks at the upper side; empty where it is that of the rows' ends.
+    pub margin: Vec<MarginPoint>,
 }
 
 /// One pair of side veins with every thickness.
@@ -96,6 +103,20 @@ pub enum MarksError {
         "row 1 meets the midrib at the tip; the tip is repeated, or row 1 is the tip itself: remove one of them"
     )]
     TipRepeated,
+    /// Too few points of the margin.
+    #[error("a margin of {0} points encloses nothing; give at least 3, or none")]
+    MarginFew(usize),
+    /// A coordinate of the margin is no usable number.
+    #[error("margin, point {0}: a coordinate is not a finite number; measure it again")]
+    MarginNotFinite(usize),
+    /// The margin is no simple line.
+    #[error(
+        "the margin crosses itself {0} times on the blade laid flat; give its points in order, once round the blade"
+    )]
+    MarginCrosses(usize),
+    /// The margin is somewhere else.
+    #[error("the middle of the midrib does not lie within the margin; are both of one leaf, in one unit?")]
+    MarginApart,
 }
 
 /// Thickness of a midrib at its base over its length, and at its tip over that at its base, where none was measured.
@@ -122,6 +143,7 @@ impl Marks {
             rows: rows.collect(),
             tip: self.tip * factor,
             tip_thickness: self.tip_thickness.map(|t| t * factor),
+            margin: self.margin.iter().map(|&p| p * factor).collect(),
         }
     }
 
@@ -196,7 +218,7 @@ impl Marks {
     /// such guess is told in `report`.
     ///
     /// # Errors
-    /// The first of [`validate`](Self::validate).
+    /// The first of [`validate`](Self::validate); those of [`FullMarks::within`].
     pub fn complete(&self, report: &mut Report) -> Result<FullMarks, MarksError> {
         if let Some(fault) = self.validate().next() {
             return Err(fault);
@@ -252,7 +274,7 @@ impl Marks {
         });
         let rows: Vec<FullRow> = rows.collect();
         let tip_thickness = self.tip_thickness.unwrap_or(rows[0].thickness[0].min(rows[0].midrib));
-        Ok(FullMarks { rows, tip: self.tip, tip_thickness })
+        FullMarks { rows, tip: self.tip, tip_thickness, margin: Vec::new() }.within(&self.margin)
     }
 
     /// Where the rows meet the midrib, by length from the tip.
@@ -291,7 +313,8 @@ impl FullMarks {
             thickness: r.thickness.map(Some),
             midrib: Some(r.midrib),
         });
-        Marks { rows: rows.collect(), tip: self.tip, tip_thickness: Some(self.tip_thickness) }
+        let margin = self.margin_places();
+        Marks { rows: rows.collect(), tip: self.tip, tip_thickness: Some(self.tip_thickness), margin }
     }
 
     /// All points scaled about the root, thickness too.
@@ -306,7 +329,7 @@ impl FullMarks {
         self.rows.last().map_or(self.tip, |r| r.points[MIDDLE])
     }
 
-    /// Every point and every thickness put through a function.
+    /// Every point and every thickness put through a function, which turns, shifts and scales; the margin goes with them.
     #[must_use]
     pub fn map(&self, point: impl Fn(DVec3) -> DVec3, thickness: impl Fn(f64) -> f64) -> Self {
         let rows = self.rows.iter().map(|r| FullRow {
@@ -315,7 +338,8 @@ impl FullMarks {
             midrib: thickness(r.midrib),
         });
         let rows = rows.collect();
-        Self { rows, tip: point(self.tip), tip_thickness: thickness(self.tip_thickness) }
+        let (tip, tip_thickness) = (point(self.tip), thickness(self.tip_thickness));
+        Self { rows, tip, tip_thickness, margin: self.margin.clone() }
     }
 
     /// Points of the midrib from root to tip.
@@ -339,7 +363,7 @@ pub(crate) mod tests {
             });
             MarkRow { points, thickness: [None; 7], midrib: None }
         };
-        let mut marks = Marks { rows: (0..rows).map(row).collect(), tip: DVec3::Y, tip_thickness: None };
+        let mut marks = Marks { rows: (0..rows).map(row).collect(), tip: DVec3::Y, ..Marks::default() };
         marks.rows[0].midrib = Some(0.01);
         marks.rows[rows - 1].midrib = Some(0.03);
         marks.rows[0].thickness[3] = Some(0.004);
@@ -431,4 +455,8 @@ base::coded!(MarksError {
     Self::Point(row) => "marks-one-point" { row },
     Self::SameRow(row) => "marks-same-row" { row, next = row + 1 },
     Self::TipRepeated => "marks-tip" {},
+    Self::MarginFew(points) => "margin-few" { points },
+    Self::MarginNotFinite(point) => "margin-not-finite" { point },
+    Self::MarginCrosses(times) => "margin-crosses" { times },
+    Self::MarginApart => "margin-apart" {},
 });

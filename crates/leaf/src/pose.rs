@@ -66,7 +66,7 @@ impl Pose {
         let mut out: Vec<FullRow> =
             posed.map(|(p, row)| FullRow { points: core::array::from_fn(|j| p[j]), ..**row }).collect();
         out.reverse();
-        FullMarks { rows: out, tip, tip_thickness: marks.tip_thickness }
+        FullMarks { rows: out, tip, ..marks.clone() }
     }
 
     /// As [`apply`](Self::apply), of chief veins that start together: the middle one is what the blade rolls about.

@@ -362,7 +362,7 @@ impl RayLeaf {
         let (a, b) = self.blade.u().domain();
         let veins = Venation { veins: self.veins.clone(), fine: self.sides.clone(), margins: Vec::new() };
         let (surface, chart) = (self.blade.clone(), Chart::Parameters(shade));
-        SplineBlade { surface, middle: 0.5 * (a + b), veins, chart, form: 0 }
+        SplineBlade { surface, rim: Vec::new(), middle: 0.5 * (a + b), veins, chart, form: 0 }
     }
 }
 

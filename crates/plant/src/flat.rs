@@ -18,6 +18,8 @@ pub struct FlatLeaf {
     pub columns: usize,
     /// Rows of points between neighbouring side veins: row `i * steps` is a side vein, the last is the tip.
     pub steps: usize,
+    /// The margin, counter-clockwise, where it is not that of the points; empty for none.
+    pub rim: Vec<DVec2>,
     min: DVec2,
     size: DVec2,
 }
@@ -53,14 +55,30 @@ impl FlatLeaf {
         }
         let min = flat.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
         let max = flat.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
-        Self { points: flat, columns, steps, min, size: (max - min).max(DVec2::splat(f64::MIN_POSITIVE)) }
+        let size = (max - min).max(DVec2::splat(f64::MIN_POSITIVE));
+        Self { points: flat, columns, steps, rim: Vec::new(), min, size }
     }
 
-    /// The texture coordinates of point `k`: the box around the flat leaf is the image, tip at the top.
+    /// The same leaf with a margin of its own, which widens the box around it.
+    #[must_use]
+    pub(crate) fn within(mut self, rim: Vec<DVec2>) -> Self {
+        let max = rim.iter().fold(self.min + self.size, |a, &b| a.max(b));
+        self.min = rim.iter().fold(self.min, |a, &b| a.min(b));
+        self.size = max - self.min;
+        self.rim = rim;
+        self
+    }
+
+    /// The texture coordinates of a place: the box around the flat leaf is the image, tip at the top.
     #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]
-    pub fn uv(&self, k: usize) -> [f32; 2] {
-        let p = (self.points[k] - self.min) / self.size;
+    pub fn uv_of(&self, p: DVec2) -> [f32; 2] {
+        let p = (p - self.min) / self.size;
         [p.x as f32, (1.0 - p.y) as f32]
+    }
+
+    /// [`uv_of`](Self::uv_of) point `k`.
+    pub fn uv(&self, k: usize) -> [f32; 2] {
+        self.uv_of(self.points[k])
     }
 
     /// The lowest corner and the size of the box around the flat leaf, metres.
@@ -73,8 +91,12 @@ impl FlatLeaf {
         self.points.len().checked_div(self.columns).unwrap_or(0)
     }
 
-    /// The margin, counter-clockwise from the root: lowest row to the right, up to the tip, down on the left.
+    /// The margin, counter-clockwise: its own, or that of the points from the root, lowest row to the right, up to the tip, down
+    /// on the left.
     pub fn outline(&self) -> Vec<DVec2> {
+        if !self.rim.is_empty() {
+            return self.rim.clone();
+        }
         let (n, rows) = (self.columns, self.rows());
         let middle = n / 2;
         if rows == 0 {

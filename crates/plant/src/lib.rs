@@ -15,6 +15,7 @@ mod organ;
 mod phyllotaxis;
 mod pipe;
 mod relief;
+mod rim;
 mod sheet;
 mod topology;
 mod validate;
@@ -28,6 +29,7 @@ pub use organ::{DRAWN_WIDER, Flower, Organ, OrganKind, Paint, PlantPaint, Shape}
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;
+pub use rim::{Netted, RimPoint};
 pub use sheet::{Chart, Sheet, SplineBlade, Vein, VeinShade, Venation};
 pub use topology::{Axis, AxisKind, Nodes, Plant};
 pub use validate::Fault;

@@ -4,7 +4,7 @@ use base::{Digest, Digestible};
 use geom::{BallBSpline, SplineSurface, SurfacePoint, subdivided};
 use glam::DVec3;
 
-use crate::{FlatLeaf, Frame};
+use crate::{FlatLeaf, Frame, RimPoint};
 
 /// One vein: a ball B-spline and the parameters of its marks.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +57,8 @@ pub struct SplineBlade {
     pub middle: f64,
     /// Its veins.
     pub veins: Venation,
+    /// The margin, where it is not the surface's own edge: counter-clockwise seen from the upper side; empty for none.
+    pub rim: Vec<RimPoint>,
     /// Its place in a texture.
     pub chart: Chart,
     /// Blades with a texture of their own have numbers, from 0; leaves of one number share it.
@@ -103,7 +105,8 @@ impl SplineBlade {
         let normal = self.surface.at(self.middle, 0.5 * (v.0 + v.1)).normal.unwrap_or(DVec3::Z);
         let frame = Frame::looking(root, tip - root, normal);
         let surface = self.surface.moved(|p| frame.localise(p));
-        (Self { surface, veins: self.veins.moved(|p| frame.localise(p)), ..self }, frame)
+        let rim = self.rim.into_iter().map(|r| RimPoint { place: frame.localise(r.place), ..r }).collect();
+        (Self { surface, rim, veins: self.veins.moved(|p| frame.localise(p)), ..self }, frame)
     }
 
     /// The parameters of the grid with `steps` parts a span of marks along v: u of the columns, v of the rows.
@@ -118,7 +121,9 @@ impl SplineBlade {
     pub fn flat(&self, steps: usize) -> FlatLeaf {
         let steps = steps.clamp(1, 64);
         let (us, vs) = self.grid_at(steps);
-        FlatLeaf::of_grid(&self.surface.grid(&us, &vs), us.len(), steps)
+        let flat = FlatLeaf::of_grid(&self.surface.grid(&us, &vs), us.len(), steps);
+        let rim = self.flat_rim(&flat, &us, &vs);
+        flat.within(rim)
     }
 
     /// The points at its marks.
@@ -142,6 +147,9 @@ impl SplineBlade {
 
     /// The area of one side, metres squared; to about a per cent.
     pub fn area_m2(&self) -> f64 {
+        if let Some(net) = self.netted(2) {
+            return area(&net.points, net.triangles.into_iter());
+        }
         let (us, vs) = self.grid_at(2);
         let points: Vec<DVec3> = self.surface.grid(&us, &vs).iter().map(|p| p.position).collect();
         let veins = Venation::default();
@@ -151,7 +159,8 @@ impl SplineBlade {
 
     pub(crate) fn sound(&self) -> bool {
         let veins = self.veins.all().all(|v| v.marks.len() >= 2 && v.marks.iter().all(|m| m.is_finite()));
-        veins && self.middle.is_finite() && self.marks().iter().all(|p| p.is_finite())
+        let rim = self.rim.iter().all(|r| r.place.is_finite() && r.u.is_finite() && r.v.is_finite());
+        veins && rim && self.middle.is_finite() && self.marks().iter().all(|p| p.is_finite())
     }
 }
 
@@ -231,6 +240,9 @@ impl Digestible for SplineBlade {
         d.add(s.u().knots()).add(s.v().knots()).add(s.controls()).add(&s.weights().map(<[f64]>::to_vec));
         d.add(s.columns_at()).add(s.rows_at());
         d.add(&self.middle).add(&self.veins).add(&self.form);
+        if !self.rim.is_empty() {
+            d.add(&self.rim);
+        }
         match self.chart {
             Chart::Unrolled => {
                 d.add(&0_u8);

@@ -3,7 +3,7 @@
 use geom::{BallBSpline, BallTubeSpec, subdivided};
 use glam::DVec3;
 use mesh::TriMesh;
-use plant::{Chart, Sheet, SplineBlade, VeinShade, Venation};
+use plant::{Chart, Netted, Sheet, SplineBlade, VeinShade, Venation};
 
 use crate::LeafMeshSpec;
 use crate::sleeve::{narrow, narrow2, wide};
@@ -12,7 +12,8 @@ use crate::sleeve::{narrow, narrow2, wide};
 ///
 /// Of a leaf of N rows of marks with the default [`LeafMeshSpec`] the veins have `10 (36 N + 1)` vertices and `350 N`
 /// quads, the blade `(5 N + 1) * 31` vertices and `150 N` quads (Wang et al. 2011, Table 1). Triangles are two a quad, but one
-/// at the tip, where a row of the blade is one point.
+/// at the tip, where a row of the blade is one point. A blade with a margin of its own is of triangles; they are counted instead
+/// of quads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh {
     /// Its surface; of a leaf the blade.
@@ -40,6 +41,10 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
     let steps = spec.subdivisions.clamp(1, 64);
     let mut out = ShapeMesh::default();
     out.add_veins(&blade.veins, steps, spec);
+    if let Some(net) = blade.netted(steps) {
+        out.add_net(&net, blade, steps);
+        return out;
+    }
     let (us, vs) = blade.grid_at(steps);
     let columns = us.len();
     let points = blade.surface.grid(&us, &vs);
@@ -133,6 +138,19 @@ fn kept(n: usize, detail: f64) -> Vec<usize> {
 }
 
 impl ShapeMesh {
+    /// A blade within a margin of its own.
+    fn add_net(&mut self, net: &Netted, blade: &SplineBlade, steps: usize) {
+        let flat = blade.flat(steps);
+        let mesh = &mut self.surface;
+        for ((&p, &normal), &place) in net.points.iter().zip(&net.normals).zip(&net.flat) {
+            mesh.push(p);
+            mesh.normals.push(narrow(normal));
+            mesh.uvs.push(flat.uv_of(place));
+        }
+        mesh.triangles.extend(net.triangles.iter().map(|t| t.map(crate::sleeve::index)));
+        self.blade_faces = net.triangles.len();
+    }
+
     fn add_veins(&mut self, veins: &Venation, steps: usize, spec: &LeafMeshSpec) {
         let tube = spec.tube();
         for vein in &veins.veins {

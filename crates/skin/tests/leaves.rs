@@ -48,7 +48,7 @@ fn sample(rows: usize, surface: SurfaceKind) -> SplineBlade {
         });
         MarkRow { points, midrib: Some(0.02), ..MarkRow::default() }
     };
-    let marks = Marks { rows: (0..rows).map(row).collect(), tip: DVec3::Y, tip_thickness: None };
+    let marks = Marks { rows: (0..rows).map(row).collect(), tip: DVec3::Y, ..Marks::default() };
     let full = marks.complete(&mut Report::default()).expect("sound marks");
     Leaf::new(&full, &LeafSpec { surface, ..LeafSpec::default() }).expect("a leaf").blade()
 }

@@ -28,6 +28,7 @@ mod opening;
 mod report;
 mod scanned;
 mod scene;
+mod seedling;
 mod shaping;
 mod shoot;
 mod split;
@@ -60,6 +61,7 @@ pub use scene::{
     material_schema, scene_model, sketch_schema, skin_schema, standing, standing_at, tree_settings,
     tree_spec,
 };
+pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};

@@ -29,14 +29,7 @@ pub fn make_leaf_from_scan(
     let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk));
     let n = found.columns;
     let rows = found.grid.len() / n;
-    let sheet = Sheet {
-        // The grid's rows run from left to right.
-        points: found.grid.chunks(n).flat_map(|row| row.iter().rev().copied()).collect(),
-        across: (0..n).rev().map(|j| j as f64 / (n - 1) as f64).collect(),
-        along: (0..rows).map(|i| i as f64 / (rows - 1) as f64).collect(),
-        colors: Vec::new(),
-        veins: Venation { fine: vec![midrib(&found, &line)?], ..Venation::default() },
-    };
+    let sheet = sheet_of(&found)?;
     let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
     let options = LeafOptions { spec, ..LeafOptions::default() };
     if let Some((sheet, frame)) = sheet.framed() {
@@ -67,6 +60,20 @@ pub fn make_leaf_from_scan(
         ..LeafReport::default()
     });
     Ok((made, found))
+}
+
+/// The blade that was found, where it stands in the scan.
+pub(crate) fn sheet_of(found: &ScanLeaf) -> Result<Sheet, SplineError> {
+    let n = found.columns;
+    let rows = found.grid.len() / n;
+    Ok(Sheet {
+        // The grid's rows run from left to right.
+        points: found.grid.chunks(n).flat_map(|row| row.iter().rev().copied()).collect(),
+        across: (0..n).rev().map(|j| j as f64 / (n - 1) as f64).collect(),
+        along: (0..rows).map(|i| i as f64 / (rows - 1) as f64).collect(),
+        colors: Vec::new(),
+        veins: Venation { fine: vec![midrib(found, &found.midrib())?], ..Venation::default() },
+    })
 }
 
 /// The midrib, thinner towards the tip; how thick it is only a stalk tells.

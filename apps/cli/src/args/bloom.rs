@@ -78,6 +78,8 @@ pub(crate) struct FitArgs {
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
   burgeon bloom run stages.toml --law tomato.law.json --day 8 -o day8.ply
+  burgeon bloom run stages.toml --plant --day 8 -o day8.glb      a plant on a day between the scans
+  burgeon bloom run seedling.ply --plant --unit mm --up z -o seedling.glb
   burgeon bloom run first.ply --end last.ply --law lily.law.json --day 3 -o day3.ply --compare scan3.ply --unit mm
   burgeon bloom run first.glb --end last.glb --law lily.law.json --frames 20 -o opening.glb
   burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
@@ -133,6 +135,10 @@ pub(crate) struct BloomRunArgs {
     /// plant, as it stood in the first scan.
     #[arg(long, value_enum, default_value_t = FrameWord::Scanner)]
     pub(crate) frame: FrameWord,
+    /// Make a plant of the scans, and not points: stem and stalks are axes with radii, leaves are blades. With --day, into a
+    /// folder, or of one scan alone (without --end).
+    #[arg(long, conflicts_with = "whole")]
+    pub(crate) plant: bool,
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
     #[arg(long)]
     pub(crate) whole: bool,

@@ -13,6 +13,10 @@ use crate::error::{FileFault, Place, WriteError};
 
 // More side veins than any leaf has; keeps a slip such as row 1000000 from filling memory.
 const MAX_ROWS: usize = 10_000;
+// A point every tenth of a millimetre round a leaf of a metre.
+const MAX_MARGIN: usize = 20_000;
+/// What stands for a row in the key of a point of the margin.
+const MARGIN: usize = usize::MAX;
 
 /// Unit and up axis of a file that does not say them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +63,8 @@ struct Entry {
 /// Reads marks: `row,mark,x,y,z,thickness,midrib`, one line a mark.
 ///
 /// Rows count from 1 at the tip, marks from 1 (right margin) to 7 (left margin); the tip is a line whose row is
-/// `tip`, or a row 0, or a first row of seven equal points. `thickness` is the side vein's, `midrib` the
+/// `tip`, or a row 0, or a first row of seven equal points. Rows `margin` are points of a margin of the leaf's own, marks
+/// counted once round it; without them the margin is that of the rows' ends. `thickness` is the side vein's, `midrib` the
 /// midrib's at mark 4 and at the tip; both may be empty. Fields are separated as those of the first line: by commas,
 /// semicolons or tabs; by the latter two, numbers may have decimal commas.
 /// Lines `# unit: mm`, `# up: z`, `# thickness: radius` and `# name: ...` say how to read it and win over
@@ -92,6 +97,9 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
                     let (key, entry) = mark(columns, fields, line, k + 1).map_err(placed)?;
                     if let Some(first) = entries.insert(key, entry) {
                         let what = match key {
+                            (MARGIN, m) => {
+                                format!("margin, point {m} is given twice, first on line {}", first.line)
+                            }
                             (0, _) => format!("the tip is given twice, first on line {}", first.line),
                             (r, m) => {
                                 format!("row {r}, mark {m} is given twice, first on line {}", first.line)
@@ -210,8 +218,12 @@ fn mark(
         Ok(n) if (1..=most).contains(&n) => Ok(n),
         _ => Err(FileFault::malformed(format!("`{text}` is no number of a {what}"), advice)),
     };
+    let margin = row.eq_ignore_ascii_case("margin");
     let key = if tip {
         (0, 1)
+    } else if margin {
+        let advice = "points of the margin count from 1, once round the blade";
+        (MARGIN, count(field(columns.mark), "point of the margin", MAX_MARGIN, advice)?)
     } else {
         let row =
             count(row, "row", MAX_ROWS, "rows count from 1 at the tip; the tip itself is the row `tip`")?;
@@ -258,7 +270,23 @@ fn mark(
 fn gather(entries: &BTreeMap<(usize, usize), Entry>, out: &mut ReadMarks) -> Result<(), LeafFileError> {
     let fail =
         |what: String, advice| Err(LeafFileError::new(Place::File, FileFault::Malformed { what, advice }));
-    let rows = entries.keys().map(|k| k.0).max().unwrap_or(0);
+    let rows = entries.keys().map(|k| k.0).filter(|&r| r != MARGIN).max().unwrap_or(0);
+    let margin = entries.range((MARGIN, 0)..).map(|(k, e)| (k.1, e));
+    for (k, (point, entry)) in margin.enumerate() {
+        if point != k + 1 {
+            return fail(
+                format!("the margin has no point {} (line {} is point {point})", k + 1, entry.line),
+                "number the points of the margin from 1 without gaps",
+            );
+        }
+        if entry.thickness.or(entry.midrib).is_some() {
+            return fail(
+                format!("margin, point {point} (line {}) has a thickness", entry.line),
+                "a margin is a line: leave its thickness empty",
+            );
+        }
+        out.marks.margin.push(entry.point);
+    }
     for r in 1..=rows {
         let have = |m: usize| entries.get(&(r, m));
         let known = (1..=MARKS_A_ROW).filter(|&m| have(m).is_some()).count();
@@ -331,6 +359,7 @@ fn orient(marks: &mut Marks, axes: MarksAxes) {
         row.midrib = row.midrib.map(|t| t * unit);
     }
     marks.tip = point(marks.tip);
+    marks.margin.iter_mut().for_each(|p| *p = point(*p));
     marks.tip_thickness = marks.tip_thickness.map(|t| t * unit);
 }
 
@@ -351,6 +380,9 @@ pub fn write_marks(marks: &Marks, name: &str, mut out: impl Write) -> Result<(),
             writeln!(out, "{},{},{},{},{midrib}", i + 1, j + 1, place(p), thick(row.thickness[j]))?;
         }
     }
+    for (k, &p) in marks.margin.iter().enumerate() {
+        writeln!(out, "margin,{},{},,", k + 1, place(p))?;
+    }
     Ok(())
 }
 
@@ -367,6 +399,7 @@ pub fn marks_template(rows: usize) -> String {
          # Look at the upper side with the tip up. Row 1 is the pair of side veins nearest to the tip, the last row\n\
          # the lowest pair. Each row has 7 marks at equal distances along its veins, from the right margin (1) over\n\
          # the midrib (4) to the left margin (7). The tip is marked once.\n\
+         # A margin with teeth may be given as well: lines  margin,1,x,y,z,,  counted once round the blade.\n\
          # Column thickness: of the side vein at the mark; at mark 4 where it leaves the midrib. Enough: marks 1 and 4.\n\
          # Column midrib: thickness of the midrib itself, at the tip and at mark 4 of each row.\n\
          # A thickness that was not measured stays empty and is interpolated.\n\
@@ -392,7 +425,26 @@ mod tests {
             midrib: Some(0.006),
         };
         let rows = vec![row(0.08), row(0.04), row(0.0)];
-        Marks { rows, tip: DVec3::new(0.0, 0.002, -0.12), tip_thickness: Some(0.001) }
+        Marks { rows, tip: DVec3::new(0.0, 0.002, -0.12), tip_thickness: Some(0.001), margin: Vec::new() }
+    }
+
+    #[test]
+    fn a_margin_comes_back_and_its_faults_name_the_point() {
+        let corners = [[0.03, -0.001], [0.035, -0.05], [0.0, -0.12], [-0.035, -0.04], [-0.03, -0.001]];
+        let margin = corners.map(|[x, z]| DVec3::new(x, 0.0, z)).to_vec();
+        let marks = Marks { margin, ..sample() };
+        let mut bytes = Vec::new();
+        write_marks(&marks, "a leaf", &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let back = read(&text).unwrap().marks;
+        assert_eq!(back.margin.len(), 5);
+        assert!(back.margin.iter().zip(&marks.margin).all(|(a, b)| a.distance(*b) < 1e-6));
+        let said = |text: &str| read(text).unwrap_err().to_string();
+        assert!(said(&text.replace("margin,2,", "margin,7,")).contains("the margin has no point 2"));
+        assert!(said(&text.replace("margin,2,", "margin,0,")).contains("count from 1"));
+        assert!(said(&text.replace("margin,2,", "margin,1,")).contains("margin, point 1 is given twice"));
+        let thick = text.replace("margin,5,-30.000,1.000,0.000,,", "margin,5,-30.000,1.000,0.000,0.1,");
+        assert!(said(&thick).contains("margin, point 5"), "{thick}");
     }
 
     fn read(text: &str) -> Result<ReadMarks, LeafFileError> {

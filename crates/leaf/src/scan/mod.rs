@@ -23,11 +23,13 @@ pub struct ScanSpec {
     pub explained_m: f64,
     /// Stiffness of the surface, above 0: 0.01 follows the cloud, 1 is smooth. Default 0.05.
     pub smoothing: f64,
+    /// Where the blade sits on its stalk, if that is known: then the points are those of the blade alone. Default `None`.
+    pub base: Option<DVec3>,
 }
 
 impl Default for ScanSpec {
     fn default() -> Self {
-        Self { rows: 64, columns: 41, explained_m: 0.002, smoothing: 0.05 }
+        Self { rows: 64, columns: 41, explained_m: 0.002, smoothing: 0.05, base: None }
     }
 }
 
@@ -131,14 +133,19 @@ pub fn fit_scan(
         return Err(ScanError::TooFew(kept.len()));
     }
     run.cancel.check()?;
-    let thin = stalk_points(kept, *spacing, run);
+    let thin = match spec.base {
+        Some(_) => vec![false; kept.len()],
+        None => stalk_points(kept, *spacing, run),
+    };
     let blade: Vec<DVec3> = kept.iter().zip(&thin).filter(|(_, t)| !**t).map(|(p, _)| *p).collect();
     let stem: Vec<DVec3> = kept.iter().zip(&thin).filter(|(_, t)| **t).map(|(p, _)| *p).collect();
     if blade.len() < 100 {
         return Err(ScanError::TooFew(blade.len()));
     }
     run.cancel.check()?;
-    let plane = plane_of(&blade, &stem, report).ok_or(ScanError::TooFew(blade.len()))?;
+    let known: Vec<DVec3> = spec.base.into_iter().collect();
+    let joint = if known.is_empty() { &stem } else { &known };
+    let plane = plane_of(&blade, joint, report).ok_or(ScanError::TooFew(blade.len()))?;
     let flat: Vec<DVec3> = blade.iter().map(|&p| plane.local(p)).collect();
     let field = surface_of(&flat, *spacing, spec.smoothing)?;
     run.cancel.check()?;
@@ -449,12 +456,17 @@ impl Lines {
         // A slab must hold some lines of the scanner.
         let half = ((hi - lo) / rows as f64).max(1.5 * spacing);
         let mut slabs: Vec<Vec<f64>> = vec![vec![]; rows];
+        let mut heights = vec![0.0; rows];
         for p in flat {
             for (i, &at) in y.iter().enumerate() {
                 if (p.y - at).abs() <= half {
                     slabs[i].push(p.x);
+                    heights[i] += p.y;
                 }
             }
+        }
+        for (sum, slab) in heights.iter_mut().zip(&slabs) {
+            *sum /= slab.len().max(1) as f64;
         }
         let ends: Vec<Option<(f64, f64)>> = slabs
             .iter_mut()
@@ -468,6 +480,16 @@ impl Lines {
         let ends = bridged(&ends);
         let (left, right): (Vec<f64>, Vec<f64>) = ends.into_iter().unzip();
         let (mut left, mut right) = (smooth(&left, 1), smooth(&right, 1));
+        // The points of the first and the last station lie all on one side of it: from where they are, the margins go on to
+        // its end, where they meet at most.
+        let last = rows - 1;
+        for [end, inner] in [[0, 2.min(last)], [last, last.saturating_sub(2)]] {
+            let run = heights[end] - heights[inner];
+            let share = if run == 0.0 { 0.0 } else { ((y[end] - heights[end]) / run).clamp(0.0, 1.0) };
+            let [l, r] = [&left, &right].map(|m| m[end] + (m[end] - m[inner]) * share);
+            let middle = 0.5 * (l + r);
+            (left[end], right[end]) = (l.min(middle), r.max(middle));
+        }
         let mut middle = crease(&y, &left, &right, field);
         steady(&mut middle, (hi - lo) / (rows - 1) as f64);
         for (i, &x) in middle.iter().enumerate() {

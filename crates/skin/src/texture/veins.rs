@@ -229,8 +229,14 @@ mod tests {
         let grid: Vec<DVec3> = (0..7).flat_map(|i| (0..7).map(move |j| mark(i, j))).collect();
         let surface = SplineSurface::interpolate(&grid, 7).unwrap();
         let middle = surface.columns_at()[3];
-        let blade =
-            SplineBlade { surface, middle, veins: Venation::default(), chart: Chart::Unrolled, form: 0 };
+        let blade = SplineBlade {
+            surface,
+            middle,
+            veins: Venation::default(),
+            rim: Vec::new(),
+            chart: Chart::Unrolled,
+            form: 0,
+        };
         let flat = blade.flat(5);
         let colours = LeafColours::default();
         let t = vein_texture(&flat, &colours, 256, Seed::new(3), &Serial);

@@ -1,0 +1,180 @@
+//! `burgeon bloom run`: shapes at any day, whole flowers that open.
+
+mod flowers;
+mod scans;
+mod told;
+mod write;
+
+use std::path::{Path, PathBuf};
+
+use burgeon::bloom::{FlowerSpec, GrowthLaw};
+use burgeon::document::PlantEdit;
+use burgeon::mesh::Model;
+use burgeon::plant::Plant;
+
+use crate::args::{BloomCommand, BloomRunArgs, PlantFormat};
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::output::Outputs;
+use crate::petals::is_drawing;
+use crate::{edits, files, fit, picture};
+
+pub(crate) use flowers::species;
+
+pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
+    match command {
+        BloomCommand::Fit(args) => fit::fit(args),
+        BloomCommand::Run(args) => run(args),
+    }
+}
+
+fn read_law(path: &Path) -> Outcome<GrowthLaw> {
+    let text = files::read_text(path)?;
+    let law: GrowthLaw = serde_json::from_str(&text).map_err(|e| {
+        Failure::at(path, format_args!("is no growth law: {e}; make one with `burgeon bloom fit`"))
+    })?;
+    let fault = law.validate().next();
+    match fault {
+        Some(fault) => Err(Failure::at(path, format_args!("cannot be used: {fault}"))),
+        None => Ok(law),
+    }
+}
+
+/// What there is at a day.
+struct Shown {
+    /// None of scans, of which only points are known.
+    plant: Option<Plant>,
+    model: Model,
+    /// Coarser copies.
+    lods: Vec<Model>,
+    /// The share of petal triangles that cross another petal.
+    overlap: Option<f64>,
+}
+
+type Shape<'a> = Box<dyn FnMut(f64) -> Outcome<Shown> + 'a>;
+
+/// Shapes over time, wherever they come from.
+struct Show<'a> {
+    name: String,
+    /// First and last day, in the user's count.
+    days: [f64; 2],
+    /// The day of a picture that names none.
+    best: f64,
+    shape: Shape<'a>,
+}
+
+/// The outputs of `run`: -o is a file, or a folder for the shapes of all days.
+fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
+    let start = PathBuf::from(&args.start);
+    let inputs = [
+        Some(&start),
+        args.end.as_ref(),
+        args.petal.as_ref(),
+        args.law.as_ref(),
+        args.compare.as_ref(),
+        args.edits.as_ref(),
+    ];
+    let mut outputs = Outputs::new(&[], &inputs.into_iter().flatten().collect::<Vec<_>>())?;
+    match (files::extension(&args.output), args.day) {
+        (Some(_), _) => {
+            outputs.plan("-o", &args.output)?;
+            files::plan_plant(&mut outputs, &args.output, args.lods)?;
+        }
+        (None, Some(_)) => {
+            return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
+        }
+        // First: a report may lie in it.
+        (None, None) => outputs.folder(&args.output)?,
+    }
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+        outputs.plan("--png", png)?;
+    }
+    if let Some(report) = &args.common.report {
+        outputs.plan("--report", report)?;
+    }
+    Ok(outputs)
+}
+
+fn run(args: &BloomRunArgs) -> Outcome {
+    let machine = Machine::new(&args.common);
+    let outputs = planned(args)?;
+    let law = args.law.as_deref().map(read_law).transpose()?;
+    if args.day.is_some_and(|d| !d.is_finite()) {
+        return Err(Failure::Bad("--day must be a finite number".into()));
+    }
+    let start = Path::new(&args.start);
+    check_used(args)?;
+    if let Some(spec) = species(start)? {
+        return flowers::flower(args, spec, law, outputs, &machine);
+    }
+    let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
+    args.given.refuse(&["petal"], &flowers, &format!("{} is none", args.start))?;
+    if is_drawing(start) {
+        return flowers::drawn_flower(args, start, law, outputs, &machine);
+    }
+    if args.plant {
+        plant_formats(args)?;
+    } else {
+        let plants = ["wind", "edits", "lods", "materials"];
+        let users = format!("{flowers}, drawings and scans with --plant");
+        args.given.refuse(&plants, &users, &format!("{} is none", args.start))?;
+    }
+    scans::run(args, law, outputs, &machine)
+}
+
+/// Fails on options that the files of plants do not use.
+fn plant_formats(args: &BloomRunArgs) -> Outcome {
+    let folder = files::extension(&args.output).is_none();
+    let written =
+        if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
+    let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
+    // An animation moves its vertices itself.
+    let film =
+        args.day.is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+    args.given.only_if(
+        wind && !film,
+        &["wind"],
+        "models of one day as .glb (--day), .usda or .usdz",
+        "none is made",
+    )?;
+    // Scans have axes and a unit themselves.
+    if args.plant { Ok(()) } else { args.given.check_axes(!written.fixed_axes()) }
+}
+
+/// What is said of a law that sets no pace.
+fn no_pace(args: &BloomRunArgs, law: &GrowthLaw) -> Option<String> {
+    let path = args.law.as_ref().filter(|_| !law.sets_pace())?;
+    Some(format!(
+        "{}: its stages determine no law that moves: everything goes at an even pace",
+        path.display()
+    ))
+}
+
+/// Fails on options that this kind of output does not use.
+fn check_used(args: &BloomRunArgs) -> Outcome {
+    let given = &args.given;
+    let picture = ["size", "view"];
+    given.only_if(args.png.is_some(), &picture, "pictures", "--png FILE.png, which makes one, is missing")?;
+    let extension = files::extension(&args.output);
+    let several = args.day.is_none() && extension.is_none_or(|e| e.eq_ignore_ascii_case("glb"));
+    let one = "one shape is written";
+    given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
+    let film = several && extension.is_some();
+    given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
+    let structure = extension.and_then(PlantFormat::from_extension);
+    let structure = matches!(structure, Some(PlantFormat::Structure(_)));
+    let users = "models of one shape (--day, or another format than .glb)";
+    given.only_if(!several && !structure, &["lods"], users, "none is written")?;
+    given.only_if(
+        extension.is_none(),
+        &["format"],
+        "folders",
+        "-o names a file, whose extension says its format",
+    )
+}
+
+/// The edits by hand that are asked for.
+fn hand_edits(args: &BloomRunArgs) -> Outcome<Vec<PlantEdit>> {
+    Ok(args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default())
+}

@@ -1,0 +1,152 @@
+//! The shapes of a show, into files.
+
+use std::path::Path;
+
+use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
+use burgeon::glam::DVec3;
+use burgeon::mesh::PointCloud;
+use burgeon::plant::{Measures, Plant};
+use burgeon::{Counts, Digest};
+
+use super::{Show, Shown};
+use crate::args::{AxesArgs, BloomRunArgs, PictureArgs, PlantFormat};
+use crate::failure::Outcome;
+use crate::files::Goal;
+use crate::machine::Machine;
+use crate::output::Outputs;
+use crate::{files, names, picture};
+
+/// What was written.
+#[derive(Default)]
+pub(super) struct Written {
+    pub(super) frames: u32,
+    /// Of the last one.
+    pub(super) counts: Counts,
+    pub(super) measures: Option<Measures>,
+    pub(super) digest: String,
+    pub(super) overlap: Vec<f64>,
+}
+
+impl Written {
+    fn take(&mut self, shown: &Shown) {
+        self.frames += 1;
+        self.counts = match &shown.plant {
+            Some(plant) => Counts::of_plant(plant),
+            None => Counts::default(),
+        };
+        self.counts.vertices = shown.model.vertex_count() as u64;
+        self.counts.triangles = shown.model.triangle_count() as u64;
+        self.measures = shown.plant.as_ref().map(Plant::measure);
+        self.overlap.extend(shown.overlap);
+    }
+}
+
+pub(super) fn write_show(
+    args: &BloomRunArgs,
+    show: &mut Show<'_>,
+    axes: &ExportSpec,
+    outputs: &mut Outputs,
+    machine: &Machine,
+) -> Outcome<Written> {
+    let mut written = Written::default();
+    let mut digest = Digest::new();
+    let extension = files::extension(&args.output).map(str::to_ascii_lowercase);
+    let at = |k: u32| {
+        let share = f64::from(k) / f64::from(args.frames - 1);
+        show.days[0] + (show.days[1] - show.days[0]) * share
+    };
+    let mut one = |day: f64, path: &Path, written: &mut Written, digest: &mut Digest| -> Outcome {
+        machine.cancel.check()?;
+        let shown = (show.shape)(day)?;
+        digest.add(&shown.model);
+        written.take(&shown);
+        write_one(outputs, path, &shown, (axes, &args.axes))
+    };
+    match (extension.as_deref(), args.day) {
+        (None, _) => {
+            let name = names::safe(&show.name);
+            for k in 0..args.frames {
+                let name = format!("{name}-{k:03}.{}", args.format.extension());
+                one(at(k), &args.output.join(name), &mut written, &mut digest)?;
+            }
+        }
+        (Some(_), Some(day)) => one(day, &args.output, &mut written, &mut digest)?,
+        (Some("glb"), None) => {
+            let mut models = Vec::new();
+            for k in 0..args.frames {
+                machine.cancel.check()?;
+                let shown = (show.shape)(at(k))?;
+                digest.add(&shown.model);
+                written.take(&shown);
+                models.push(shown.model);
+            }
+            // The frame nearest to full bloom is the model itself: what shows no animation, or no colours of one,
+            // shows the open flower.
+            let far = |k: u32| (at(k) - show.best).abs();
+            let best = (0..args.frames).min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(0);
+            #[expect(clippy::cast_possible_truncation, reason = "seconds of an animation")]
+            let second = |k: u32| (args.seconds * f64::from(k) / f64::from(args.frames - 1)) as f32;
+            if let Some(model) = models.get(best as usize) {
+                let keys = (0..args.frames).zip(&models).filter(|(k, _)| *k != best);
+                let keys = keys.map(|(k, m)| (second(k), m)).collect();
+                let morph = Morph { name: "growth", at: second(best), keys };
+                outputs.write("-o", &args.output, |out| write_glb_morph(model, &morph, out))?;
+            }
+        }
+        (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,
+    }
+    if let Some(png) = &args.png {
+        let model = (show.shape)(args.day.unwrap_or(show.best))?.model;
+        let look = PictureArgs {
+            size: args.size,
+            view: args.view,
+            frames: 8,
+            background: burgeon::render::Background::Sky,
+            no_shadow: false,
+            supersample: 4,
+        };
+        let spec = look.spec(args.seed);
+        let model = picture::with_dots(model);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(outputs, "--png", png, &drawn)?;
+    }
+    written.digest = digest.hex();
+    Ok(written)
+}
+
+/// Clouds as PLY in double precision, everything else by the writers of models.
+fn write_one(
+    outputs: &mut Outputs,
+    path: &Path,
+    Shown { plant, model, lods, .. }: &Shown,
+    (axes, named): (&ExportSpec, &AxesArgs),
+) -> Outcome {
+    if let (Some(plant), format @ PlantFormat::Structure(_)) = (plant, files::plant_writable(path)?) {
+        let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
+        return files::write_plant(outputs, goal, (plant, model), format, named, cache).map(drop);
+    }
+    let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
+    let format: ModelFormat = files::writable(path)?;
+    if bare && format == ModelFormat::Ply {
+        let mut cloud = PointCloud { offset_m: model.offset_m, ..PointCloud::default() };
+        for part in &model.parts {
+            let color = model.material(part).base_color;
+            for p in &part.mesh.positions {
+                cloud.points.push(DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+                cloud.colors.push(color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8));
+            }
+        }
+        return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));
+    }
+    // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
+    let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
+    let mut cache = PngCache::new();
+    files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut cache)?;
+    for (model, level) in lods.iter().zip(1..) {
+        let path = files::lod(path, level);
+        files::write_model(outputs, Goal::new("--lods", &path), model, format, axes, &mut cache)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,199 @@
+//! Organs of a scanned plant -> a plant: stem and stalks as axes with radii, leaves as blades.
+
+use std::sync::Arc;
+
+use base::{Report, Run, Stopped};
+use bloom::{BloomError, Limb, ShapeError};
+use glam::DVec3;
+use leaf::{LeafPaint, LeafSpec, ScanError, ScanLeaf, ScanSpec};
+use mesh::{Model, TriMesh};
+use plant::{AxisKind, NodeId, Plant, Shape};
+use serde::Serialize;
+
+use crate::leaves::{LeafError, LeafOptions, add_leaf, area, finish};
+use crate::made::MadePlant;
+use crate::scanned::sheet_of;
+
+/// How a plant is made of the organs of a scan.
+#[derive(Clone, Debug)]
+pub struct SeedlingOptions {
+    /// How its blades are sought.
+    pub scan: ScanSpec,
+    /// Edits by hand and meshes.
+    pub leaf: LeafOptions,
+}
+
+impl Default for SeedlingOptions {
+    fn default() -> Self {
+        let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
+        // Leaves of a seedling are small: half of the grid of a leaf that was scanned by itself.
+        let scan = ScanSpec { rows: 32, columns: 21, ..ScanSpec::default() };
+        Self { scan, leaf: LeafOptions { spec, ..LeafOptions::default() } }
+    }
+}
+
+/// One organ as it was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OrganFit {
+    /// Its name among the organs of the scan.
+    pub name: String,
+    /// Of the stem, or of the stalk of a leaf, millimetres; 0 for a leaf without one.
+    pub axis_mm: f64,
+    /// Mean radius of that axis.
+    pub radius_mm: f64,
+    /// Of the blade, along its midrib; 0 for a stem.
+    pub blade_mm: f64,
+    /// Greatest width of the blade.
+    pub width_mm: f64,
+    /// One side of the blade, square millimetres.
+    pub area_mm2: f64,
+}
+
+/// Why organs make no plant.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SeedlingError {
+    /// An organ has too few points.
+    #[error(transparent)]
+    Organ(#[from] BloomError),
+    /// Meshes and edits.
+    #[error(transparent)]
+    Leaf(#[from] LeafError),
+}
+
+/// What surfaces are looked at, against the scan: a tenth of what a hand's scanner tells apart.
+const STEP_M: f64 = 0.000_25;
+
+/// Makes a plant of the organs of a scan, each with its points, metres, +Y up; that which is called `stem` bears the others.
+///
+/// An organ of too few points for a blade becomes an axis, with a warning. The error is that of the surface against all points.
+/// Cost: n log n.
+///
+/// # Errors
+/// [`SeedlingError`].
+pub fn make_seedling(
+    name: &str,
+    organs: &[(String, Vec<DVec3>)],
+    options: &SeedlingOptions,
+    run: &Run<'_>,
+) -> Result<(MadePlant, Vec<OrganFit>, ShapeError), SeedlingError> {
+    let mut report = Report::default();
+    let mut plant = Plant { name: name.into(), ..Plant::default() };
+    let mut fits = Vec::new();
+    let stem = organs.iter().find(|o| o.0 == "stem");
+    let mut bearers = Vec::new();
+    if let Some((name, points)) = stem {
+        let limb = bloom::stem(points)?;
+        bearers = add_axis(&mut plant, AxisKind::Stem, None, 0, &limb);
+        fits.push(OrganFit { name: name.clone(), ..OrganFit::of(&limb) });
+    }
+    for ((name, points), key) in organs.iter().filter(|o| stem.is_none_or(|s| s.0 != o.0)).zip(1_u64..) {
+        run.cancel.check().map_err(|c| LeafError::from(Stopped::from(c)))?;
+        // It sits where it is nearest to the stem.
+        let trunk = stem.map(|s| s.1.as_slice()).unwrap_or_default();
+        let joint = bloom::joint(points, trunk).unwrap_or_else(|| lowest(points));
+        let nearest = |n: &&NodeId| plant.nodes.position[n.index()].distance(joint);
+        let bearer = bearers.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))).copied();
+        let limb = bloom::stalk(points, joint)?;
+        let foot = limb.line.last().copied().unwrap_or(joint);
+        let scan = ScanSpec { base: Some(foot), ..options.scan };
+        // What it warns of, single leaves have: strays, a stalk that is missing.
+        let found = leaf::fit_scan(&limb.beyond, &scan, run, &mut Report::default());
+        let found = match found {
+            Ok(found) => Some(found),
+            Err(ScanError::Cancelled(c)) => return Err(LeafError::from(Stopped::from(c)).into()),
+            Err(_) => {
+                base::warn!(
+                    report,
+                    "organ-thin",
+                    { organ = name.clone(), points = points.len() },
+                    "{organ}: its {points} points show no blade: it is an axis"
+                );
+                None
+            }
+        };
+        fits.push(add_organ(&mut plant, (name, key), bearer, (limb, points, found), options)?);
+    }
+    let (made, _) = finish(plant, &[], &options.leaf, run, &mut report)?;
+    let all: Vec<DVec3> = organs.iter().flat_map(|o| o.1.iter().copied()).collect();
+    let error = bloom::compare(&all, &surface_places(&made.model), run)?;
+    Ok((made, fits, error))
+}
+
+/// Places of a model's surface, to compare a scan with it.
+pub fn surface_places(model: &Model) -> Vec<DVec3> {
+    let faces = model.parts.iter().map(|p| &p.mesh);
+    let corners = |m: &TriMesh| m.triangles.iter().map(|t| t.map(|i| m.position(i))).collect::<Vec<_>>();
+    bloom::surface_places(faces.flat_map(corners), STEP_M)
+}
+
+/// A leaf: its stalk, and its blade if one was found.
+fn add_organ(
+    plant: &mut Plant,
+    (name, key): (&str, u64),
+    bearer: Option<NodeId>,
+    (mut limb, points, found): (Limb, &[DVec3], Option<ScanLeaf>),
+    options: &SeedlingOptions,
+) -> Result<OrganFit, SeedlingError> {
+    let at = bearer.map(|b| (plant.nodes.position[b.index()], plant.nodes.radius_m[b.index()]));
+    match &found {
+        Some(found) => {
+            // The stalk goes up to the blade. One that is too short to be seen is half as thick as what bears it.
+            let radius = limb.radii.last().copied().or(at.map(|a| 0.5 * a.1)).unwrap_or(0.000_5);
+            limb.line.push(found.grid[found.columns / 2]);
+            limb.radii.push(0.5 * radius);
+        }
+        None => limb = bloom::stem(points)?,
+    }
+    if let Some((place, _)) = at {
+        limb.line.insert(0, place);
+        limb.radii.insert(0, limb.radii.first().copied().unwrap_or(0.000_5));
+    }
+    let mut fit = OrganFit { name: name.into(), ..OrganFit::of(&limb) };
+    let mut bearer = bearer;
+    if limb.line.len() >= 2 {
+        bearer = add_axis(plant, AxisKind::Petiole, bearer, key, &limb).last().copied();
+    }
+    let Some(found) = found else { return Ok(fit) };
+    let sheet = sheet_of(&found).map_err(LeafError::from)?;
+    let n = found.columns;
+    let mesh = TriMesh {
+        positions: sheet.points.iter().map(|p| p.as_vec3().to_array()).collect(),
+        triangles: sheet.triangles().map(|t| t.map(|k| u32::try_from(k).unwrap_or(u32::MAX))).collect(),
+        ..TriMesh::default()
+    };
+    fit.blade_mm = 1e3 * geom::polyline_length3(&found.midrib());
+    fit.width_mm = 1e3 * found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
+    fit.area_mm2 = 1e6 * area(&mesh);
+    if let Some((sheet, frame)) = sheet.framed() {
+        let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
+        add_leaf(plant, shape, frame, bearer, options.leaf.paint([1.0; 3]), key);
+    }
+    Ok(fit)
+}
+
+impl OrganFit {
+    fn of(limb: &Limb) -> Self {
+        let count = limb.radii.len().max(1) as f64;
+        Self {
+            name: String::new(),
+            axis_mm: 1e3 * geom::polyline_length3(&limb.line),
+            radius_mm: 1e3 * limb.radii.iter().sum::<f64>() / count,
+            blade_mm: 0.0,
+            width_mm: 0.0,
+            area_mm2: 0.0,
+        }
+    }
+}
+
+/// Its nodes, from the base on.
+fn add_axis(plant: &mut Plant, kind: AxisKind, bearer: Option<NodeId>, key: u64, limb: &Limb) -> Vec<NodeId> {
+    let first = plant.nodes.radius_m.len();
+    let axis = plant.add_axis(kind, bearer, key, &limb.line, None);
+    plant.nodes.radius_m[first..].copy_from_slice(&limb.radii);
+    plant.axis(axis).node_ids().collect()
+}
+
+fn lowest(points: &[DVec3]) -> DVec3 {
+    points.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default()
+}
