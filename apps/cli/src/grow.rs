@@ -9,13 +9,13 @@ use burgeon::growth::{
     SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
-use burgeon::skin::SkinSpec;
+use burgeon::skin::{Foliage, SkinSpec};
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
     TreeSpec, make_tree, method_word, read_tree_spec,
 };
 
-use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
+use crate::args::{FoliageWord, GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::materials::Materials;
@@ -34,7 +34,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
     let inputs = inputs.chain(&args.growth.leaf_template).chain(&args.surface.skin.materials);
     let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
+    let files_beside =
+        args.surface.lod_files() + u32::from(args.impostor.is_some() && !args.surface.in_one_file());
+    let plan = |path| files::plan_plant(&mut outputs, path, files_beside);
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
@@ -58,10 +60,15 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     outputs.check()?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
-        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
+        skin: SkinSpec {
+            worn: materials.unwrap_or_default().worn(),
+            foliage: args.foliage.map_or_else(Foliage::default, FoliageWord::foliage),
+            ..args.surface.spec()
+        },
         leaf,
         lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
         copies: args.instances,
+        impostor: args.impostor.filter(|_| matches!(format, Some(PlantFormat::Model(_)))),
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
@@ -118,6 +125,22 @@ fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
     args.surface.check_used(given, glb)?;
     given.only_if(glb, &["instances"], "models as .glb", "none is made")?;
+    let textured = matches!(
+        format,
+        Some(PlantFormat::Model(ModelFormat::Glb | ModelFormat::Obj | ModelFormat::Usda | ModelFormat::Usdz))
+    );
+    given.only_if(textured, &["impostor"], "models with textures", "none is made")?;
+    let painted = (textured || args.png.is_some()) && args.surface.skin.paints();
+    given.only_if(painted, &["foliage"], "models and pictures with textures", "none is made")?;
+    let by_level = args.foliage == Some(FoliageWord::ByLevel);
+    given.only_if(
+        !by_level || args.surface.lods > 0,
+        &["foliage"],
+        "coarser copies (--lods)",
+        "none is made",
+    )?;
+    let plain = args.growth.leaf_template.is_none();
+    given.only_if(plain, &["foliage"], "leaves of the species", "--leaf-template gives another")?;
     let read = !args.growth.obstacle.is_empty() || args.points.attractors.is_some();
     given.check_axes(written || read || !args.points.root.is_empty())
 }

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use burgeon::formats::{Level, ModelFormat, Packing, PngCache, write_glb_levels, write_glb_rigged};
-use burgeon::glam::DVec3;
 use burgeon::mesh::{Copies, Model};
 use burgeon::plant::Plant;
 use burgeon::{ItemReport, Report, Warning};
@@ -37,9 +36,6 @@ impl Form<'_> {
         Form { packing: self.packing, in_one_file: self.in_one_file, sway: self.sway, copies }
     }
 }
-
-/// How far the top of a plant that sways moves: a tenth of its height, out of the axes so that no limb lies in the wind.
-const GUST: DVec3 = DVec3::new(0.0966, 0.0, 0.0258);
 
 /// Writes a plant to `path` and its coarser copies beside it. What became of it comes into the plant's entry of the
 /// report; each copy gets an entry of its own after it.
@@ -104,8 +100,7 @@ fn swaying(
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
     let mut report = Report::default();
-    let gust = GUST * model.bounds().size().y;
-    match burgeon::skin::sway(model, gust) {
+    match burgeon::skin::sway(model, burgeon::skin::gust(model)) {
         Some(rig) => outputs.write(by, path, |out| write_glb_rigged(model, &rig, cache, out))?,
         None => {
             report.warn("nothing-sways", "nothing of the plant sways: it was written as it stands");

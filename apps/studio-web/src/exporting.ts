@@ -13,10 +13,19 @@ const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', '
 export const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
 
-let last: { format: Target; options: ExportOptions } = {
-  format: 'glb',
-  options: { levels: 1, up: 'y', unit: 'm', whole: false, wind: false },
+/** One level as it is shown. */
+export const PLAIN: ExportOptions = {
+  levels: 1,
+  up: 'y',
+  unit: 'm',
+  whole: false,
+  wind: false,
+  one_file: false,
+  sway: false,
+  impostor: false,
 };
+
+let last: { format: Target; options: ExportOptions } = { format: 'glb', options: PLAIN };
 
 /** What was chosen last; the preview of the export and its dialogue share it. */
 export function optionsOf(): typeof last {
@@ -71,6 +80,7 @@ export function openExport(
     String(options.levels) as '1' | '2' | '3' | '4',
     (v) => {
       options.levels = Number(v);
+      show();
     },
   );
   const up = choice(
@@ -97,25 +107,50 @@ export function openExport(
     },
   );
   levels.querySelector('select')!.id = 'b-levels';
-  const blown = el('input', {
-    type: 'checkbox',
-    id: 'b-wind',
-    onchange: () => {
-      options.wind = blown.checked;
+  const tick = (
+    id: string,
+    key: 'wind' | 'sway' | 'impostor',
+    text: TextKey,
+    help: TextKey,
+  ): HTMLLabelElement => {
+    const box = el('input', {
+      type: 'checkbox',
+      id,
+      onchange: () => {
+        options[key] = box.checked;
+        show();
+      },
+    });
+    box.checked = options[key];
+    box.style.justifySelf = 'start';
+    return el('label', { class: 'option', title: t(help) }, el('span', {}, t(text)), box);
+  };
+  const wind = tick('b-wind', 'wind', 'export.wind', 'export.wind.help');
+  const sway = tick('b-sway', 'sway', 'export.sway', 'export.sway.help');
+  const impostor = tick('b-impostor', 'impostor', 'export.impostor', 'export.impostor.help');
+  const files = choice(
+    'export.files',
+    [
+      ['each', t('export.files.each')],
+      ['one', t('export.files.one')],
+    ],
+    options.one_file ? 'one' : 'each',
+    (v) => {
+      options.one_file = v === 'one';
+      show();
     },
-  });
-  blown.checked = options.wind;
-  blown.style.justifySelf = 'start';
-  const wind = el(
-    'label',
-    { class: 'option', title: t('export.wind.help') },
-    el('span', {}, t('export.wind')),
-    blown,
   );
+  files.querySelector('select')!.id = 'b-files';
   const show = (): void => {
     levels.hidden = see.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
     wind.hidden = !WIND.has(format);
+    const glb = format === 'glb';
+    impostor.hidden = !glb;
+    files.hidden = !glb || (options.levels === 1 && !options.impostor);
+    // Joints want files of their own.
+    sway.hidden = !glb || (!files.hidden && options.one_file);
+    if (sway.hidden) options.sway = false;
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
   for (const f of formats) {
@@ -170,7 +205,10 @@ export function openExport(
     list,
     what,
     levels,
+    impostor,
+    files,
     wind,
+    sway,
     up,
     unit,
     el('p', { class: 'muted' }, t('export.note')),

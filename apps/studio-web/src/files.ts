@@ -2,7 +2,7 @@
 import type { Documents } from './documents';
 import type { Engine } from './engine';
 import type { MakerWord, Opened } from './wire';
-import { LEVELS, openExport, type Target, type ExportOptions } from './exporting';
+import { LEVELS, PLAIN, openExport, type Target, type ExportOptions } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
@@ -213,12 +213,12 @@ export class Files {
 
   /** A picture of the view as it is. */
   async picture(): Promise<void> {
-    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm', whole: true, wind: false });
+    await this.exportAs('png', { ...PLAIN, whole: true });
   }
 
   /** The whole scene as a model, without questions. */
   async model(format: Target = 'glb'): Promise<void> {
-    await this.exportAs(format, { levels: 1, up: 'y', unit: 'm', whole: this.events.several(), wind: false });
+    await this.exportAs(format, { ...PLAIN, whole: this.events.several() });
   }
 
   chooseExport(): void {

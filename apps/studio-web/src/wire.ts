@@ -414,8 +414,14 @@ export type ExportFormat =
 export type ExportRequest = {
   /** The format. */
   format: ExportFormat;
+  /** One more level, the last: views from all sides in one picture, where it is glTF. */
+  impostor: boolean;
   /** Levels of detail, 1 to 4: each has about half of the triangles of the one before. */
   levels: number;
+  /** All levels in one file, where it is glTF (`MSFT_lod`); else each has its own. */
+  one_file: boolean;
+  /** Joints and an animation that sways, where it is glTF; each level then has a file of its own. */
+  sway: boolean;
   /** The unit of the file. */
   unit: LengthUnit;
   /** The vertical axis of the file. */

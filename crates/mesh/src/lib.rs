@@ -12,6 +12,6 @@ mod trimesh;
 
 pub use cloud::PointCloud;
 pub use copies::{Copies, CopyPlace};
-pub use material::{AlphaMode, Maps, Material, MaterialId, MaterialKind, Texture};
+pub use material::{AlphaMode, Impostor, Maps, Material, MaterialId, MaterialKind, Texture};
 pub use rig::{Hold, Joint, Rig};
 pub use trimesh::{Bounds, Fault, Model, Part, Standing, TriMesh};

@@ -113,6 +113,23 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Seen from both sides (blades).
     pub double_sided: bool,
+    /// Its textures are views of a whole plant from many sides.
+    pub impostor: Option<Impostor>,
+}
+
+/// Views of a plant from all sides above the ground, in a square of `frames` by `frames` pictures: the one in column i and row j
+/// is seen from the direction of (x, y) = (2 i / (frames - 1) - 1, 2 j / (frames - 1) - 1) on the half octahedron
+/// ((x + y) / 2, 1 - |x + y| / 2 - |x - y| / 2, (x - y) / 2). Each shows the sphere around `centre`, without perspective, up
+/// upwards. Normals are those seen from there: red to the right, green up, blue to the viewer. The alpha of the normals is the
+/// depth: 0 behind the sphere, 1 before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impostor {
+    /// Pictures along a side, 2 or more.
+    pub frames: u32,
+    /// Of the sphere, metres.
+    pub centre: [f32; 3],
+    /// Of the sphere, metres.
+    pub radius_m: f32,
 }
 
 impl Material {
@@ -128,6 +145,7 @@ impl Material {
             maps: Maps::default(),
             alpha: AlphaMode::Opaque,
             double_sided: false,
+            impostor: None,
         }
     }
 }

@@ -66,6 +66,32 @@ impl Camera {
         camera
     }
 
+    /// Without perspective, from the direction `back`, of all within `radius` of `centre`, in a square of so many pixels.
+    pub(crate) fn of_sphere(back: DVec3, centre: DVec3, radius: f64, pixels: u32) -> Self {
+        let back = back.normalize_or(DVec3::Z);
+        let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
+        let half = 0.5 * f64::from(pixels);
+        Self {
+            right,
+            up: back.cross(right),
+            back,
+            target: centre,
+            distance: None,
+            scale: half / radius.max(f64::MIN_POSITIVE),
+            centre: DVec2::splat(half),
+        }
+    }
+
+    /// A direction, or a way from the target, as it is seen: to the right, up, towards the viewer.
+    pub(crate) fn seen(&self, way: DVec3) -> DVec3 {
+        DVec3::new(way.dot(self.right), way.dot(self.up), way.dot(self.back))
+    }
+
+    /// To the right, up and towards the viewer.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        [self.right, self.up, self.back]
+    }
+
     /// The same lens and place after the model has turned by `angle` around the axis of [`swept`].
     pub(crate) fn turned(mut self, angle: f64, points: &[DVec3]) -> Self {
         let (s, c) = ops::sin_cos(angle);

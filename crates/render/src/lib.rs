@@ -15,10 +15,12 @@
 //! | `light` | directions, depth maps, light that reaches vertices and ground |
 //! | `raster` | which triangle each sample of a tile sees |
 //! | `hits` | [`Hit`]: what beams and pixels meet, with the triangle |
+//! | `impostor` | [`impostor()`]: views from all sides in one picture |
 //! | `shade` | colour of a fragment and of the background |
 
 mod camera;
 mod hits;
+mod impostor;
 mod light;
 mod picture;
 mod raster;
@@ -29,6 +31,7 @@ mod texture;
 
 pub use camera::Camera;
 pub use hits::{Hit, hits};
+pub use impostor::impostor;
 pub use picture::{Picture, contact_sheet};
 pub use spec::{Background, PictureSpec, View};
 

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use crate::camera::Camera;
 use crate::light::{DepthMap, SUN, Sky, sunlit};
 use crate::picture::Picture;
-use crate::raster::{Bins, NONE, TILE, Visible, pattern};
-use crate::scene::{Scene, Vertex};
+use crate::raster::{Bins, Flat, NONE, TILE, Visible, pattern};
+use crate::scene::{Scene, Triangle, Vertex};
 use crate::spec::{Background, PictureSpec};
 use crate::texture::{Pyramid, linear, srgb};
 
@@ -116,49 +116,22 @@ impl Frame<'_> {
         let triangle = &self.scene.triangles[id as usize];
         let Some(flat) = &self.bins.flats[id as usize] else { return DVec3::ZERO };
         let surface = &self.scene.surfaces[triangle.surface as usize];
-        let w = flat.surface_weights(at, self.camera.is_perspective());
-        let corners = self.scene.corners(triangle);
-        let [a, b, c] = corners;
-        let p = a.at * w.x + b.at * w.y + c.at * w.z;
-        let view = self.camera.toward_viewer(p);
-        let face = (b.at - a.at).cross(c.at - a.at).normalize_or(view);
-        let mut normal = (a.normal * w.x + b.normal * w.y + c.normal * w.z).normalize_or(face);
+        let place = Place::new(self.scene, &self.camera, flat, triangle, at);
+        let Place { w, p, view, face, normal, turned, color, .. } = place;
         let [sa, sb, sc] = triangle.corners.map(|i| self.sky.vertices[i as usize]);
         let side = |k: usize| sa[k] * w.x + sb[k] * w.y + sc[k] * w.z;
         let (mut front, mut rear) = (side(0), side(1));
-        // The side that is seen decides, whatever the file says about winding.
-        let facing = if face.dot(view) < 0.0 { -face } else { face };
-        let turned = normal.dot(facing) < 0.0;
         if turned {
-            normal = -normal;
             core::mem::swap(&mut front, &mut rear);
-        }
-        let mut color = surface.color * (a.color * w.x + b.color * w.y + c.color * w.z);
-        let uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
-        let uv_area = (b.uv - a.uv).perp_dot(c.uv - a.uv).abs() * 0.5 / flat.pixel_area().max(1e-3);
-        let sample = |texture: &Pyramid| {
-            let texels = uv_area * texture.texel_count();
-            let lod = if texels > 1.0 { 0.5 * ops::ln(texels) / core::f64::consts::LN_2 } else { 0.0 };
-            texture.sample(uv, lod)
-        };
-        if let Some(texture) = &surface.texture {
-            color *= sample(texture).0;
-        }
-        if let Some(normals) = &surface.normals {
-            // What is a groove on one side is a ridge on the other.
-            let side = if turned { -1.0 } else { 1.0 };
-            let seen = sample(normals).0 * 2.0 - DVec3::ONE;
-            normal = relief(corners, normal, seen * DVec3::new(side, side, 1.0));
         }
         let (mut open, mut roughness) = (1.0, surface.roughness);
         if let Some(orm) = &surface.orm {
-            let (orm, _) = sample(orm);
+            let (orm, _) = place.sample(orm);
             (open, roughness) = (orm.x, (roughness * orm.y).max(0.08));
         }
         front *= open;
-        let color = color.min(DVec3::splat(0.95));
         let through = (color * surface.through).min(DVec3::splat(0.95));
-        let t = surface.translucency * surface.thin.as_ref().map_or(1.0, |thin| sample(thin).1);
+        let t = surface.translucency * surface.thin.as_ref().map_or(1.0, |thin| place.sample(thin).1);
         let mut light = color * front * (1.0 - t) + through * rear * t;
         let power = 2.0 / (roughness * roughness * roughness * roughness);
         let power = power.clamp(1.0, 600.0);
@@ -214,6 +187,71 @@ impl Frame<'_> {
         let full = SUN * level + self.sky.open;
         let here = SUN * (level * lit) + self.sky.on_ground(p);
         DVec3::ONE.lerp((here / full).min(DVec3::ONE), SHADOW_STRENGTH)
+    }
+}
+
+/// A place of a triangle as it is seen.
+pub(crate) struct Place {
+    /// Barycentric.
+    w: DVec3,
+    pub(crate) p: DVec3,
+    view: DVec3,
+    face: DVec3,
+    /// Of the side that is seen, with its relief.
+    pub(crate) normal: DVec3,
+    /// The rear is seen.
+    turned: bool,
+    /// What is reflected, linear.
+    pub(crate) color: DVec3,
+    uv: DVec2,
+    /// Of the texture plane in a pixel.
+    uv_area: f64,
+}
+
+impl Place {
+    pub(crate) fn new(scene: &Scene, camera: &Camera, flat: &Flat, triangle: &Triangle, at: DVec2) -> Self {
+        let surface = &scene.surfaces[triangle.surface as usize];
+        let w = flat.surface_weights(at, camera.is_perspective());
+        let corners = scene.corners(triangle);
+        let [a, b, c] = corners;
+        let p = a.at * w.x + b.at * w.y + c.at * w.z;
+        let view = camera.toward_viewer(p);
+        let face = (b.at - a.at).cross(c.at - a.at).normalize_or(view);
+        let mut normal = (a.normal * w.x + b.normal * w.y + c.normal * w.z).normalize_or(face);
+        // The side that is seen decides, whatever the file says about winding.
+        let facing = if face.dot(view) < 0.0 { -face } else { face };
+        let turned = normal.dot(facing) < 0.0;
+        if turned {
+            normal = -normal;
+        }
+        let color = surface.color * (a.color * w.x + b.color * w.y + c.color * w.z);
+        let uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
+        let uv_area = (b.uv - a.uv).perp_dot(c.uv - a.uv).abs() * 0.5 / flat.pixel_area().max(1e-3);
+        let mut place = Self { w, p, view, face, normal, turned, color, uv, uv_area };
+        if let Some(texture) = &surface.texture {
+            place.color *= place.sample(texture).0;
+        }
+        place.color = place.color.min(DVec3::splat(0.95));
+        if let Some(normals) = &surface.normals {
+            // What is a groove on one side is a ridge on the other.
+            let side = if turned { -1.0 } else { 1.0 };
+            let seen = place.sample(normals).0 * 2.0 - DVec3::ONE;
+            place.normal = relief(corners, normal, seen * DVec3::new(side, side, 1.0));
+        }
+        place
+    }
+
+    /// How much of the sky's light comes to it, 1 for all.
+    pub(crate) fn sky(&self, triangle: &Triangle, sky: &Sky) -> f64 {
+        let [a, b, c] = triangle.corners.map(|i| sky.vertices[i as usize][usize::from(self.turned)]);
+        (a.dot(DVec3::ONE) * self.w.x + b.dot(DVec3::ONE) * self.w.y + c.dot(DVec3::ONE) * self.w.z)
+            / sky.open.dot(DVec3::ONE).max(1e-9)
+    }
+
+    fn sample(&self, texture: &Pyramid) -> (DVec3, f64) {
+        let texels = self.uv_area * texture.texel_count();
+        let lod = if texels > 1.0 { 0.5 * ops::ln(texels) / core::f64::consts::LN_2 } else { 0.0 };
+        texture.sample(self.uv, lod)
     }
 }
 

@@ -6,7 +6,7 @@ use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
 use crate::fork::{Bearer, Collar, reach};
-use crate::rings::{drawn, mitres, rings};
+use crate::rings::{drawn, planes, rings};
 use crate::sleeve::{Circle, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec, whole};
 use crate::spine::{Reach, Spine};
@@ -113,7 +113,7 @@ pub(crate) fn tubes<'p>(
             sides: sides[host],
             exit: 0.0,
             top: 0.0,
-            mitre: &[],
+            planes: &[],
         })
     };
     let leaves = |i: usize, borne| reach(spines[i].as_ref()?, &smooth(borne)?);
@@ -147,8 +147,8 @@ pub(crate) fn tubes<'p>(
         let ends = if bare { Ends::bare(rows) } else { Ends::of(rows, sides[i]) };
         let reach = reaches[i];
         let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
-        let mitre = if bears[i] { mitres(&line, first) } else { Vec::new() };
-        Some(Line { line, first, mitre, reach, ends })
+        let planes = if bears[i] { planes(&line, first) } else { Vec::new() };
+        Some(Line { line, first, planes, reach, ends })
     })?;
     let sleeves = lines.iter().zip(&sides).map(|(line, sides)| {
         let Some(Line { line, first, ends, .. }) = line else { return 0 };
@@ -254,8 +254,8 @@ struct Line {
     line: Spine,
     /// The number of its first ring.
     first: usize,
-    /// Of each piece, how much thinner it is than its rings; empty of what bears nothing.
-    mitre: Vec<f64>,
+    /// How its rings stand; empty of what bears nothing.
+    planes: Vec<DVec3>,
     reach: Option<Reach>,
     ends: Ends,
 }
@@ -264,7 +264,7 @@ impl Line {
     /// As what bears a branch at an arc length.
     fn bearer(&self, s: f64, sides: u32) -> Bearer<'_> {
         let [exit, top] = self.reach.map_or([0.0; 2], |r| [r.exit.s, r.top]);
-        Bearer { spine: &self.line, sample: self.line.piece(s), sides, exit, top, mitre: &self.mitre }
+        Bearer { spine: &self.line, sample: self.line.piece(s), sides, exit, top, planes: &self.planes }
     }
 }
 

@@ -18,9 +18,9 @@ pub(crate) struct Bearer<'a> {
     /// itself.
     pub exit: f64,
     pub top: f64,
-    /// Of each piece of the spine as it is drawn, how much thinner it is than its rings, which stand askew where it bends;
-    /// empty of a smooth one.
-    pub mitre: &'a [f64],
+    /// How the rings at the samples of the spine stand as they are drawn: askew where it turns at once; empty of a smooth
+    /// line, whose rings stand upright on it.
+    pub planes: &'a [DVec3],
 }
 
 /// The rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's
@@ -35,7 +35,11 @@ pub(crate) struct Collar {
 }
 
 // A fillet's rows may lie this much deeper than the line's radius says.
-const HOLLOW: f64 = 0.6;
+const HOLLOW: f64 = 0.25;
+
+// Pieces beyond the nearest among which the cross-section through a place is looked for, and halvings that find it in its piece.
+const FARTHEST: usize = 6;
+const HALVINGS: usize = 24;
 
 // Below its fillet a bearer is not drawn: of what lies there only its middle is sure to be inside the wood that it leaves.
 const BELOW: f64 = 0.1;
@@ -196,27 +200,64 @@ impl Collar {
 impl Bearer<'_> {
     /// The point of the bearer's surface nearest to `p`, and the normal there.
     fn surface(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
-        self.shrunk(p, hint, |_, _| 1.0)
+        self.shrunk(p, hint, |_| 1.0)
     }
 
     /// The same point sunk just below the flat faces, or below the rows of the bearer's own fillet.
     fn below(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
         let faces = base::ops::cos(base::ops::PI / f64::from(self.sides.max(3))) * 0.97;
-        let mitre = |piece: usize| self.mitre.get(piece).copied().unwrap_or(1.0);
-        self.shrunk(p, hint, |s, piece| match s {
+        self.shrunk(p, hint, |s| match s {
             s if s < self.exit => faces * BELOW,
             s if s < self.top => faces * HOLLOW,
-            _ => faces * mitre(piece),
+            _ => faces,
         })
     }
 
-    /// The nearest point of the surface whose radius is a share, by arc length and piece, of the bearer's.
-    fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64, usize) -> f64) -> (DVec3, DVec3) {
-        let (at, piece) = self.spine.nearest(p, hint);
+    /// The point of the surface in the cross-section through `p`, whose radius is a share, by arc length, of the bearer's.
+    fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64) -> f64) -> (DVec3, DVec3) {
+        let (near, piece) = self.spine.nearest(p, hint);
+        let (at, plane) = self.section(p, piece).unwrap_or((near, near.tangent));
         let d = p - at.centre;
-        let out = d - at.tangent * d.dot(at.tangent);
-        let ray = out.try_normalize().unwrap_or_else(|| at.tangent.any_orthonormal_vector());
-        (at.centre + ray * (at.radius * share(at.s, piece)), (ray - at.tangent * at.slope).normalize())
+        let out = d - plane * d.dot(plane);
+        let ray = out.try_normalize().unwrap_or_else(|| plane.any_orthonormal_vector());
+        (at.centre + ray * (at.radius * share(at.s)), (ray - at.tangent * at.slope).normalize())
+    }
+
+    /// The cross-section through `p` of the tube as it is drawn, between rings that stand askew: where on the line it is, and
+    /// its normal. Looked for from a piece on; `None` before the first ring and beyond the last.
+    fn section(&self, p: DVec3, piece: usize) -> Option<(Station, DVec3)> {
+        let plane = |k: usize, u: f64| {
+            let (a, b) = (self.planes.get(k)?, self.planes.get(k + 1)?);
+            let centre = self.spine.p[k].lerp(self.spine.p[k + 1], u);
+            let normal = a.lerp(*b, u).try_normalize()?;
+            Some(((p - centre).dot(normal), normal))
+        };
+        let mut k = piece;
+        for _ in 0..FARTHEST {
+            if plane(k, 0.0)?.0 < 0.0 {
+                k = k.checked_sub(1)?;
+            } else if plane(k, 1.0)?.0 > 0.0 {
+                k += 1;
+            } else {
+                break;
+            }
+        }
+        // Before the plane of one ring and behind that of the next.
+        let (mut low, mut high) = (0.0, 1.0);
+        if plane(k, low)?.0 < 0.0 || plane(k, high)?.0 > 0.0 {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if plane(k, middle)?.0 > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let u = 0.5 * (low + high);
+        let s = base::ops::lerp(self.spine.s[k], self.spine.s[k + 1], u);
+        Some((self.spine.station(k, s), plane(k, u)?.1))
     }
 }
 
@@ -248,7 +289,7 @@ mod tests {
             let dir = DVec3::new(sin, cos, 0.0);
             let branch =
                 Spine::new(&[DVec3::Y, DVec3::Y + dir * 1.5], &[thick, thick * 0.6], 100, None).unwrap();
-            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, mitre: &[] };
+            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, planes: &[] };
             let circle = Circle::new(8);
             let reach = reach(&branch, &bearer).unwrap();
             let (line, first) = drawn(&branch, Some(&reach), 20.0, |_| f64::INFINITY);
@@ -269,7 +310,7 @@ mod tests {
     fn branch_that_ends_inside_has_no_collar() {
         let trunk = Spine::new(&[DVec3::ZERO, DVec3::Y * 2.0], &[0.5, 0.5], 100, None).unwrap();
         let twig = Spine::new(&[DVec3::Y, DVec3::new(0.2, 1.0, 0.0)], &[0.01, 0.01], 10, None).unwrap();
-        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, mitre: &[] };
+        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, exit: 0.0, top: 0.0, planes: &[] };
         assert!(reach(&twig, &bearer).is_none());
     }
 }

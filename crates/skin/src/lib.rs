@@ -14,6 +14,7 @@
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
+//! | `shoots` | [`Foliage`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
@@ -36,6 +37,7 @@ mod organs;
 mod parts;
 mod pictures;
 mod rings;
+mod shoots;
 mod sleeve;
 mod spec;
 mod spine;
@@ -54,7 +56,8 @@ pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, W
 pub use natural::{BarkKind, Venation};
 pub use organs::KeptShapes;
 pub use pictures::Pictures;
-pub use sway::sway;
+pub use shoots::{Foliage, Shoots};
+pub use sway::{gust, sway};
 pub use texture::{LeafColours, swatch, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};

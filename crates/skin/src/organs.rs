@@ -16,6 +16,7 @@ use crate::lean::{COPIED_WIDER, lean_mesh};
 use crate::margin::from_margin;
 use crate::material::{Pattern, Wearer};
 use crate::parts::{Coat, Slot};
+use crate::shoots::{Tile, card_mesh, leaf_share, part};
 use crate::sleeve::{narrow, wide};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
@@ -44,7 +45,7 @@ pub(crate) fn organs(
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
         let shape = &plant.shapes[i];
-        let wish = uses[i].map_or(Wish::Nothing, |used| ground.wish(shape, used, budget));
+        let wish = uses[i].map_or(Wish::Nothing, |used| ground.wish((i, shape), used, budget));
         let known = known.and_then(|k| k.find(shape, wish, i));
         Ok(known.unwrap_or_else(|| (wish, Arc::new(wish.mesh(shape)))))
     });
@@ -135,18 +136,22 @@ fn of_each<T: Default>(
     plant: &Plant,
     spec: &SkinSpec,
     budget: &Budget,
-    of: impl Fn(ShapeMesh) -> T,
+    of: impl Fn(ShapeMesh, f64) -> T,
 ) -> Vec<T> {
     let ground = Ground::new(plant, spec);
-    let drawn = |(shape, used): (&Shape, Option<Use>)| {
-        used.map(|used| of(ground.wish(shape, used, budget).mesh(shape))).unwrap_or_default()
+    let drawn = |((row, shape), used): ((usize, &Shape), Option<Use>)| {
+        used.map(|used| {
+            let wish = ground.wish((row, shape), used, budget);
+            of(wish.mesh(shape), ground.share(wish, (row, shape)))
+        })
+        .unwrap_or_default()
     };
-    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+    plant.shapes.iter().enumerate().zip(uses(plant)).map(drawn).collect()
 }
 
 /// The mesh of each shape as it is drawn at scale 1, its veins included; empty of one that nothing uses.
 pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<TriMesh> {
-    of_each(plant, spec, budget, |made| {
+    of_each(plant, spec, budget, |made, _| {
         let mut all = TriMesh::default();
         for mesh in [made.surface, made.veins] {
             all.append(&TriMesh { uvs: Vec::new(), colors: Vec::new(), ..mesh.clone() });
@@ -159,19 +164,19 @@ pub(crate) fn meshes(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Tri
 
 /// The vertices of each shape as it is drawn at scale 1; none of one that nothing uses.
 pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
-    of_each(plant, spec, budget, |made| {
+    of_each(plant, spec, budget, |made, _| {
         made.surface.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect()
     })
 }
 
-/// The area of each shape as it is drawn at scale 1, one side, square metres; 0 of one that nothing uses.
+/// The area of each shape as it is drawn at scale 1, one side, without what is cut out of it, square metres; 0 of one that nothing uses.
 pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
-    of_each(plant, spec, budget, |made| {
+    of_each(plant, spec, budget, |made, share| {
         let area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| made.surface.position(i));
             0.5 * (b - a).cross(c - a).length()
         };
-        made.surface.triangles.iter().map(area).sum()
+        share * made.surface.triangles.iter().map(area).sum::<f64>()
     })
 }
 
@@ -214,6 +219,8 @@ struct Use {
     scale: f64,
     /// Of a body.
     body: bool,
+    /// Of leaves alone.
+    leaf: bool,
 }
 
 /// The use of each shape; `None` for one that nobody uses.
@@ -221,8 +228,12 @@ fn uses(plant: &Plant) -> Vec<Option<Use>> {
     let mut uses = vec![None; plant.shapes.len()];
     for organ in plant.organs.iter().filter(|o| sound(o)) {
         if let Some(used) = uses.get_mut(organ.shape.index()) {
-            let Use { scale, body } = used.unwrap_or_default();
-            *used = Some(Use { scale: organ.scale.max(scale), body: body || organ.kind == OrganKind::Body });
+            let Use { scale, body, leaf } = used.unwrap_or(Use { leaf: true, ..Use::default() });
+            *used = Some(Use {
+                scale: organ.scale.max(scale),
+                body: body || organ.kind == OrganKind::Body,
+                leaf: leaf && organ.kind == OrganKind::Leaf,
+            });
         }
     }
     uses
@@ -261,6 +272,8 @@ enum Wish {
     Nothing,
     /// A leaf of a crown, widened so many times at most.
     Lean(f64, f64),
+    /// A card, in this part of an atlas.
+    Card([f64; 4]),
     Sheet(f64),
     Dome(f64),
     /// With at least so many sides.
@@ -296,6 +309,7 @@ impl Wish {
             (Self::Lean(n, widest), Shape::Blade(blade)) => {
                 lean(blade, n, widest).unwrap_or_else(|| blade_mesh(blade, n))
             }
+            (Self::Card(part), Shape::Blade(blade)) => card_mesh(blade, part),
             (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
             (Self::Revolution(n, sides), Shape::Revolution { profile }) => revolution(profile, n, sides),
@@ -364,7 +378,9 @@ impl KeptShapes {
 }
 
 /// What the plant as a whole decides for its organs.
-struct Ground {
+struct Ground<'a> {
+    /// Whose leaves are cards.
+    cards: Option<&'a SkinSpec>,
     petals: PetalColor,
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
@@ -375,14 +391,15 @@ struct Ground {
     copy: bool,
 }
 
-impl Ground {
-    fn new(plant: &Plant, spec: &SkinSpec) -> Self {
+impl<'a> Ground<'a> {
+    fn new(plant: &Plant, spec: &'a SkinSpec) -> Self {
         let strands = plant
             .organs
             .iter()
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
         Self {
+            cards: spec.cards().then_some(spec),
             petals: PetalColor::of(plant, spec),
             fine_strands: strands <= 40,
             leaf: spec.leaf,
@@ -391,8 +408,25 @@ impl Ground {
         }
     }
 
-    fn wish(&self, shape: &Shape, used: Use, budget: &Budget) -> Wish {
+    /// Of a card, what is leaf, 0 to 1; of all else 1.
+    fn share(&self, wish: Wish, (row, shape): (usize, &Shape)) -> f64 {
+        match (wish, self.tile(row), shape) {
+            (Wish::Card(_), Some((_, tile)), _) => tile.share(),
+            (Wish::Card(_), None, Shape::Blade(blade)) => leaf_share(blade),
+            _ => 1.0,
+        }
+    }
+
+    fn tile(&self, row: usize) -> Option<(usize, &Tile)> {
+        self.cards?.shoots.as_ref()?.tile(row)
+    }
+
+    fn wish(&self, (row, shape): (usize, &Shape), used: Use, budget: &Budget) -> Wish {
         let scale = used.scale;
+        if let (Some(spec), Shape::Blade(_), true) = (self.cards, shape, used.leaf) {
+            let cell = self.tile(row).map_or(0, |(k, _)| k + 1);
+            return Wish::Card(part(cell, spec.cells()));
+        }
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
             Shape::Blade(blade) => {

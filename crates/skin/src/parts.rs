@@ -10,8 +10,8 @@ use plant::{Blade, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId};
 use crate::layout::{Layout, Piece};
 use crate::pictures::Pictures;
 use crate::texture::{
-    GREEN, LEAF_ROUGHNESS, LeafInks, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, bark, leaf,
-    paint_material, painted_material, petal_inks, petals,
+    GREEN, LEAF_ROUGHNESS, LeafInks, Leafage, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, atlas, bark,
+    leaf, paint_material, painted_material, petal_inks, petals,
 };
 use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, Venation, Wearer, Worn};
 
@@ -163,6 +163,17 @@ impl Slot {
             let own = || {
                 plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).find_map(|o| blade(plant, o.shape))
             };
+            if spec.cards() {
+                let shown = spec.shoots.as_ref().map(|s| s.leaf.clone()).or_else(|| own().cloned());
+                let what = Leafage {
+                    venation: spec.venation.unwrap_or(Venation::Pinnate),
+                    leaf: &shown.unwrap_or_else(any_blade),
+                    shoots: spec.shoots.as_deref(),
+                    inks,
+                    wood: spec.bark.unwrap_or_default().of(true).1.srgb(),
+                };
+                return atlas(&what, size, executor);
+            }
             match spec.venation {
                 Some(venation) => {
                     leaf(venation, &own().cloned().unwrap_or_else(any_blade), inks, size, executor)
@@ -267,6 +278,9 @@ impl Slot {
             (m.texture, m.maps, m.base_color) = (Some(color), maps, [1.0; 3]);
             // Of the rest the map decides.
             m.roughness = if m.double_sided { LEAF_ROUGHNESS } else { 1.0 };
+            if spec.cards() && matches!(self, Self::Leaf(_)) {
+                m.alpha = AlphaMode::Mask;
+            }
         }
         m
     }

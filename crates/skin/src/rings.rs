@@ -85,16 +85,11 @@ pub(crate) fn rings(line: &Spine, first: usize) -> Vec<Ring> {
     rings
 }
 
-/// How thick each piece of a drawn line is over its radius: less than 1 where a ring at either end stands askew to it,
-/// as in a mitre; 1 below ring `first`.
-pub(crate) fn mitres(line: &Spine, first: usize) -> Vec<f64> {
-    let planes = eased_tangents(line, first);
-    let piece = |k: usize| {
-        let along = (line.p[k + 1] - line.p[k]).try_normalize()?;
-        let (a, b) = (planes.get(k.checked_sub(first)?)?, planes.get(k + 1 - first)?);
-        Some(a.dot(along).min(b.dot(along)).clamp(0.0, 1.0))
-    };
-    (0..line.p.len() - 1).map(|k| piece(k).unwrap_or(1.0)).collect()
+/// How rings at the samples of a drawn line stand, by their normals: those below ring `first`, which are not drawn, upright on
+/// the line.
+pub(crate) fn planes(line: &Spine, first: usize) -> Vec<DVec3> {
+    let below = &line.t[..first.min(line.t.len())];
+    below.iter().copied().chain(eased_tangents(line, first)).collect()
 }
 
 /// Equal shares of a weight made of length, turning and swelling.

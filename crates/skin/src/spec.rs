@@ -1,5 +1,7 @@
 //! What the caller may choose, and how triangles are shared out.
 
+use std::sync::Arc;
+
 use base::{Draw, Seed};
 use geom::{BallTubeSpec, EndCap, RingRule};
 use plant::{OrganKind, Plant};
@@ -7,8 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spec::Colour;
 
-use crate::Worn;
 use crate::natural::{BarkKind, Venation};
+use crate::shoots::{Foliage, Shoots};
+use crate::{Wearer, Worn};
 
 /// How a plant is given its surface. Saved with the document.
 ///
@@ -60,6 +63,13 @@ pub struct SkinSpec {
     /// finer because there is less of it. Not saved. Default none: those of the plant itself.
     #[serde(skip)]
     pub crowd: Option<[usize; 2]>,
+    /// How leaves of a flat form are drawn; by their outlines where there are no textures, and where they wear a material.
+    /// Chosen for an export, not saved.
+    #[serde(skip)]
+    pub foliage: Foliage,
+    /// Shoots that cards of leaves may be of. Not saved. Default none.
+    #[serde(skip)]
+    pub shoots: Option<Arc<Shoots>>,
     /// Materials that a person gave to organs. Saved with the plant, not here. Default none.
     #[serde(skip)]
     pub worn: Worn,
@@ -85,9 +95,23 @@ impl Default for SkinSpec {
             wind: false,
             steady_m: None,
             crowd: None,
+            foliage: Foliage::default(),
+            shoots: None,
             worn: Worn::default(),
             seed: Seed::default(),
         }
+    }
+}
+
+impl SkinSpec {
+    /// Whether leaves are cards.
+    pub fn cards(&self) -> bool {
+        self.foliage == Foliage::Cards && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
+    }
+
+    /// The part of the atlas with the leaf, and how many cells that has.
+    pub(crate) fn cells(&self) -> usize {
+        1 + self.shoots.as_ref().map_or(0, |s| s.tiles.len())
     }
 }
 

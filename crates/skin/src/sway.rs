@@ -10,6 +10,12 @@ use mesh::{Hold, Joint, Model, Rig};
 
 use crate::sleeve::wide;
 
+/// How far the wind moves the top of a plant that sways, metres: a tenth of its height, out of the axes so that no limb lies in
+/// the wind.
+pub fn gust(model: &Model) -> DVec3 {
+    DVec3::new(0.0966, 0.0, 0.0258) * model.bounds().size().y
+}
+
 /// Most limbs with a joint of their own: those that swing farthest. The others go with the trunk.
 const MOST_LIMBS: usize = 120;
 /// Keys of a loop, the last as the first.

@@ -1,23 +1,46 @@
 //! Levels of detail of every species: fewer triangles by half and more, as much foliage, the same picture.
 
-use burgeon::mesh::{MaterialKind, Model};
-use burgeon::render::{Background, PictureSpec, View, render};
-use burgeon::skin::SkinSpec;
-use burgeon::{PRESETS, Run, Seed, TreeOptions, make_tree};
+use burgeon::glam::DVec3;
+use burgeon::mesh::{AlphaMode, MaterialKind, Model, Texture};
+use burgeon::render::{Background, Camera, PictureSpec, View, shot};
+use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::{PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
 
-/// The area of what is of these kinds, one side, square metres.
+/// The area of what is of these kinds, one side, without what is cut out, square metres.
 fn area(model: &Model, is: impl Fn(MaterialKind) -> bool) -> f64 {
-    let of = |p: &&mesh::Part| is(model.material(p).kind);
-    let triangle = |m: &mesh::TriMesh, t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| m.position(i));
-        0.5 * (b - a).cross(c - a).length()
+    let of_part = |p: &mesh::Part| {
+        let look = model.material(p);
+        let holes = look.texture.as_ref().filter(|_| look.alpha == AlphaMode::Mask);
+        p.mesh.triangles.iter().map(|t| triangle(&p.mesh, *t, holes.map(|t| &**t))).sum::<f64>()
     };
-    model
-        .parts
-        .iter()
-        .filter(of)
-        .map(|p| p.mesh.triangles.iter().map(|t| triangle(&p.mesh, t)).sum::<f64>())
-        .sum()
+    model.parts.iter().filter(|p| is(model.material(p).kind)).map(of_part).sum()
+}
+
+/// The area of a triangle, without the holes of its texture.
+fn triangle(m: &mesh::TriMesh, t: [u32; 3], holes: Option<&Texture>) -> f64 {
+    let [a, b, c] = t.map(|i| m.position(i));
+    let whole = 0.5 * (b - a).cross(c - a).length();
+    let Some(holes) = holes else { return whole };
+    const STEPS: u32 = 12;
+    let corners = t.map(|i| m.uvs[i as usize].map(f64::from));
+    let seen = |i: u32, j: u32| {
+        let step = |k: u32| (f64::from(k) + 1.0 / 3.0) / f64::from(STEPS);
+        let w = [step(i), step(j), 1.0 - step(i) - step(j)];
+        let at = |k: usize, n: u32| {
+            let x = (0..3).map(|c| w[c] * corners[c][k]).sum::<f64>();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a row of the picture"
+            )]
+            let row = (x * f64::from(n)).clamp(0.0, f64::from(n - 1)) as usize;
+            row
+        };
+        holes.pixels[4 * (at(1, holes.height) * holes.width as usize + at(0, holes.width)) + 3] >= 128
+    };
+    let samples: Vec<bool> =
+        (0..STEPS).flat_map(|i| (0..STEPS - i).map(move |j| (i, j))).map(|(i, j)| seen(i, j)).collect();
+    whole * samples.iter().filter(|s| **s).count() as f64 / samples.len() as f64
 }
 
 fn leaf(kind: MaterialKind) -> bool {
@@ -28,35 +51,62 @@ fn wood(kind: MaterialKind) -> bool {
     matches!(kind, MaterialKind::Bark | MaterialKind::YoungBark | MaterialKind::Stem)
 }
 
-/// The mean difference of two pictures of so many pixels a side, of a model and its copy, 0 to 1; and the share of pixels
-/// that show the plant in the first and the second.
-fn difference(a: &Model, b: &Model, pixels: u32) -> (f64, [f64; 2]) {
-    let spec = PictureSpec {
-        width: pixels,
-        height: pixels,
-        view: View::Front,
-        background: Background::Transparent,
-        ground_shadow: false,
-        ..PictureSpec::default()
-    };
-    let draw = |m: &Model| render(m, &spec, &Run::plain()).expect("a picture").pixels;
-    let (a, b) = (draw(a), draw(b));
-    // Over grey, weighted by what covers the pixel.
-    let over = |p: &[u8]| {
-        [0, 1, 2].map(|k| {
+/// A picture of a model in a square, over grey.
+struct Shot {
+    pixels: u32,
+    /// Colours over grey, and what covers the pixel; each 0 to 1.
+    seen: Vec<[f64; 4]>,
+}
+
+impl Shot {
+    /// By a camera that frames the model `whole`, whatever of a coarser one reaches out of it.
+    fn of(model: &Model, whole: &Model, pixels: u32) -> Self {
+        let spec = PictureSpec {
+            width: pixels,
+            height: pixels,
+            view: View::Front,
+            background: Background::Transparent,
+            ground_shadow: false,
+            supersample: 2,
+            ..PictureSpec::default()
+        };
+        let points =
+            whole.parts.iter().flat_map(|p| &p.mesh.positions).map(|p| DVec3::from(p.map(f64::from)));
+        let camera = Camera::framing(&points.collect::<Vec<_>>(), &spec);
+        let picture = shot(model, &spec, camera, &Run::plain()).expect("a picture").pixels;
+        let over = |p: &[u8]| {
             let alpha = f64::from(p[3]) / 255.0;
-            (f64::from(p[k]) * alpha + 190.0 * (1.0 - alpha)) / 255.0
-        })
-    };
-    let seen = |p: &[u8]| {
-        p.chunks_exact(4).map(|p| f64::from(p[3]) / 255.0).sum::<f64>() / f64::from(pixels * pixels)
-    };
-    let pairs = a.chunks_exact(4).zip(b.chunks_exact(4));
-    let differ = pairs.map(|(a, b)| {
-        let (a, b) = (over(a), over(b));
-        [0, 1, 2].iter().map(|&k| (a[k] - b[k]).abs()).sum::<f64>() / 3.0
-    });
-    (differ.sum::<f64>() / f64::from(pixels * pixels), [seen(&a), seen(&b)])
+            let of = |k: usize| (f64::from(p[k]) * alpha + 190.0 * (1.0 - alpha)) / 255.0;
+            [of(0), of(1), of(2), alpha]
+        };
+        Self { pixels, seen: picture.chunks_exact(4).map(over).collect() }
+    }
+
+    /// The same at half the size.
+    fn halved(&self) -> Self {
+        let n = self.pixels / 2;
+        let at = |x: u32, y: u32| self.seen[(y * self.pixels + x) as usize];
+        let mean = |x: u32, y: u32| {
+            let four =
+                [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
+            [0, 1, 2, 3].map(|k| four.iter().map(|p| p[k]).sum::<f64>() / 4.0)
+        };
+        Self {
+            pixels: n,
+            seen: (0..n).flat_map(|y| (0..n).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect(),
+        }
+    }
+
+    /// The mean difference of all pixels, 0 to 1.
+    fn differs(&self, other: &Self) -> f64 {
+        let of = |(a, b): (&[f64; 4], &[f64; 4])| (0..3).map(|k| (a[k] - b[k]).abs()).sum::<f64>() / 3.0;
+        self.seen.iter().zip(&other.seen).map(of).sum::<f64>() / self.seen.len() as f64
+    }
+
+    /// The share of the picture that shows the plant.
+    fn covers(&self) -> f64 {
+        self.seen.iter().map(|p| p[3]).sum::<f64>() / self.seen.len() as f64
+    }
 }
 
 /// Two tests, because each is work for one core.
@@ -71,47 +121,69 @@ fn each_level_of_the_other_species_does_so_too() {
 }
 
 /// Of every second species, from this one on.
-#[expect(clippy::print_stdout, reason = "figures for the table of levels in docs/exports.md")]
 fn holds_of(first: usize) {
     let options = TreeOptions {
         skin: SkinSpec { textures: false, ..SkinSpec::default() },
         lods: 3,
         ..TreeOptions::default()
     };
+    let keys = PRESETS.iter().map(|p| p.key).skip(first).step_by(2);
+    let faults: Vec<String> = keys.flat_map(|key| faults(key, &options)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Leaves in cards and in cards of shoots, and views from all sides: of broad leaves, needles and leaflets.
+#[test]
+fn cards_and_shoots_keep_the_foliage_too() {
+    let options = TreeOptions {
+        skin: SkinSpec { texture_size: 64, foliage: Foliage::ByLevel, ..SkinSpec::default() },
+        lods: 3,
+        impostor: Some(256),
+        ..TreeOptions::default()
+    };
+    let faults: Vec<String> =
+        ["oak", "spruce", "palm"].into_iter().flat_map(|key| faults(key, &options)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What is wrong with the levels of a species.
+#[expect(clippy::print_stdout, reason = "figures for the table of levels in docs/exports.md")]
+fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
     let mut faults = Vec::new();
-    for preset in PRESETS.iter().skip(first).step_by(2) {
-        let spec = preset.spec().expect("sound");
-        let made = make_tree(&spec, Seed::new(1), &options, &Run::plain()).expect("a tree");
-        let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.lods).collect();
-        let foliage = area(levels[0], leaf);
-        for (level, pair) in levels.windows(2).enumerate() {
-            let level = level + 1;
-            let share = pair[1].triangle_count() as f64 / pair[0].triangle_count() as f64;
-            let kept = if foliage > 0.0 { area(pair[1], leaf) / foliage } else { 1.0 };
-            let timber = area(pair[1], wood) / area(levels[0], wood).max(1e-9);
-            // A level is for half the size of the one before.
-            let (differ, [fine, coarse]) = difference(levels[0], pair[1], 384 >> level);
-            println!(
-                "{}: level {level} has {} triangles, {share:.3} of the one before; leaves {kept:.3}, wood {timber:.3} of the whole; \
-                 picture of {} pixels differs by {differ:.4}, covers {fine:.3} and {coarse:.3}",
-                preset.key,
-                pair[1].triangle_count(),
-                384 >> level
-            );
-            // A mean of colours over the whole picture; the widest crowns differ by 0.07.
-            if differ > 0.09 {
-                faults.push(format!("{}: the picture of level {level} differs by {differ:.3}", preset.key));
-            }
-            if share > 0.5 {
-                faults.push(format!(
-                    "{}: level {level} has {share:.3} of the triangles of the one before",
-                    preset.key
-                ));
-            }
-            if (kept - 1.0).abs() > 0.05 {
-                faults.push(format!("{}: level {level} has {kept:.3} of the foliage", preset.key));
-            }
+    let spec = Preset::find(key).expect("there").spec().expect("sound");
+    let made = make_tree(&spec, Seed::new(1), options, &Run::plain()).expect("a tree");
+    let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.lods).collect();
+    let foliage = area(levels[0], leaf);
+    let mut fine = Shot::of(levels[0], levels[0], 192);
+    for (level, pair) in levels.windows(2).enumerate() {
+        let level = level + 1;
+        if level > 1 {
+            fine = fine.halved();
+        }
+        let views = pair[1].materials.iter().any(|m| m.impostor.is_some());
+        let share = pair[1].triangle_count() as f64 / pair[0].triangle_count() as f64;
+        let kept = if foliage > 0.0 && !views { area(pair[1], leaf) / foliage } else { 1.0 };
+        let timber = area(pair[1], wood) / area(levels[0], wood).max(1e-9);
+        // A level is for half the size of the one before.
+        let coarse = Shot::of(pair[1], levels[0], fine.pixels);
+        let differ = fine.differs(&coarse);
+        let [whole, left] = [fine.covers(), coarse.covers()];
+        println!(
+            "{key}: level {level} has {} triangles, {share:.3} of the one before; leaves {kept:.3}, wood {timber:.3} of the whole; \
+             picture of {} pixels differs by {differ:.4}, covers {whole:.3} and {left:.3}",
+            pair[1].triangle_count(),
+            fine.pixels,
+        );
+        // A mean of colours over the whole picture; the widest crowns differ by 0.07.
+        if differ > 0.09 {
+            faults.push(format!("{key}: the picture of level {level} differs by {differ:.3}"));
+        }
+        if share > 0.5 {
+            faults.push(format!("{key}: level {level} has {share:.3} of the triangles of the one before"));
+        }
+        if (kept - 1.0).abs() > 0.05 {
+            faults.push(format!("{key}: level {level} has {kept:.3} of the foliage"));
         }
     }
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    faults
 }

@@ -13,6 +13,9 @@ use crate::{Workspace, WorkspaceError};
 /// Levels of detail that an export may have.
 pub(crate) const MOST_LEVELS: u32 = 4;
 
+/// Pixels along a side of the picture with views from all sides.
+const IMPOSTOR: u32 = 1024;
+
 /// A name and the bytes under it.
 pub type NamedFile = (String, Vec<u8>);
 
@@ -73,12 +76,29 @@ pub struct ExportRequest {
     pub whole: bool,
     /// How wind moves drawings and trees, where the format has room for it.
     pub wind: bool,
+    /// All levels in one file, where it is glTF (`MSFT_lod`); else each has its own.
+    pub one_file: bool,
+    /// Joints and an animation that sways, where it is glTF; each level then has a file of its own.
+    pub sway: bool,
+    /// One more level, the last: views from all sides in one picture, where it is glTF.
+    pub impostor: bool,
 }
 
 impl Default for ExportRequest {
     fn default() -> Self {
         let format = ExportFormat::default();
-        Self { format, levels: 1, up: Up::Y, unit: LengthUnit::M, whole: false, wind: false }
+        let (one_file, sway, impostor) = (false, false, false);
+        Self {
+            format,
+            levels: 1,
+            up: Up::Y,
+            unit: LengthUnit::M,
+            whole: false,
+            wind: false,
+            one_file,
+            sway,
+            impostor,
+        }
     }
 }
 
@@ -107,7 +127,17 @@ pub enum LengthUnit {
 impl ExportRequest {
     /// Whether what is written says how wind moves it.
     pub(crate) fn blown(&self) -> bool {
-        self.wind && self.format.model().is_ok_and(ModelFormat::carries_wind)
+        (self.wind && self.format.model().is_ok_and(ModelFormat::carries_wind)) || self.sways()
+    }
+
+    fn sways(&self) -> bool {
+        self.sway && self.format == ExportFormat::Glb
+    }
+
+    /// Whether each level is written as one model of the whole scene.
+    fn joined(&self) -> bool {
+        let several = self.levels > 1 || self.impostor;
+        self.sways() || (self.format == ExportFormat::Glb && (self.impostor || (self.one_file && several)))
     }
 
     pub(crate) fn spec(&self) -> ExportSpec {
@@ -183,6 +213,15 @@ fn export(
     }
     let (format, spec) = (wanted.format.model()?, wanted.spec());
     let levels = wanted.levels.clamp(1, MOST_LEVELS);
+    if wanted.joined() {
+        let models: Result<Vec<Model>, WorkspaceError> = (0..levels)
+            .map(|level| {
+                let at = Level::of(scene, document, &made, level, run)?;
+                Ok(scene_model(document.name(), &at.standing(&made, only.is_some())))
+            })
+            .collect();
+        return joined(models?, wanted, run);
+    }
     let mut files = Vec::new();
     for level in 0..levels {
         let at = Level::of(scene, document, &made, level, run)?;
@@ -191,6 +230,40 @@ fn export(
         files.extend(scene_files(document.name(), &standing, format, &stem, &spec, &mut PngCache::new())?);
     }
     Ok(files)
+}
+
+/// Levels as glTF, each of one model: in one file or several, with joints, with views from all sides as the last.
+fn joined(
+    mut models: Vec<Model>,
+    wanted: &ExportRequest,
+    run: &Run<'_>,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    if wanted.impostor
+        && let Some(finest) = models.first()
+        && let Some(far) = burgeon::render::impostor(finest, IMPOSTOR, run)
+            .map_err(|_cancelled| WorkspaceError::Cancelled)?
+    {
+        models.push(far);
+    }
+    let mut cache = PngCache::new();
+    let mut out = Vec::new();
+    if wanted.one_file && !wanted.sways() {
+        let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
+        formats::write_glb_levels(&levels, None, &mut cache, &mut out)?;
+        return Ok(vec![("plant.glb".into(), out)]);
+    }
+    let alone = models.len() == 1;
+    let file = |(level, model): (usize, &Model)| {
+        let mut out = Vec::new();
+        let gust = burgeon::skin::gust(model);
+        match burgeon::skin::sway(model, gust).filter(|_| wanted.sways()) {
+            Some(rig) => formats::write_glb_rigged(model, &rig, &mut cache, &mut out)?,
+            None => formats::write_glb_with(model, &mut cache, &mut out)?,
+        }
+        let name = if alone { "plant.glb".into() } else { format!("plant_LOD{level}.glb") };
+        Ok((name, out))
+    };
+    models.iter().enumerate().map(file).collect()
 }
 
 /// Which plants are written: all that are not hidden, or one.

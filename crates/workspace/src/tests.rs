@@ -397,6 +397,21 @@ fn copies_variants_levels_and_links() {
     assert!(
         levels.starts_with(b"PK") && levels.windows(9).any(|w| w == b"LOD2.glb\0" || &w[..8] == b"LOD2.glb")
     );
+    let holds = |file: &[u8], word: &[u8]| file.windows(word.len()).any(|w| w == word);
+    let of = |one_file, sway, impostor| ExportRequest {
+        levels: 2,
+        one_file,
+        sway,
+        impostor,
+        ..ExportRequest::default()
+    };
+    let one = s.exported(&of(true, false, true));
+    assert!(one.starts_with(b"glTF") && holds(&one, b"MSFT_lod") && holds(&one, b"hemi-octahedral"));
+    let far = s.exported(&of(false, false, true));
+    assert!(far.starts_with(b"PK") && holds(&far, b"plant_LOD2.glb"), "two levels and the impostor");
+    // Joints want files of their own.
+    let swaying = s.exported(&of(true, true, false));
+    assert!(swaying.starts_with(b"PK") && holds(&swaying, b"inverseBindMatrices"));
 
     let link = s.share().unwrap();
     assert!(link.len() < 16 << 10, "{} bytes", link.len());

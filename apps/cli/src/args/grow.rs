@@ -6,7 +6,7 @@ use burgeon::TreeSpec;
 use burgeon::formats::Packing;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
-use burgeon::skin::SkinSpec;
+use burgeon::skin::{Foliage, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
@@ -44,6 +44,15 @@ pub(crate) struct GrowArgs {
     /// faster, for programs that know it.
     #[arg(long, help_heading = "Surface", conflicts_with_all = ["wind", "sway"])]
     pub(crate) instances: bool,
+    /// How leaves are drawn: by their outlines, as cards of which the leaf is cut out, or by their level of detail: outlines,
+    /// then cards, then cards of whole shoots [default: outlines].
+    #[arg(long, help_heading = "Surface", value_enum, value_name = "HOW")]
+    pub(crate) foliage: Option<FoliageWord>,
+    /// One more coarser copy, the last: views from all sides in an atlas of SIZE pixels a side, 128 to 4096
+    /// (docs/exports.md).
+    #[arg(long, help_heading = "Surface", value_name = "SIZE", conflicts_with_all = ["wind", "sway"],
+        value_parser = clap::value_parser!(u32).range(128..=4096))]
+    pub(crate) impostor: Option<u32>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
@@ -161,6 +170,27 @@ impl TreeSurfaceArgs {
         given.only_if(self.lods > 0, &["lod_file"], "coarser copies (--lods)", "none is made")?;
         let apart = !(self.in_one_file() && self.sway);
         given.only_if(apart, &["sway"], "levels in files of their own", "--lod-file one puts them into one")
+    }
+}
+
+/// How leaves are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FoliageWord {
+    /// By their outlines
+    Outlines,
+    /// As cards with holes
+    Cards,
+    /// Outlines in the model, cards in OUT-lod1, cards of shoots in OUT-lod2 and those after it
+    ByLevel,
+}
+
+impl FoliageWord {
+    pub(crate) const fn foliage(self) -> Foliage {
+        match self {
+            Self::Outlines => Foliage::Outlines,
+            Self::Cards => Foliage::Cards,
+            Self::ByLevel => Foliage::ByLevel,
+        }
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
 pub(crate) use given::{Given, Seen};
-pub(crate) use grow::{GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
+pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
 pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };

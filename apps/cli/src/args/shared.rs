@@ -72,9 +72,14 @@ impl SkinArgs {
     pub(crate) fn set(&self, skin: &mut SkinSpec) {
         skin.detail = self.detail.unwrap_or(skin.detail);
         skin.sides = self.sides.unwrap_or(skin.sides);
-        skin.textures &= !self.no_textures && self.textures != Some(0);
+        skin.textures &= self.paints();
         skin.texture_size = self.textures.filter(|&size| size > 0).unwrap_or(skin.texture_size);
         skin.wind = self.wind;
+    }
+
+    /// Whether there are textures.
+    pub(crate) fn paints(&self) -> bool {
+        !self.no_textures && self.textures != Some(0)
     }
 
     /// A plain surface with what was asked for.

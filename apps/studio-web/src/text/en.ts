@@ -320,6 +320,15 @@ export const en = {
   'export.wind': 'Wind for shaders',
   'export.wind.help':
     'Trees and drawings: weights and pivots at each vertex, as _WIND and _PIVOT (docs/exports.md)',
+  'export.sway': 'Swaying, with joints',
+  'export.sway.help':
+    'A skeleton with a joint for each limb and a loop in which the plant sways (docs/exports.md)',
+  'export.impostor': 'Views from all sides',
+  'export.impostor.help':
+    'One more level, for far away: an octahedral impostor on two crossing pictures (docs/exports.md)',
+  'export.files': 'Files',
+  'export.files.each': 'one for each level',
+  'export.files.one': 'all levels in one (MSFT_lod)',
   'export.note': 'Each level has about half of the triangles of the one before; several come as a zip.',
   'share.title': 'Link to this drawing',
   'share.hint':

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use mesh::{AlphaMode, Maps, Model};
+use mesh::{AlphaMode, Impostor, Maps, Model};
 use serde_json::{Value, json};
 
 use super::glb_write::{Writer, row};
@@ -46,10 +46,7 @@ impl Writer {
                 alpha_mode: (material.alpha == AlphaMode::Mask).then(|| "MASK".into()),
                 double_sided: material.double_sided,
                 extensions,
-                extras: Some(json!({
-                    "kind": material.kind.word(),
-                    "translucency": share(material.translucency),
-                })),
+                extras: Some(extras(material)),
             });
         }
         Ok(first)
@@ -103,6 +100,24 @@ impl Writer {
         self.images.push(Arc::clone(texture));
         Ok(Some(TextureInfo { index: row(self.images.len() - 1)?, ..TextureInfo::default() }))
     }
+}
+
+/// What glTF has no place for.
+fn extras(material: &mesh::Material) -> Value {
+    let mut extras = json!({
+        "kind": material.kind.word(),
+        "translucency": share(material.translucency),
+    });
+    if let Some(Impostor { frames, centre, radius_m }) = material.impostor {
+        extras["impostor"] = json!({
+            "layout": "hemi-octahedral",
+            "frames": frames,
+            "centre": centre,
+            "radius": radius_m,
+            "depth": "alpha of normalTexture",
+        });
+    }
+    extras
 }
 
 /// The pictures of a document, each read once.
@@ -197,5 +212,19 @@ fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>, map
             Some(_) => AlphaMode::Mask,
         },
         double_sided: m.double_sided,
+        impostor: extra("impostor").and_then(impostor),
     }
+}
+
+/// The extras of an impostor.
+#[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
+fn impostor(known: &Value) -> Option<Impostor> {
+    let number = |v: &Value| v.as_f64().map(|x| x as f32).filter(|x| x.is_finite());
+    let [x, y, z] = known.get("centre")?.as_array()?.as_slice() else { return None };
+    let frames = known.get("frames")?.as_u64().and_then(|n| u32::try_from(n).ok()).filter(|n| *n >= 2)?;
+    Some(Impostor {
+        frames,
+        centre: [number(x)?, number(y)?, number(z)?],
+        radius_m: number(known.get("radius")?)?,
+    })
 }

@@ -16,7 +16,7 @@ use crate::natural::Venation;
 pub(crate) const LEAF_ROUGHNESS: f32 = 0.7;
 
 /// Height of a leaf's relief over its length.
-const DEPTH: f64 = 0.010;
+pub(super) const LEAF_DEPTH: f64 = 0.010;
 
 /// The surface of a leaf: `size` pixels from root to tip, 64 to 4096, and as wide as the blade is.
 pub(crate) fn leaf(
@@ -45,7 +45,7 @@ pub(crate) fn leaf(
         let sheet = Sheet {
             size: (width, size),
             extent: (plan.extent.x, plan.extent.y),
-            depth: DEPTH * plan.extent.y,
+            depth: LEAF_DEPTH * plan.extent.y,
             tiles: false,
             mean: None,
         };
@@ -79,11 +79,11 @@ struct Vein {
 }
 
 /// Where the veins of a blade are.
-struct Plan {
+pub(super) struct Plan {
     venation: Venation,
-    chart: BladeChart,
+    pub(super) chart: BladeChart,
     /// Of the chart, in units of the blade.
-    extent: DVec2,
+    pub(super) extent: DVec2,
     low: f64,
     /// Half of the blade's width at even steps from its lowest place to its highest.
     half: Vec<f64>,
@@ -101,7 +101,7 @@ struct Fields {
 const STEPS: usize = 64;
 
 impl Plan {
-    fn new(venation: Venation, blade: &Blade, executor: &dyn Executor) -> Self {
+    pub(super) fn new(venation: Venation, blade: &Blade, executor: &dyn Executor) -> Self {
         let chart = BladeChart::new(blade);
         let (from, to) = (chart.place(DVec2::new(0.0, 1.0)), chart.place(DVec2::new(1.0, 0.0)));
         let middle = chart.place(DVec2::new(0.5, 1.0)).x;
@@ -246,7 +246,7 @@ impl Plan {
         veins.extend(more);
     }
 
-    fn spot(&self, inks: &LeafInks, u: f64, v: f64) -> Spot {
+    pub(super) fn spot(&self, inks: &LeafInks, u: f64, v: f64) -> Spot {
         let (x, y) = (2.0 * u - 1.0, 1.0 - v);
         let mottle = octaves(5.0 * u, 8.0 * v, (5, 8), 7, 3);
         let fine = gradient(61.0 * u, 83.0 * v, (61, 83), 8);

@@ -1,5 +1,6 @@
 //! Procedural textures: painted once, the same everywhere, shared by every model.
 
+mod atlas;
 mod bark;
 mod blades;
 mod bodies;
@@ -18,6 +19,7 @@ use mesh::Texture;
 pub use patterns::swatch;
 pub use veins::{LeafColours, vein_texture};
 
+pub(crate) use atlas::{Leafage, atlas};
 pub(crate) use bark::bark;
 pub(crate) use blades::{GREEN, LeafInks, PALE_GREEN, PALE_PETAL, inks as petal_inks};
 pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};

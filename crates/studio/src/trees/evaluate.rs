@@ -7,7 +7,7 @@ use document::PlantEdit;
 use growth::{BladeForm, BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
 use plant::{Blade, Plant};
-use skin::{Layout, Pictures, SkinSpec};
+use skin::{Foliage, Layout, Pictures, SkinSpec};
 
 use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
@@ -351,7 +351,9 @@ impl TreeEvaluator {
 fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     // A leaf of one's own has veins of its own, or those of most leaves.
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
-    dressed(SkinSpec { seed, ..options.skin.clone() }, &spec.look, form)
+    // It has a texture of its own, too, which no atlas shows.
+    let foliage = if options.leaf.is_some() { Foliage::Outlines } else { options.skin.foliage };
+    dressed(SkinSpec { seed, foliage, ..options.skin.clone() }, &spec.look, form)
 }
 
 pub(super) fn skinned(

@@ -1,13 +1,17 @@
 //! Coarser copies of a tree, for far away.
 
+use std::sync::Arc;
+
 use growth::Obstacles;
 use plant::{AxisKind, FlowerId, NodeId, OrganKind, Plant};
-use skin::SkinSpec;
+use skin::{Foliage, Shoots, SkinSpec};
 
 /// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
 /// which is for half the size, half as many.
 const FEW_AXES: usize = 100;
 const FEW_LEAVES: usize = 300;
+/// Leaves of a coarser copy are no longer than this share of the plant's size: a few large ones would be spikes.
+const LONGEST: f64 = 0.07;
 const FEW_FLOWERS: usize = 120;
 
 /// How often so many things can be halved, `level` times at most, before fewer are left than can be seen singly: `few` in
@@ -19,8 +23,16 @@ fn halvings(count: usize, few: usize, level: u32) -> u32 {
 
 /// How often the leaves of a plant are halved.
 fn leaf_halvings(plant: &Plant, level: u32) -> u32 {
-    let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).count();
-    halvings(leaves, FEW_LEAVES, level.min(6))
+    let leaves = || plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+    let most = halvings(leaves().count(), FEW_LEAVES, level.min(6));
+    let size = plant.extent().map_or(0.0, |(low, high)| (high - low).length());
+    let reach = |o: &plant::Organ| plant.shapes.get(o.shape.index()).map_or(0.0, |s| s.reach() * o.scale);
+    let longest = leaves().map(reach).filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let fits = |n: &u32| longest * f64::from(1_u32 << n).sqrt() <= LONGEST * size;
+    // Once less at most, and where most triangles are wood: a level has half of those of the one before.
+    let woody = 4 * plant.axes.len() > leaves().count();
+    let least = if level > 2 && most == level && woody { most - 1 } else { most };
+    (least..=most).rev().find(fits).unwrap_or(least)
 }
 
 /// Whether a leaf or flower with this key outlives so many halvings. Mixed: of keys that differ little, too, one in two
@@ -62,16 +74,21 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
 /// are many for the size at which it is seen. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
-/// become fewer. Cost: n log n in axes.
+/// become fewer. With [`Foliage::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
+/// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
     let level = level.min(6);
+    let shoots =
+        (skin.foliage == Foliage::ByLevel && level > 0).then(|| Shoots::of(plant).map(Arc::new)).flatten();
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
     base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
-    let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level);
+    // Shoots have twigs of their own.
+    let finer = u32::from(shoots.is_some() && level > 1);
+    let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level + finer);
     let least = lengths.get(kept_axes).copied().unwrap_or(0.0);
     let mut copy = Plant {
         name: plant.name.clone(),
@@ -109,7 +126,8 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         }
     }
     let fewer_flowers = (plant.flowers.len() as f64 / copy.flowers.len().max(1) as f64).sqrt();
-    let leaf_halvings = leaf_halvings(plant, level);
+    let whole_shoots = shoots.as_ref().filter(|_| level > 1);
+    let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, level) };
     let larger = larger(plant, leaf_halvings);
     for organ in &plant.organs {
         let flower = organ.flower.map(|f| flowers.get(f.index()).copied().flatten());
@@ -135,23 +153,34 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
     let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
     let sides = skin.sides.saturating_sub(2 * level).max(3);
-    let coarse = SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() };
-    cover_as_much(&mut copy, &coarse, (plant, skin));
+    if let Some(shoots) = whole_shoots {
+        shoots.stand_in(&mut copy, 1 << (level - 2));
+    }
+    let foliage = if level > 0 && skin.foliage == Foliage::ByLevel { Foliage::Cards } else { skin.foliage };
+    let coarse =
+        SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), foliage, shoots, ..skin.clone() };
+    cover_as_much(&mut copy, &coarse, (plant, skin), |kind| kind == OrganKind::Leaf);
+    cover_as_much(&mut copy, &coarse, (plant, skin), |kind| kind == OrganKind::Petal);
     (copy, coarse)
 }
 
-/// Gives the leaves of a coarser copy the size at which they cover what those of the plant do as both are drawn: of few
-/// triangles a leaf has not the area of its form.
-fn cover_as_much(copy: &mut Plant, coarse: &SkinSpec, (plant, skin): (&Plant, &SkinSpec)) {
+/// Gives the leaves or petals of a coarser copy the size at which they cover what those of the plant do as both are drawn: of
+/// few triangles a leaf has not the area of its form.
+fn cover_as_much(
+    copy: &mut Plant,
+    coarse: &SkinSpec,
+    (plant, skin): (&Plant, &SkinSpec),
+    is: impl Fn(OrganKind) -> bool,
+) {
     let covered = |plant: &Plant, skin: &SkinSpec| {
         let areas = skin::drawn_areas(plant, skin);
-        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && o.scale.is_finite());
+        let leaves = plant.organs.iter().filter(|o| is(o.kind) && o.scale.is_finite());
         let area = |o: &plant::Organ| areas.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale * o.scale;
         leaves.map(area).sum::<f64>()
     };
     let (wanted, have) = (covered(plant, skin), covered(copy, coarse));
     if have > 0.0 && wanted > 0.0 {
         let size = (wanted / have).sqrt().clamp(0.5, 2.0);
-        copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf).for_each(|o| o.scale *= size);
+        copy.organs.iter_mut().filter(|o| is(o.kind)).for_each(|o| o.scale *= size);
     }
 }

@@ -59,6 +59,9 @@ pub struct TreeOptions {
     pub leaf: Option<LeafTemplate>,
     /// Coarser copies to make as well, 0 to 6: each has about half of the triangles of the one before.
     pub lods: u32,
+    /// Views of the tree from all sides as the last of the coarser copies, in an atlas of so many pixels a side
+    /// ([`render::impostor`]). Default none.
+    pub impostor: Option<u32>,
     /// Also take leaves that are one form out of the models, as copies: [`MadeTree::copies`]. Default false.
     pub copies: bool,
     /// Edits by hand, done on the grown tree in this order.
@@ -74,7 +77,7 @@ pub struct MadeTree {
     pub grown: Grown,
     /// The finest meshes, with materials.
     pub model: Model,
-    /// Coarser ones, finest first.
+    /// Coarser ones, finest first; the impostor is the last.
     pub lods: Vec<Model>,
     /// If asked for, of the model and each coarser one what is left without the leaves that are one form, and these.
     pub copies: Vec<(Model, Vec<Copies>)>,
@@ -226,6 +229,14 @@ pub fn make_tree(
             copies.push(skin::copies(&plant, &model, &layout));
         }
         lods.push(model);
+    }
+    if let (Some(size), Some(model)) = (options.impostor, evaluator.model())
+        && let Some(far) = render::impostor(model, size, run)?
+    {
+        if options.copies {
+            copies.push((far.clone(), Vec::new()));
+        }
+        lods.push(far);
     }
     if !lods.is_empty() {
         let ms = run.clock.now_ms() - start;

@@ -1,0 +1,407 @@
+//! Leaves as cards with holes: of one leaf, or of several leaves of a shoot; and where each is in the atlas of its plant.
+//!
+//! `Plant -> clusters of leaves -> a few of them flat, to be painted | a card in the place of each cluster`
+
+use base::{Digest, Seed};
+use glam::{DVec2, DVec3};
+use mesh::TriMesh;
+use plant::{Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+
+use crate::blade::BladeChart;
+use crate::sleeve::{drop_flat, narrow2};
+
+/// How leaves are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Foliage {
+    /// By their outlines.
+    #[default]
+    Outlines,
+    /// By cards of six corners, of whose texture the leaf is cut out.
+    Cards,
+    /// By outlines in the finest level, by cards in the next, and by cards of whole shoots in those that are coarser.
+    ByLevel,
+}
+
+/// Leaves that a painted shoot has: few enough to be seen as leaves, and enough to stand for a twig.
+const LEAVES: usize = 12;
+/// Painted shoots, by how far the leaves of a cluster lie apart: dense ones, because what lies apart leaves a card empty.
+const DENSE: [f64; 3] = [0.10, 0.25, 0.45];
+/// How a card of a shoot is folded: as a roof, so that it is seen from its edge, too.
+const FOLD: f64 = -0.35;
+/// Half of the thickness of the wood of a shoot, as a share of its length; of stalks half of that.
+const WOOD: f64 = 0.005;
+/// Samples along a side by which the cover of a shoot is measured.
+const SAMPLES: u32 = 128;
+/// Of a cell of the atlas, what stays free at each side: coarser copies of a texture mix neighbours.
+const MARGIN: f64 = 1.0 / 64.0;
+
+/// A leaf of a shoot as it lies flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FlatLeaf {
+    /// Its root.
+    pub(crate) at: DVec2,
+    /// Unit vector from root to tip.
+    pub(crate) along: DVec2,
+    pub(crate) scale: f64,
+    /// Across and along the card: how its normal leans.
+    pub(crate) tilt: DVec2,
+    /// 1 at the top, less below others.
+    pub(crate) lit: f64,
+}
+
+impl FlatLeaf {
+    /// From the shoot's plane to the leaf's own.
+    pub(crate) fn local(&self, p: DVec2) -> DVec2 {
+        let d = (p - self.at) / self.scale;
+        DVec2::new(d.x * self.along.y - d.y * self.along.x, d.dot(self.along))
+    }
+
+    /// From the leaf's own plane to the shoot's.
+    fn place(&self, p: DVec2) -> DVec2 {
+        self.at + (DVec2::new(self.along.y, -self.along.x) * p.x + self.along * p.y) * self.scale
+    }
+}
+
+/// A shoot that is painted.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tile {
+    /// Its card.
+    pub(crate) card: Blade,
+    /// Lowest first.
+    pub(crate) leaves: Vec<FlatLeaf>,
+    /// Lines of wood: from, to.
+    pub(crate) wood: Vec<[DVec2; 2]>,
+    /// Middle of the leaves.
+    middle: DVec2,
+    /// What leaves and wood cover, square metres.
+    covered: f64,
+}
+
+/// The shoots of a plant that its atlas shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shoots {
+    pub(crate) leaf: Blade,
+    pub(crate) tiles: Vec<Tile>,
+    /// Where the cards of the tiles stand among the shapes of a plant whose leaves are drawn as shoots.
+    shape: usize,
+}
+
+/// The part of the atlas of `cells` cells that shows cell `k`: from u, from v, width, height.
+pub(crate) fn part(k: usize, cells: usize) -> [f64; 4] {
+    let columns = columns(cells);
+    let size = 1.0 / columns as f64;
+    let (column, row) = ((k % columns) as f64, (k / columns) as f64);
+    let (inner, edge) = (size * (1.0 - 2.0 * MARGIN), size * MARGIN);
+    [column * size + edge, row * size + edge, inner, inner]
+}
+
+/// Cells along a side of an atlas.
+pub(crate) fn columns(cells: usize) -> usize {
+    if cells > 1 { 2 } else { 1 }
+}
+
+/// A place of a cell's chart by the place within the cell.
+pub(crate) fn chart_place(uv: DVec2) -> DVec2 {
+    (uv - MARGIN) / (1.0 - 2.0 * MARGIN)
+}
+
+impl Shoots {
+    /// The shoots of a plant with leaves of one flat form; none where there are few leaves, or of no such form.
+    ///
+    /// Cost: n log n in leaves, and some 10 ms for measuring what shoots cover.
+    pub fn of(plant: &Plant) -> Option<Self> {
+        let (shape, leaf) = leaf_shape(plant)?;
+        let leaves = leaves_of(plant, shape);
+        let mut clusters = clusters(plant, &leaf, leaves, LEAVES);
+        if clusters.len() < 2 * DENSE.len() {
+            return None;
+        }
+        let spread = |c: &Vec<usize>| {
+            let middles: Vec<DVec3> = c.iter().map(|&i| middle(&plant.organs[i], &leaf)).collect();
+            let mean = middles.iter().sum::<DVec3>() / middles.len() as f64;
+            middles.iter().map(|m| m.distance_squared(mean)).sum::<f64>() / middles.len() as f64
+        };
+        let mut by_spread: Vec<(f64, usize)> = clusters.iter().map(spread).zip(0..).collect();
+        base::sort_by(&mut by_spread, |a, b| a.0.total_cmp(&b.0));
+        let tiles = DENSE.iter().filter_map(|share| {
+            let rank = crate::spec::whole(share * by_spread.len() as f64) as usize;
+            let members = core::mem::take(&mut clusters[by_spread[rank].1]);
+            tile(plant, &leaf, &members)
+        });
+        let tiles: Vec<Tile> = tiles.collect();
+        (tiles.len() == DENSE.len()).then_some(Self { leaf, tiles, shape: plant.shapes.len() })
+    }
+
+    /// Takes the leaves of `plant`, of which these are the shoots, out of it and puts cards of `shoots` times [`LEAVES`]
+    /// leaves each in their places.
+    ///
+    /// Guaranteed: together the cards show as much leaf as the leaves have. Cards are leaves with the keys of one of theirs.
+    pub fn stand_in(&self, plant: &mut Plant, shoots: usize) {
+        let Some((shape, leaf)) = leaf_shape(plant) else { return };
+        let leaves = leaves_of(plant, shape);
+        let area = geom::signed_area(&leaf.outline).abs();
+        let cards: Vec<Organ> = clusters(plant, &leaf, leaves, LEAVES * shoots.max(1))
+            .iter()
+            .filter_map(|members| {
+                let frame = frame(plant, &leaf, members)?;
+                let first = members.iter().map(|&i| &plant.organs[i]).min_by_key(|o| o.key)?;
+                let mixed = Seed::new(first.key).child(1).number() % self.tiles.len().max(1) as u64;
+                let row = usize::try_from(mixed).unwrap_or(0);
+                let tile = self.tiles.get(row)?;
+                let scales = members.iter().map(|&i| plant.organs[i].scale);
+                let wanted = area * scales.map(|s| s * s).sum::<f64>();
+                let scale = (wanted / tile.covered).sqrt();
+                let off = (frame.right * tile.middle.x + frame.along * tile.middle.y) * scale;
+                let shape = ShapeId::new(self.shape + row);
+                let frame = Frame { origin: frame.origin - off, ..frame };
+                Some(Organ { shape, frame, scale, ..first.clone() })
+            })
+            .collect();
+        plant.organs.retain(|o| o.kind != OrganKind::Leaf || o.shape != shape || !sound(o));
+        plant.organs.extend(cards);
+        plant.shapes.truncate(self.shape);
+        plant.shapes.extend(self.tiles.iter().map(|t| Shape::Blade(t.card.clone())));
+    }
+
+    /// The tile of a shape.
+    pub(crate) fn tile(&self, shape: usize) -> Option<(usize, &Tile)> {
+        let row = shape.checked_sub(self.shape)?;
+        self.tiles.get(row).map(|t| (row, t))
+    }
+
+    pub(crate) fn digest(&self, d: &mut Digest) {
+        for tile in &self.tiles {
+            d.add(&tile.card.outline);
+            for leaf in &tile.leaves {
+                d.add(&leaf.at).add(&leaf.along).add(&leaf.scale).add(&leaf.tilt).add(&leaf.lit);
+            }
+            tile.wood.iter().flatten().for_each(|p| {
+                d.add(p);
+            });
+        }
+    }
+}
+
+impl Tile {
+    /// What is leaf of what its card has, 0 to 1.
+    pub(crate) fn share(&self) -> f64 {
+        (self.covered / geom::signed_area(&self.card.outline).abs().max(f64::MIN_POSITIVE)).min(1.0)
+    }
+
+    /// Whether a place of the plane is on the wood.
+    pub(crate) fn on_wood(&self, p: DVec2) -> bool {
+        let thick = WOOD * self.card.length();
+        self.wood.iter().enumerate().any(|(k, [a, b])| {
+            let ab = *b - *a;
+            let t = ((p - *a).dot(ab) / ab.length_squared().max(1e-18)).clamp(0.0, 1.0);
+            p.distance(*a + ab * t) < if k == 0 { thick } else { 0.5 * thick }
+        })
+    }
+
+    /// The leaf that is seen at a place of the plane.
+    pub(crate) fn seen(&self, leaf: &Blade, p: DVec2) -> Option<(&FlatLeaf, DVec2)> {
+        self.leaves.iter().rev().find_map(|flat| {
+            let own = flat.local(p);
+            within(leaf, own).then_some((flat, own))
+        })
+    }
+}
+
+/// Whether a place of a blade's plane is on it.
+pub(crate) fn within(leaf: &Blade, p: DVec2) -> bool {
+    p.is_finite() && geom::contains(&leaf.outline, p)
+}
+
+/// The flat form that most leaves have.
+fn leaf_shape(plant: &Plant) -> Option<(ShapeId, Blade)> {
+    let mut counts = vec![0_usize; plant.shapes.len()];
+    for organ in plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && sound(o)) {
+        if let (Some(n), Some(Shape::Blade(_))) =
+            (counts.get_mut(organ.shape.index()), plant.shapes.get(organ.shape.index()))
+        {
+            *n += 1;
+        }
+    }
+    let (row, n) = counts.iter().enumerate().max_by_key(|&(row, n)| (*n, core::cmp::Reverse(row)))?;
+    match plant.shapes.get(row) {
+        Some(Shape::Blade(blade)) if *n > 0 && blade.length() > 0.0 => {
+            Some((ShapeId::new(row), blade.clone()))
+        }
+        _ => None,
+    }
+}
+
+fn leaves_of(plant: &Plant, shape: ShapeId) -> Vec<usize> {
+    let is = |o: &Organ| o.kind == OrganKind::Leaf && o.shape == shape && sound(o);
+    (0..plant.organs.len()).filter(|&i| is(&plant.organs[i])).collect()
+}
+
+fn sound(organ: &Organ) -> bool {
+    let f = &organ.frame;
+    let finite = [f.origin, f.right, f.along, f.normal].iter().all(|v| v.is_finite());
+    finite && organ.scale.is_finite() && organ.scale > 0.0
+}
+
+fn middle(organ: &Organ, leaf: &Blade) -> DVec3 {
+    organ.frame.origin + organ.frame.along * (0.5 * leaf.length() * organ.scale)
+}
+
+/// Leaves that lie together, `most` or a few less in each: halves of halves across where they reach farthest.
+fn clusters(plant: &Plant, leaf: &Blade, leaves: Vec<usize>, most: usize) -> Vec<Vec<usize>> {
+    let mut done = Vec::new();
+    let mut open = vec![(leaves.len().div_ceil(most.max(1)), leaves)];
+    while let Some((parts, mut members)) = open.pop() {
+        if parts <= 1 {
+            if !members.is_empty() {
+                done.push(members);
+            }
+            continue;
+        }
+        let at = |i: usize| middle(&plant.organs[i], leaf);
+        let (low, high) = members
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &i| (l.min(at(i)), h.max(at(i))));
+        let axis = (high - low).max_position();
+        base::sort_by(&mut members, |&a, &b| at(a)[axis].total_cmp(&at(b)[axis]));
+        let first = parts / 2;
+        let rest = members.split_off(members.len() * first / parts);
+        open.push((parts - first, rest));
+        open.push((first, members));
+    }
+    done
+}
+
+/// The plane of a cluster: through the middle of its leaves, along where they point, and facing as one of them does.
+fn frame(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Frame> {
+    let organs = || members.iter().map(|&i| &plant.organs[i]);
+    let n = members.len() as f64;
+    let centre = organs().map(|o| middle(o, leaf)).sum::<DVec3>() / n;
+    let along = organs().map(|o| o.frame.along).sum::<DVec3>() / n;
+    let first = organs().min_by_key(|o| o.key)?;
+    let along = if along.length() > 0.1 { along } else { first.frame.along };
+    Some(Frame::looking(centre, along, first.frame.normal))
+}
+
+/// A cluster as it is painted: its leaves turned into its plane.
+fn tile(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Tile> {
+    let frame = frame(plant, leaf, members)?;
+    let mut deep: Vec<(f64, &Organ)> =
+        members.iter().map(|&i| &plant.organs[i]).map(|o| (frame.localise(middle(o, leaf)).z, o)).collect();
+    base::sort_by(&mut deep, |a, b| a.0.total_cmp(&b.0));
+    let still = Frame { origin: DVec3::ZERO, ..frame };
+    let flat = |v: DVec3| still.localise(v);
+    let count = deep.len().max(2) as f64;
+    let mut leaves: Vec<FlatLeaf> = deep
+        .iter()
+        .zip(0_u32..)
+        .map(|(&(_, o), rank)| {
+            let root = frame.localise(o.frame.origin).truncate();
+            // One that points out of the plane lies to its side.
+            let aside = DVec2::new(if root.x < 0.0 { -0.6 } else { 0.6 }, 0.8);
+            let way = flat(o.frame.along).truncate();
+            let along = if way.length() > 0.25 { way.normalize() } else { aside };
+            let normal = flat(o.frame.normal);
+            let normal = if normal.z < 0.0 { -normal } else { normal };
+            let tilt = (normal.truncate() / normal.z.max(0.5)).clamp(DVec2::splat(-0.4), DVec2::splat(0.4));
+            let lit = 0.78 + 0.22 * f64::from(rank) / (count - 1.0);
+            FlatLeaf { at: root, along, scale: o.scale, tilt, lit }
+        })
+        .collect();
+    // The lowest root is the foot of the shoot.
+    let corners = |l: &FlatLeaf| leaf.outline.iter().map(|p| l.place(*p)).collect::<Vec<_>>();
+    let low = leaves.iter().flat_map(&corners).map(|p| p.y).fold(f64::INFINITY, f64::min);
+    leaves.iter_mut().for_each(|l| l.at.y -= low);
+    let points: Vec<DVec2> = leaves.iter().flat_map(corners).collect();
+    let high = points.iter().map(|p| p.y).fold(0.0, f64::max);
+    let tops = leaves.iter().map(|l| l.at.y).fold(0.0, f64::max);
+    let mut wood = vec![[DVec2::ZERO, DVec2::new(0.0, tops)]];
+    // Leaves far from the middle are those of other twigs.
+    let near = |l: &&FlatLeaf| l.at.x.abs() < leaf.length() * l.scale;
+    let stalk = |l: &FlatLeaf| [DVec2::new(0.0, (l.at.y - 0.6 * l.at.x.abs()).max(0.0)), l.at];
+    wood.extend(leaves.iter().filter(near).map(stalk));
+    let [right, left] = [1.0, -1.0].map(|side| {
+        let own: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.x * side, p.y)).collect();
+        half(&own, 0.0, high)
+    });
+    let mirror = |p: DVec2| DVec2::new(-p.x, p.y);
+    let outline =
+        vec![DVec2::ZERO, right[0], right[1], DVec2::new(0.0, high), mirror(left[1]), mirror(left[0])];
+    if high.is_nan() || high <= 0.0 || geom::signed_area(&outline) <= 0.0 {
+        return None;
+    }
+    let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5 * high), DVec2::new(0.0, high)];
+    let relief = Relief { fold: FOLD, ..Relief::default() };
+    let card = Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief };
+    let middle = leaves.iter().map(|l| l.at + l.along * (0.5 * leaf.length() * l.scale)).sum::<DVec2>()
+        / leaves.len() as f64;
+    let mut tile = Tile { card, leaves, wood, middle, covered: 0.0 };
+    tile.covered = covered(&tile, leaf);
+    (tile.covered > 0.0).then_some(tile)
+}
+
+/// What leaves and wood of a tile cover, square metres.
+fn covered(tile: &Tile, leaf: &Blade) -> f64 {
+    let chart = BladeChart::new(&tile.card);
+    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SAMPLES);
+    let seen = |&(i, j): &(u32, u32)| {
+        let p = chart.place(DVec2::new(at(i), at(j)));
+        tile.seen(leaf, p).is_some() || tile.on_wood(p)
+    };
+    let all = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
+    let size = chart.place(DVec2::new(1.0, 0.0)) - chart.place(DVec2::new(0.0, 1.0));
+    all.filter(seen).count() as f64 / f64::from(SAMPLES * SAMPLES) * (size.x * size.y).abs()
+}
+
+/// The two corners on the right of a card from `low` to `high` on its middle line that holds the points with x above 0: where the lines
+/// from both ends, as near to the points as can be, meet the widest place.
+fn half(points: &[DVec2], low: f64, high: f64) -> [DVec2; 2] {
+    let wide = points.iter().map(|p| p.x).fold(0.0, f64::max).max(1e-6 * (high - low));
+    let steep = |rise: f64, x: f64| rise.max(0.0) / x;
+    let own = || points.iter().filter(|p| p.x > 1e-3 * wide);
+    let up = own().map(|p| steep(p.y - low, p.x)).fold(f64::INFINITY, f64::min);
+    let down = own().map(|p| steep(high - p.y, p.x)).fold(f64::INFINITY, f64::min);
+    let (from, to) = ((low + up * wide).min(high), (high - down * wide).max(low));
+    let (from, to) = if from < to { (from, to) } else { (low, high) };
+    [DVec2::new(wide, from), DVec2::new(wide, to)]
+}
+
+/// A blade as a card: two halves along its midrib, of two triangles each, around its outline. Its texture is in this part of
+/// an atlas.
+pub(crate) fn card_mesh(blade: &Blade, part: [f64; 4]) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    if blade.outline.len() < 3 || blade.outline.iter().any(|p| !p.is_finite()) {
+        return mesh;
+    }
+    let chart = BladeChart::new(blade);
+    let surface = blade.surface();
+    let flat: Vec<DVec2> = blade.outline.iter().map(|p| chart.uv(*p)).collect();
+    let [right, left] = [1.0, -1.0].map(|side| {
+        let own: Vec<DVec2> = flat.iter().map(|p| DVec2::new(side * (p.x - 0.5), p.y)).collect();
+        half(&own, 0.0, 1.0).map(|p| DVec2::new(0.5 + side * p.x, p.y))
+    });
+    // In the picture y runs down: `half` begins at the tip.
+    let places = [DVec2::new(0.5, 1.0), right[1], right[0], DVec2::new(0.5, 0.0), left[0], left[1]];
+    for uv in places {
+        let uv = uv.clamp(DVec2::ZERO, DVec2::ONE);
+        let p = chart.place(uv);
+        let lifted = surface.point(p);
+        mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
+        mesh.uvs.push(narrow2(part[0] + part[2] * uv.x, part[1] + part[3] * uv.y));
+    }
+    mesh.triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]];
+    drop_flat(&mut mesh);
+    mesh.compute_normals();
+    mesh
+}
+
+/// Of a card of a blade, what is leaf, 0 to 1.
+pub(crate) fn leaf_share(blade: &Blade) -> f64 {
+    let flat = Blade { relief: Relief::default(), lift: Lift::Flat, ..blade.clone() };
+    let mesh = card_mesh(&flat, [0.0, 0.0, 1.0, 1.0]);
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.position(i));
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let card: f64 = mesh.triangles.iter().map(area).sum();
+    (geom::signed_area(&blade.outline).abs() / card.max(f64::MIN_POSITIVE)).min(1.0)
+}
