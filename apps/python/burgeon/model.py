@@ -34,7 +34,8 @@ class Part:
         self.name = name
         """Unique within the model, such as ``leaves``."""
         self.material = material
-        """``name``, ``kind``, ``base_color`` (linear RGB), ``roughness``, ``double_sided``, ``cut_out`` and ``texture``."""
+        """``name``, ``kind``, ``base_color`` (linear RGB), ``roughness``, ``translucency`` (share of light that passes),
+        ``double_sided``, ``cut_out``; ``texture`` and the maps ``normal``, ``orm``, ``height``, ``through`` (``maps``)."""
 
     def _column(self, name: str) -> "np.ndarray":
         return array(self._raw.column(self._row, name))
@@ -79,6 +80,13 @@ class Part:
         """(height, width, 4) uint8: sRGB and alpha, rows from the top; None without one."""
         column = self.material["texture"]
         return None if column is None else array(column)
+
+    @property
+    def maps(self) -> "Dict[str, np.ndarray]":
+        """The textures beside the colour that there are, (height, width, 4) uint8 as glTF has them: ``normal``, ``orm``
+        (occlusion, roughness), ``height``, ``through`` (in alpha, multiplied with the translucency)."""
+        names = ("normal", "orm", "height", "through")
+        return {name: array(self.material[name]) for name in names if self.material[name] is not None}
 
     def __repr__(self) -> str:
         return f"<burgeon.Part {self.name!r}: {len(self.vertices):,} vertices, {len(self.faces):,} triangles>"

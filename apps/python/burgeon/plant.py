@@ -218,6 +218,21 @@ class Plant:
         """All that its maker was asked for, defaults too."""
         return json.loads(self._raw.spec())
 
+    @property
+    def place(self) -> "Tuple[Tuple[float, float, float], float, float]":
+        """Where it stands in the project that it was opened from: position in metres, turn about +y in degrees, scale."""
+        position, yaw, scale = self._raw.place
+        return (position[0], position[1], position[2]), yaw, scale
+
+    @property
+    def front(self) -> "Optional[Tuple[float, Tuple[float, float]]]":
+        """Of a drawing: metres for each of its units, and the point (x, y, y upwards) of it at which the plant stands.
+
+        The front view of the model is the drawing: ``plant_xy = (drawing_xy - point) * metres``.
+        """
+        front = self._raw.front
+        return None if front is None else (front[0], (front[1][0], front[1][1]))
+
     def measures(self) -> "Dict[str, Any]":
         """What can be measured, in SI units (docs/measures.md): ``height_m``, ``dbh_m``, ``leaf_area_m2`` and so on.
 

@@ -177,7 +177,7 @@ impl RawModel {
         })
     }
 
-    /// Each material as a dict; its texture as (width, height, RGBA column) or None.
+    /// Each material as a dict; its textures as RGBA columns or None.
     fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let material = |m: &burgeon::mesh::Material| {
             let dict = PyDict::new(py);
@@ -185,13 +185,23 @@ impl RawModel {
             dict.set_item("kind", m.kind.word())?;
             dict.set_item("base_color", m.base_color.to_vec())?;
             dict.set_item("roughness", m.roughness)?;
+            dict.set_item("translucency", m.translucency)?;
             dict.set_item("double_sided", m.double_sided)?;
             dict.set_item("cut_out", m.alpha == burgeon::mesh::AlphaMode::Mask)?;
-            let texture = m.texture.as_ref().map(|t| {
-                let shape = [t.height as usize, t.width as usize, 4];
-                Column::of(t.clone(), &t.pixels).shaped(&shape)
-            });
-            dict.set_item("texture", texture.map(|t| Py::new(py, t)).transpose()?)?;
+            let textures = [
+                ("texture", &m.texture),
+                ("normal", &m.maps.normal),
+                ("orm", &m.maps.orm),
+                ("height", &m.maps.height),
+                ("through", &m.maps.through),
+            ];
+            for (name, texture) in textures {
+                let column = texture.as_ref().map(|t| {
+                    let shape = [t.height as usize, t.width as usize, 4];
+                    Py::new(py, Column::of(t.clone(), &t.pixels).shaped(&shape))
+                });
+                dict.set_item(name, column.transpose()?)?;
+            }
             Ok(dict)
         };
         self.get().materials.iter().map(material).collect()

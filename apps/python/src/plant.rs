@@ -227,6 +227,19 @@ impl RawPlant {
         self.0.scene.days(self.0.id, &self.0.document)
     }
 
+    /// Where it stands in its document: x, y, z, turn about +Y in degrees, scale.
+    #[getter]
+    fn place(&self) -> ([f64; 3], f64, f64) {
+        let place = self.0.document.plant(self.0.id).map(|p| p.settings().placement).unwrap_or_default();
+        (place.position.to_array(), place.yaw_deg, place.scale)
+    }
+
+    /// Of a drawing: metres for each of its units, and the point of it that is the plant's origin.
+    #[getter]
+    fn front(&self) -> Option<(f64, [f64; 2])> {
+        self.0.shown()?.front.map(|f| (f.metres_per_unit, f.origin.to_array()))
+    }
+
     /// The plant as a project of the Studio.
     fn project<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.0.must_have_document(py)?;
