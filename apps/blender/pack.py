@@ -5,8 +5,14 @@ import re
 import sys
 import zipfile
 
-PLATFORMS = (("linux.*x86_64", "linux-x64"), ("linux.*aarch64", "linux-arm64"), ("macosx.*arm64", "macos-arm64"),
-             ("macosx.*x86_64", "macos-x64"), ("win_amd64", "windows-x64"), ("win_arm64", "windows-arm64"))
+PLATFORMS = (
+    ("linux.*x86_64", "linux-x64"),
+    ("linux.*aarch64", "linux-arm64"),
+    ("macosx.*arm64", "macos-arm64"),
+    ("macosx.*x86_64", "macos-x64"),
+    ("win_amd64", "windows-x64"),
+    ("win_arm64", "windows-arm64"),
+)
 """Platforms as wheels name them, and as Blender does."""
 
 
@@ -16,7 +22,8 @@ def pack(wheel, out):
     if platform is None:
         sys.exit(f"{wheel.name} is for no platform of Blender")
     manifest = (here / "blender_manifest.toml").read_text(encoding="utf-8")
-    for empty, full in (("wheels = []", f'wheels = ["./wheels/{wheel.name}"]'), ("platforms = []", f'platforms = ["{platform}"]')):
+    for name, inside in (("wheels", f"./wheels/{wheel.name}"), ("platforms", platform)):
+        empty, full = f"{name} = []", f'{name} = ["{inside}"]'
         if empty not in manifest:
             sys.exit(f"blender_manifest.toml has no line `{empty}`")
         manifest = manifest.replace(empty, full)

@@ -3,9 +3,8 @@
 import hashlib
 import json
 
-import numpy as np
-
 import bpy
+import numpy as np
 
 KEY = "burgeon_material"
 """Property of a material and of its pictures: what they were made from."""
@@ -64,7 +63,9 @@ def _image(name, key, pixels, kind):
 
 def _build(made, about, pictures):
     """Nodes: texture, colour and tint of vertices -> Principled BSDF; a share of light passes through blades; holes."""
-    made.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        # Later materials always have nodes.
+        made.use_nodes = True
     made.use_backface_culling = not about["double_sided"]
     made.diffuse_color = (*about["base_color"], 1.0)
     made.roughness = about["roughness"]

@@ -19,7 +19,7 @@ def put(plant, made, shapes, first, last):
     for day, faces in zip(days, triangles, strict=True):
         alike = len(faces) == len(triangles[0]) and all(np.array_equal(a, b) for a, b in zip(faces, triangles[0], strict=True))
         if not alike:
-            raise ValueError(f"on day {day:.1f} this flower has other triangles than as a bud: it cannot be one mesh with shape keys")
+            raise ValueError(f"on day {day:.1f} this flower has other triangles than as a bud: it cannot have shape keys")
     plant.shape_key_clear()
     # The colours of full bloom: shape keys have places only.
     bloom = int(np.argmin(np.abs(days - low)))

@@ -4,13 +4,13 @@ import json
 import math
 import os
 
-import burgeon as bg
-import numpy as np
-from mathutils import Matrix
-
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy.types import Operator
+from mathutils import Matrix
+
+import burgeon as bg
 
 from . import meshes, opening, plants, strokes, wind
 
@@ -131,7 +131,7 @@ class BURGEON_OT_open_over_time(OfPlant):
 
     bl_idname, bl_label = "burgeon.open_over_time", "Open Over Time"
 
-    shapes: IntProperty(name="Shapes", description="Days that are made; between them it is moved evenly", default=9, min=2, max=64)
+    shapes: IntProperty(name="Shapes", description="Days that are made; it moves evenly between them", default=9, min=2, max=64)
     first: IntProperty(name="First Frame", default=1)
     last: IntProperty(name="Last Frame", default=120)
 
@@ -166,7 +166,12 @@ class BURGEON_OT_wind(Refusing):
     bl_idname, bl_label = "burgeon.wind", "Wind"
 
     gust: FloatProperty(
-        name="Gust", description="Of the height of each plant, so much at its top", default=0.05, min=0.0, max=0.5, subtype="FACTOR"
+        name="Gust",
+        description="Of each plant's height, so much at its top",
+        default=0.05,
+        min=0.0,
+        max=0.5,
+        subtype="FACTOR",
     )
     direction: FloatProperty(name="Direction", description="0 is along +x", default=0.0, subtype="ANGLE")
 

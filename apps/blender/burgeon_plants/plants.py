@@ -2,10 +2,10 @@
 
 import json
 
-import burgeon as bg
-
 import bpy
 from bpy.app.handlers import persistent
+
+import burgeon as bg
 
 from . import meshes, opening, settings
 

@@ -4,10 +4,8 @@ import functools
 import json
 from typing import Any, NamedTuple
 
-import burgeon as bg
-import numpy as np
-
 import bpy
+import numpy as np
 from bpy.props import (
     BoolProperty,
     EnumProperty,
@@ -17,6 +15,8 @@ from bpy.props import (
     PointerProperty,
     StringProperty,
 )
+
+import burgeon as bg
 
 MAKERS = ("tree", "flower", "leaf", "sketch")
 GENERAL = "general"
@@ -179,9 +179,7 @@ def _group(maker):
     for row in rows(maker):
         own[row.name] = _property(row)
         if row.optional and row.kind != "word":
-            own[row.switch] = BoolProperty(
-                name=f"Set {row.label}", description="Otherwise the program chooses", update=_touched
-            )
+            own[row.switch] = BoolProperty(name=f"Set {row.label}", description="Otherwise the program chooses", update=_touched)
     return type(f"BURGEON_{maker}", (bpy.types.PropertyGroup,), {"__annotations__": own})
 
 

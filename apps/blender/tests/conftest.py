@@ -10,9 +10,9 @@ pytest.importorskip("bpy")
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "apps/blender"))
 
-import burgeon_plants  # noqa: E402
-
 import bpy  # noqa: E402
+
+import burgeon_plants  # noqa: E402
 
 
 @pytest.fixture(autouse=True)

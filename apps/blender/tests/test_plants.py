@@ -2,13 +2,13 @@
 
 import json
 
-import burgeon as bg
+import bpy
 import numpy as np
 import pytest
+
+import burgeon as bg
 from burgeon_plants import meshes, opening, panel, plants, settings, wind
 from conftest import ROOT
-
-import bpy
 
 SMALL = {"species": "hazel", "seed": 3, "age": 4, "detail": 0.2}
 

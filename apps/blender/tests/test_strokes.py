@@ -1,12 +1,12 @@
 """Strokes of grease pencil and of annotations become plants that lie on them."""
 
-import burgeon as bg
+import bpy
 import numpy as np
 import pytest
-from burgeon_plants import plants, strokes
 from mathutils import Matrix
 
-import bpy
+import burgeon as bg
+from burgeon_plants import plants, strokes
 
 STEM = np.column_stack([0.1 * np.sin(3 * np.linspace(0, 1, 30)), np.linspace(0, 1, 30)])
 ROUND = np.linspace(0, 2 * np.pi, 40)

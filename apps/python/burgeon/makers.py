@@ -49,9 +49,7 @@ def _text(path: str) -> str:
         return file.read()
 
 
-def _asked(
-    seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]"
-) -> "Dict[str, Any]":
+def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
         raise ValueError(f"seed must be a whole number, 0 to 2^64 - 1, not {seed!r}")
     return {

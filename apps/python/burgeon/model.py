@@ -27,7 +27,7 @@ class Part:
     An array keeps the memory it looks at; the plant and the model may go.
     """
 
-    __slots__ = ("_raw", "_row", "name", "material")
+    __slots__ = ("_raw", "_row", "material", "name")
 
     def __init__(self, raw: Any, row: int, name: str, material: "Dict[str, Any]") -> None:
         self._raw, self._row = raw, row
@@ -126,17 +126,30 @@ class Cloud(NamedTuple):
     """(n,) float32: metres from the scanner, without noise."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
-        """Writes all columns to a ``.npz`` file (NumPy), whole or not at all."""
+        """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): whole or not
+        at all."""
         folder, name = os.path.split(os.fspath(path))
-        if not name.endswith(".npz"):
-            raise ValueError(f"clouds are written as .npz, not {name!r}")
-        write_whole(folder, [(name, self.to_bytes())])
+        write_whole(folder, [(name, self.to_bytes(os.path.splitext(name)[1]))])
 
-    def to_bytes(self) -> bytes:
-        """The ``.npz`` file of all columns, the same bytes for the same cloud."""
-        from ._npz import npz
+    def to_bytes(self, extension: str = "npz") -> bytes:
+        """The file of a format, ``npz``, ``las`` or ``laz``: the same bytes for the same cloud."""
+        extension = extension.lower().lstrip(".")
+        if extension == "npz":
+            from ._npz import npz
 
-        return npz(self._asdict())
+            return npz(self._asdict())
+        if extension in ("las", "laz"):
+            from ._las import las
+
+            return las(self._asdict(), extension == "laz")
+        raise ValueError(f"clouds are written as .npz, .las or .laz, not .{extension}")
+
+
+def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
+    """The columns of the cloud of a plant or of a forest."""
+    scan = {"points": points, "stations": stations, "elevation": elevation, "noise": noise}
+    columns = of._raw.survey({**scan, "seed": of.seed if seed is None else seed})
+    return {name: array(column) for name, column in columns.items()}
 
 
 Look = Dict[str, Any]
@@ -168,7 +181,7 @@ def look(
 class Model:
     """Meshes and materials. Nothing changes it."""
 
-    __slots__ = ("_raw", "_parts")
+    __slots__ = ("_parts", "_raw")
 
     def __init__(self, raw: Any) -> None:
         self._raw = raw

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, Layer, Stroke};
 use burgeon::mesh::Model;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::{Digest, Report, Seed, Unit, UpAxis};
@@ -309,6 +311,28 @@ pub(crate) fn png<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let mut bytes = Vec::new();
     let written = py.detach(|| burgeon::formats::write_png(width, height, pixels, &mut bytes));
+    written.map_err(|e| unusable(py, &e))?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// Lines (x, y upwards) as a drawing's SVG; each lies on the layer of its word.
+#[pyfunction]
+pub(crate) fn drawing_svg<'py>(
+    py: Python<'py>,
+    name: &str,
+    lines: Vec<(String, Vec<[f64; 2]>)>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let mut drawing = Drawing { name: name.to_owned(), ..Drawing::default() };
+    for (word, line) in lines {
+        let layer: Arc<str> = word.into();
+        if drawing.layers.iter().all(|l| l.name != layer) {
+            drawing.layers.push(Layer { name: Arc::clone(&layer), ..Layer::default() });
+        }
+        let samples = line.into_iter().map(|p| DVec2::from_array(p).into()).collect();
+        drawing.strokes.push(Stroke { samples, layer: Some(layer), ..Stroke::default() });
+    }
+    let mut bytes = Vec::new();
+    let written = py.detach(|| burgeon::formats::write_svg(&drawing, &mut bytes));
     written.map_err(|e| unusable(py, &e))?;
     Ok(PyBytes::new(py, &bytes))
 }
