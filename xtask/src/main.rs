@@ -4,6 +4,7 @@
 mod ablation;
 mod archive;
 mod bare_numbers;
+mod blender;
 mod circles;
 mod contact_sheet;
 mod flowers;
@@ -57,6 +58,8 @@ cargo xtask COMMAND
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   test-python    the Python part of `test` alone (docs/python.md)
+  blender        builds the extension for Blender, target/blender (docs/blender.md)
+  test-blender   tests the extension without a window; no part of `test`, as it downloads Blender as a module (1 GB)
   archive        one file to download: the command with the Studio in it, manual pages, completions (target/archives)
   npm            builds the npm package as a tarball, target/npm, and says how large its cores are (docs/npm.md)
   test-npm       the npm part of `test` alone
@@ -96,6 +99,8 @@ fn main() -> ExitCode {
         Some("bench-npm") => web::setup().and_then(|tools| npm::bench(&tools)),
         Some("wheel") => python::wheel(),
         Some("test-python") => python::test(false),
+        Some("blender") => blender::pack(),
+        Some("test-blender") => blender::test(),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
             say(HELP);

@@ -8,11 +8,11 @@ use crate::shell::{
 };
 use crate::toolchain::{apt_install, is_root_on_debian, shown};
 
-/// What builds the wheel.
-const BUILD: &[&str] = &["maturin>=1.8,<2"];
+/// What builds the wheel, and reads what is in Python.
+pub(crate) const BUILD: &[&str] = &["maturin>=1.8,<2", "ruff>=0.14,<1"];
 /// What the tests import.
 const TEST: &[&str] =
-    &["numpy", "pytest", "hypothesis", "trimesh", "pillow", "psutil", "matplotlib", "nbclient", "ipykernel"];
+    &["numpy", "pytest", "hypothesis", "trimesh", "pillow", "psutil", "matplotlib", "nbclient", "ipykernel", "laspy[lazrs]", "mlcroissant"];
 /// What the step of its own imports: large, and not there for every Python.
 const RAY: &[&str] = &["ray>=2"];
 
@@ -38,6 +38,7 @@ pub(crate) fn test(tested: bool) -> Outcome {
     debug_burgeon(tested)?;
     let started = Instant::now();
     install(&python, &[BUILD, TEST].concat())?;
+    lint(&python)?;
     let wheel = build(&python, &["--profile", "dev", "--features", "tested"])?;
     say(&format!("$ pip install {}", shown(&wheel)));
     let mut c = pip(&python, &["--force-reinstall", "--no-deps"]);
@@ -56,12 +57,23 @@ pub(crate) fn test(tested: bool) -> Outcome {
     Ok(())
 }
 
+/// Lints what is in Python (`apps/ruff.toml`), and checks how it is written.
+pub(crate) fn lint(python: &Path) -> Outcome {
+    for how in [&["check", "--quiet"][..], &["format", "--check", "--quiet"]] {
+        say(&format!("$ ruff {} (in apps)", how.join(" ")));
+        let mut c = prepare(python, &["-m", "ruff"]);
+        c.args(how).args(["python", "blender"]).current_dir(repository().join("apps"));
+        finish(c)?;
+    }
+    Ok(())
+}
+
 fn package() -> PathBuf {
     repository().join("apps/python")
 }
 
 /// The Python of a virtual environment of our own, made if it is not there; none without a Python to make it with.
-fn environment() -> Outcome<Option<PathBuf>> {
+pub(crate) fn environment() -> Outcome<Option<PathBuf>> {
     let folder = target_dir().join("python");
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     if output(prepare(&python, &["-c", "import pip"])).is_ok() {
@@ -86,7 +98,7 @@ fn environment() -> Outcome<Option<PathBuf>> {
 const USABLE: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 9))";
 
 /// Packages, unless they were installed before.
-fn install(python: &Path, packages: &[&str]) -> Outcome {
+pub(crate) fn install(python: &Path, packages: &[&str]) -> Outcome {
     let stamp = target_dir().join("python").join(format!("installed-{}", packages.len()));
     let wanted = packages.join("\n");
     if std::fs::read_to_string(&stamp).is_ok_and(|there| there == wanted) {
@@ -99,14 +111,14 @@ fn install(python: &Path, packages: &[&str]) -> Outcome {
     std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", shown(&stamp)))
 }
 
-fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
+pub(crate) fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
     let mut c = prepare(python, &["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
     c.args(extra);
     c
 }
 
 /// The wheel that maturin builds with these options.
-fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
+pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     let out = target_dir().join("wheels");
     let _ = std::fs::remove_dir_all(&out);
     say(&format!("$ maturin build {} (in apps/python)", options.join(" ")));

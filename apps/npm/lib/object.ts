@@ -162,37 +162,39 @@ export class Looks {
     return out;
   }
 
-  private geometry(arrays: PartArrays, indices: Uint32Array): Three.BufferGeometry {
-    const { three } = this;
-    const geometry = new three.BufferGeometry();
-    const set = (name: string, array: Float32Array, size: number): void => {
-      if (array.length > 0) geometry.setAttribute(name, new three.BufferAttribute(array, size));
-    };
-    set('position', arrays.positions, 3);
-    set('normal', arrays.normals, 3);
-    set('uv', arrays.uvs, 2);
-    set('color', arrays.colors, 3);
-    set('_wind', arrays.wind, 4);
-    set('_pivot', arrays.pivots, 3);
-    geometry.setIndex(new three.BufferAttribute(indices, 1));
+  /** A geometry of those of its columns that there are. */
+  private columns(indices: Uint32Array, of: Record<string, [Float32Array, number]>): Three.BufferGeometry {
+    const geometry = new this.three.BufferGeometry();
+    for (const [name, [array, size]] of Object.entries(of)) {
+      if (array.length > 0) geometry.setAttribute(name, new this.three.BufferAttribute(array, size));
+    }
+    geometry.setIndex(new this.three.BufferAttribute(indices, 1));
     return geometry;
+  }
+
+  private geometry(arrays: PartArrays, indices: Uint32Array): Three.BufferGeometry {
+    return this.columns(indices, {
+      position: [arrays.positions, 3],
+      normal: [arrays.normals, 3],
+      uv: [arrays.uvs, 2],
+      color: [arrays.colors, 3],
+      _wind: [arrays.wind, 4],
+      _pivot: [arrays.pivots, 3],
+    });
   }
 
   private instanced(copies: Copies, material: Three.Material): Three.InstancedMesh {
     const { three } = this;
-    const geometry = new three.BufferGeometry();
-    const set = (name: string, array: Float32Array, size: number): void => {
-      if (array.length > 0) geometry.setAttribute(name, new three.BufferAttribute(array, size));
-    };
-    set('position', copies.positions, 3);
-    set('normal', copies.normals, 3);
-    set('uv', copies.uvs, 2);
-    set('color', copies.colors, 3);
-    set('_flutter', copies.flutter, 1);
+    const geometry = this.columns(copies.indices, {
+      position: [copies.positions, 3],
+      normal: [copies.normals, 3],
+      uv: [copies.uvs, 2],
+      color: [copies.colors, 3],
+      _flutter: [copies.flutter, 1],
+    });
     if (copies.sways.length > 0) {
       geometry.setAttribute('_sway', new three.InstancedBufferAttribute(copies.sways, 3));
     }
-    geometry.setIndex(new three.BufferAttribute(copies.indices, 1));
     const mesh = new three.InstancedMesh(geometry, material, copies.matrices.length / 16);
     mesh.instanceMatrix = new three.InstancedBufferAttribute(copies.matrices, 16);
     mesh.instanceColor = new three.InstancedBufferAttribute(copies.tints, 3);

@@ -21,6 +21,7 @@ from .model import Cloud, Masks, Model, Part
 from .plant import PARTS, Axes, Nodes, Organs, Plant
 
 __all__ = [
+    "PARTS",
     "Axes",
     "BudgetError",
     "BurgeonError",
@@ -32,10 +33,10 @@ __all__ = [
     "Model",
     "Nodes",
     "Organs",
-    "PARTS",
     "Part",
     "Plant",
     "SpecError",
+    "__version__",
     "bloom",
     "dataset",
     "forest",
@@ -46,7 +47,6 @@ __all__ = [
     "schema",
     "set_threads",
     "sketch",
-    "__version__",
 ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
 from typing import Iterable, Tuple
@@ -28,7 +29,5 @@ def write_whole(folder: str, files: "Iterable[Tuple[str, bytes]]") -> None:
         drafts = []
     finally:
         for draft, _ in drafts:
-            try:
+            with contextlib.suppress(OSError):
                 os.unlink(draft)
-            except OSError:
-                pass

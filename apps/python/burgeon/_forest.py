@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 from . import _burgeon
 from ._files import write_whole
 from .makers import SpecText, grow
-from .model import Cloud, Model, array
+from .model import Cloud, Model, seen
 from .plant import Plant
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class ForestCloud(NamedTuple):
 class Forest:
     """Plants and the places at which copies of them stand. Nothing changes it."""
 
-    __slots__ = ("plants", "places", "seed", "_raw", "_known")
+    __slots__ = ("_known", "_raw", "places", "plants", "seed")
 
     plants: "List[Plant]"
     """The different plants."""
@@ -134,8 +134,7 @@ class Forest:
         seed: "int | None" = None,
     ) -> ForestCloud:
         """The forest as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
-        columns = self._raw.survey(points, stations, elevation, noise, self.seed if seed is None else seed)
-        return ForestCloud(**{name: array(column) for name, column in columns.items()})
+        return ForestCloud(**seen(self, points, stations, elevation, noise, seed))
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
         """A picture: see ``Model.render``."""

@@ -26,9 +26,9 @@ __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 RECIPE = "burgeon.dataset/1"
 MAKERS = ("grow", "bloom", "leaf", "forest")
 """What makes the plants; a plant of ``forest`` is a tile of trees."""
-FORMATS = ("glb", "mtg", "opf", "qsm", "burgeon", "cloud", "picture")
-"""Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``), picture with masks and depth
-(``.png``, ``.masks.npz``)."""
+FORMATS = ("glb", "mtg", "opf", "qsm", "burgeon", "cloud", "laz", "drawing", "picture")
+"""Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
+would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
 
 
 def plant_seed(seed: int, index: int) -> int:
@@ -143,7 +143,7 @@ def _recipe(
         raise ValueError(f"maker must be one of {', '.join(MAKERS)}, not {maker!r}")
     if isinstance(formats, str):
         formats = (formats,)
-    known = ("glb", "cloud") if maker == "forest" else FORMATS
+    known = ("glb", "cloud", "laz") if maker == "forest" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
         raise ValueError(f"formats are {', '.join(known)}, not {unknown or 'none'}")
@@ -280,9 +280,13 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
     plant = make(_spec(recipe["spec"]), seed=seed, **fields)
     about = {"seed": seed, "index": index, "fields": drawn, "digest": plant.digest, "measures": plant.measures()}
     files = [("json", _json(about))]
+    clouds = {"cloud": "cloud.npz", "laz": "laz"}
+    cloud = plant.cloud(**recipe["cloud"]) if any(kind in clouds for kind in recipe["formats"]) else None
     for kind in recipe["formats"]:
-        if kind == "cloud":
-            files.append(("cloud.npz", plant.cloud(**recipe["cloud"]).to_bytes()))
+        if kind in clouds:
+            files.append((clouds[kind], cloud.to_bytes(clouds[kind].split(".")[-1])))
+        elif kind == "drawing":
+            files.append(("svg", plant.drawing().to_svg()))
         elif kind == "picture":
             from ._npz import npz
 
@@ -323,9 +327,7 @@ TRIES = 5
 """How often a shard is tried whose worker was killed."""
 
 
-def _with_processes(
-    recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]"
-) -> "Iterator[int]":
+def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from concurrent.futures.process import BrokenProcessPool
@@ -355,9 +357,7 @@ def _with_processes(
             raise RuntimeError(f"workers were killed {TRIES} times in a row; is there too little memory for {len(left)} shards?")
 
 
-def _with_ray(
-    recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]"
-) -> "Iterator[int]":
+def _with_ray(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
     try:
         import ray
     except ImportError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["BurgeonError", "SpecError", "BudgetError"]
+__all__ = ["BudgetError", "BurgeonError", "SpecError"]
 
 
 class BurgeonError(Exception):

@@ -49,9 +49,7 @@ def _text(path: str) -> str:
         return file.read()
 
 
-def _asked(
-    seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]"
-) -> "Dict[str, Any]":
+def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
         raise ValueError(f"seed must be a whole number, 0 to 2^64 - 1, not {seed!r}")
     return {
@@ -248,12 +246,15 @@ def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
     return lines
 
 
-def open(path: "str | os.PathLike[str]", *, budget: float = 1.0) -> "List[Plant]":
-    """The plants of a project of the Studio (``.burgeon``) that are not hidden, each as it was made there."""
+def open(path: "str | os.PathLike[str]", *, wind: bool = False, budget: float = 1.0) -> "List[Plant]":
+    """The plants of a project of the Studio (``.burgeon``) that are not hidden, each as it was made there.
+
+    ``plant.place`` says where each stands; ``wind``: with columns for wind.
+    """
     import builtins
 
     with builtins.open(path, "rb") as file:
-        return [Plant(raw) for raw in _burgeon.open_project(file.read(), budget)]
+        return [Plant(raw) for raw in _burgeon.open_project(file.read(), budget, wind)]
 
 
 def schema(maker: str) -> "Dict[str, Any]":

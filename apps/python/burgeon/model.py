@@ -27,14 +27,15 @@ class Part:
     An array keeps the memory it looks at; the plant and the model may go.
     """
 
-    __slots__ = ("_raw", "_row", "name", "material")
+    __slots__ = ("_raw", "_row", "material", "name")
 
     def __init__(self, raw: Any, row: int, name: str, material: "Dict[str, Any]") -> None:
         self._raw, self._row = raw, row
         self.name = name
         """Unique within the model, such as ``leaves``."""
         self.material = material
-        """``name``, ``kind``, ``base_color`` (linear RGB), ``roughness``, ``double_sided``, ``cut_out`` and ``texture``."""
+        """``name``, ``kind``, ``base_color`` (linear RGB), ``roughness``, ``translucency`` (share of light that passes),
+        ``double_sided``, ``cut_out``; ``texture`` and the maps ``normal``, ``orm``, ``height``, ``through`` (``maps``)."""
 
     def _column(self, name: str) -> "np.ndarray":
         return array(self._raw.column(self._row, name))
@@ -80,6 +81,13 @@ class Part:
         column = self.material["texture"]
         return None if column is None else array(column)
 
+    @property
+    def maps(self) -> "Dict[str, np.ndarray]":
+        """The textures beside the colour that there are, (height, width, 4) uint8 as glTF has them: ``normal``, ``orm``
+        (occlusion, roughness), ``height``, ``through`` (in alpha, multiplied with the translucency)."""
+        names = ("normal", "orm", "height", "through")
+        return {name: array(self.material[name]) for name in names if self.material[name] is not None}
+
     def __repr__(self) -> str:
         return f"<burgeon.Part {self.name!r}: {len(self.vertices):,} vertices, {len(self.faces):,} triangles>"
 
@@ -118,17 +126,30 @@ class Cloud(NamedTuple):
     """(n,) float32: metres from the scanner, without noise."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
-        """Writes all columns to a ``.npz`` file (NumPy), whole or not at all."""
+        """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): whole or not
+        at all."""
         folder, name = os.path.split(os.fspath(path))
-        if not name.endswith(".npz"):
-            raise ValueError(f"clouds are written as .npz, not {name!r}")
-        write_whole(folder, [(name, self.to_bytes())])
+        write_whole(folder, [(name, self.to_bytes(os.path.splitext(name)[1]))])
 
-    def to_bytes(self) -> bytes:
-        """The ``.npz`` file of all columns, the same bytes for the same cloud."""
-        from ._npz import npz
+    def to_bytes(self, extension: str = "npz") -> bytes:
+        """The file of a format, ``npz``, ``las`` or ``laz``: the same bytes for the same cloud."""
+        extension = extension.lower().lstrip(".")
+        if extension == "npz":
+            from ._npz import npz
 
-        return npz(self._asdict())
+            return npz(self._asdict())
+        if extension in ("las", "laz"):
+            from ._las import las
+
+            return las(self._asdict(), extension == "laz")
+        raise ValueError(f"clouds are written as .npz, .las or .laz, not .{extension}")
+
+
+def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
+    """The columns of the cloud of a plant or of a forest."""
+    scan = {"points": points, "stations": stations, "elevation": elevation, "noise": noise}
+    columns = of._raw.survey({**scan, "seed": of.seed if seed is None else seed})
+    return {name: array(column) for name, column in columns.items()}
 
 
 Look = Dict[str, Any]
@@ -160,7 +181,7 @@ def look(
 class Model:
     """Meshes and materials. Nothing changes it."""
 
-    __slots__ = ("_raw", "_parts")
+    __slots__ = ("_parts", "_raw")
 
     def __init__(self, raw: Any) -> None:
         self._raw = raw

@@ -7,8 +7,9 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 
 from . import _burgeon
+from ._drawing import Drawing, draw
 from ._files import write_whole
-from .model import Cloud, Masks, Model, array, look
+from .model import Cloud, Masks, Model, array, look, seen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,7 +20,7 @@ __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 class _Table:
     """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
 
-    __slots__ = ("_raw", "_known")
+    __slots__ = ("_known", "_raw")
     _prefix = ""
     _columns: "Tuple[str, ...]" = ()
 
@@ -172,7 +173,7 @@ class Organs(_Table):
 class Plant:
     """A plant of any maker. Nothing changes it: ``shape`` and ``at`` give others. Threads may share it."""
 
-    __slots__ = ("_raw", "_known")
+    __slots__ = ("_known", "_raw")
 
     def __init__(self, raw: Any) -> None:
         self._raw = raw
@@ -217,6 +218,21 @@ class Plant:
     def spec(self) -> "Dict[str, Any]":
         """All that its maker was asked for, defaults too."""
         return json.loads(self._raw.spec())
+
+    @property
+    def place(self) -> "Tuple[Tuple[float, float, float], float, float]":
+        """Where it stands in the project that it was opened from: position in metres, turn about +y in degrees, scale."""
+        position, yaw, scale = self._raw.place
+        return (position[0], position[1], position[2]), yaw, scale
+
+    @property
+    def front(self) -> "Optional[Tuple[float, Tuple[float, float]]]":
+        """Of a drawing: metres for each of its units, and the point (x, y, y upwards) of it at which the plant stands.
+
+        The front view of the model is the drawing: ``plant_xy = (drawing_xy - point) * metres``.
+        """
+        front = self._raw.front
+        return None if front is None else (front[0], (front[1][0], front[1][1]))
 
     def measures(self) -> "Dict[str, Any]":
         """What can be measured, in SI units (docs/measures.md): ``height_m``, ``dbh_m``, ``leaf_area_m2`` and so on.
@@ -284,8 +300,14 @@ class Plant:
         ``elevation``: how far above the horizon of its middle they stand, degrees, -80 to 80; ``noise``: standard
         deviation of the distance, metres, 0 to 1; ``seed``: of the choice of points and of noise (the plant's).
         """
-        columns = self._raw.survey(points, stations, elevation, noise, self.seed if seed is None else seed)
-        return Cloud(**{name: array(column) for name, column in columns.items()})
+        return Cloud(**seen(self, points, stations, elevation, noise, seed))
+
+    def drawing(self) -> Drawing:
+        """What a person would have drawn of it, seen from the front: stems, outlines of leaves and petals, or the crown.
+
+        ``plant.drawing().save("x.svg")`` writes it; ``sketch`` reads it.
+        """
+        return draw(self)
 
     def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Masks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
@@ -312,7 +334,7 @@ class Plant:
             with open(edits, encoding="utf-8") as file:
                 edits = json.load(file)
         if isinstance(edits, dict):
-            edits = edits["edits"] if "edits" in edits else [edits]
+            edits = edits.get("edits", [edits])
         return Plant(self._raw.shape(list(edits)))
 
     def at(self, day: float) -> "Plant":
@@ -338,7 +360,7 @@ class Plant:
         return read_mtg(text)
 
     def to_bytes(self, extension: str, unit: str = "m", up: "Optional[str]" = None) -> bytes:
-        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (cylinders as a table), ``burgeon`` (a project of the Studio)."""
+        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (a table of cylinders), ``burgeon`` (a project)."""
         extension = extension.lower().lstrip(".")
         if extension in ("mtg", "opf", "qsm"):
             return bytes(self._raw.structure(extension, unit, up or "z"))

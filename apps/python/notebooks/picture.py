@@ -2,15 +2,14 @@
 
 import pathlib
 
-import burgeon as bg
 import numpy as np
 from PIL import Image
 
+import burgeon as bg
+
 SIZE = (420, 560)
 VIEW = dict(view="orbit", azimuth=30, elevation=8)
-COLOURS = np.uint8(
-    [[94, 60, 36], [178, 112, 54], [120, 150, 60], [160, 170, 70], [110, 80, 60], [74, 150, 58], [214, 92, 140]]
-)
+COLOURS = np.uint8([[94, 60, 36], [178, 112, 54], [120, 150, 60], [160, 170, 70], [110, 80, 60], [74, 150, 58], [214, 92, 140]])
 ORDERS = np.uint8([[60, 42, 110], [46, 110, 160], [40, 160, 120], [160, 190, 60], [230, 160, 50], [220, 90, 60]])
 
 
@@ -25,9 +24,7 @@ def main():
     orders[seen] = ORDERS[np.minimum(order[seen], len(ORDERS) - 1)]
     cloud = tree.cloud(30_000, stations=3, noise=0.004)
     sheet = Image.fromarray(np.hstack([picture, organs, orders, drawn(cloud)]))
-    sheet.quantize(160).save(
-        pathlib.Path(__file__).resolve().parents[3] / "docs/pictures/python.png", optimize=True
-    )
+    sheet.quantize(160).save(pathlib.Path(__file__).resolve().parents[3] / "docs/pictures/python.png", optimize=True)
 
 
 def drawn(cloud):

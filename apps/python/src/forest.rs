@@ -6,7 +6,7 @@ use burgeon::document::Placement;
 use burgeon::formats::PngCache;
 use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
-use burgeon::{Seed, Stood, SurveySpec};
+use burgeon::{Seed, Stood};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -16,7 +16,7 @@ use crate::compute::compute;
 use crate::fault::{refused, unusable};
 use crate::held::Held;
 use crate::model::RawModel;
-use crate::plant::{RawPlant, cloud};
+use crate::plant::{RawPlant, Scan, cloud};
 
 /// More plants are no stand that a scanner sees at once.
 const MOST: usize = 2000;
@@ -109,23 +109,15 @@ impl RawForest {
     }
 
     /// Points as a scanner around all of it sees them; `tree` is the place.
-    fn survey<'py>(
-        &self,
-        py: Python<'py>,
-        points: u32,
-        stations: u32,
-        elevation_deg: f64,
-        noise_m: f64,
-        seed: u64,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let spec = SurveySpec { points, stations, elevation_deg, noise_m };
+    fn survey<'py>(&self, py: Python<'py>, scan: Scan) -> PyResult<Bound<'py, PyDict>> {
+        let (spec, seed) = scan.spec();
         let made = compute(py, 1.0, |run| {
             let standing = self.standing();
             let stood = standing.iter().zip(&self.stand).filter_map(|(standing, (row, _))| {
                 let held = self.plants.get(*row)?;
                 Some(Stood { standing: *standing, plant: held.plant(), layout: held.layout() })
             });
-            burgeon::survey_stand(&stood.collect::<Vec<_>>(), &spec, Seed::new(seed), run)
+            burgeon::survey_stand(&stood.collect::<Vec<_>>(), &spec, seed, run)
         })?;
         let (seen, trees) = made.map_err(|e| refused(py, &e))?;
         let dict = cloud(py, seen)?;

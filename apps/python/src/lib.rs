@@ -38,7 +38,7 @@ mod _burgeon {
         sketch,
     };
     #[pymodule_export]
-    use crate::model::{RawModel, png};
+    use crate::model::{RawModel, drawing_svg, png};
     #[pymodule_export]
     use crate::plant::RawPlant;
 

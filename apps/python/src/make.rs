@@ -408,12 +408,16 @@ pub(crate) fn sketch(
 
 /// Every plant of a project of the Studio that is not hidden.
 #[pyfunction]
-pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64) -> PyResult<Vec<RawPlant>> {
+pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64, wind: bool) -> PyResult<Vec<RawPlant>> {
     let document = burgeon::document::read_project(bytes).map_err(|e| unusable(py, &e))?;
     let seen = document.plants().iter().filter(|p| !p.settings().hidden);
     let ids: Vec<PlantId> = seen.map(burgeon::document::DocumentPlant::id).collect();
     ids.into_iter()
-        .map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget).map(RawPlant))
+        .map(|id| {
+            let mut scene = SceneEvaluator::default();
+            scene.set_wind(wind);
+            Held::make(py, scene, document.clone(), id, budget).map(RawPlant)
+        })
         .collect()
 }
 

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, Layer, Stroke};
 use burgeon::mesh::Model;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::{Digest, Report, Seed, Unit, UpAxis};
@@ -177,7 +179,7 @@ impl RawModel {
         })
     }
 
-    /// Each material as a dict; its texture as (width, height, RGBA column) or None.
+    /// Each material as a dict; its textures as RGBA columns or None.
     fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let material = |m: &burgeon::mesh::Material| {
             let dict = PyDict::new(py);
@@ -185,13 +187,23 @@ impl RawModel {
             dict.set_item("kind", m.kind.word())?;
             dict.set_item("base_color", m.base_color.to_vec())?;
             dict.set_item("roughness", m.roughness)?;
+            dict.set_item("translucency", m.translucency)?;
             dict.set_item("double_sided", m.double_sided)?;
             dict.set_item("cut_out", m.alpha == burgeon::mesh::AlphaMode::Mask)?;
-            let texture = m.texture.as_ref().map(|t| {
-                let shape = [t.height as usize, t.width as usize, 4];
-                Column::of(t.clone(), &t.pixels).shaped(&shape)
-            });
-            dict.set_item("texture", texture.map(|t| Py::new(py, t)).transpose()?)?;
+            let textures = [
+                ("texture", &m.texture),
+                ("normal", &m.maps.normal),
+                ("orm", &m.maps.orm),
+                ("height", &m.maps.height),
+                ("through", &m.maps.through),
+            ];
+            for (name, texture) in textures {
+                let column = texture.as_ref().map(|t| {
+                    let shape = [t.height as usize, t.width as usize, 4];
+                    Py::new(py, Column::of(t.clone(), &t.pixels).shaped(&shape))
+                });
+                dict.set_item(name, column.transpose()?)?;
+            }
             Ok(dict)
         };
         self.get().materials.iter().map(material).collect()
@@ -299,6 +311,28 @@ pub(crate) fn png<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let mut bytes = Vec::new();
     let written = py.detach(|| burgeon::formats::write_png(width, height, pixels, &mut bytes));
+    written.map_err(|e| unusable(py, &e))?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// Lines (x, y upwards) as a drawing's SVG; each lies on the layer of its word.
+#[pyfunction]
+pub(crate) fn drawing_svg<'py>(
+    py: Python<'py>,
+    name: &str,
+    lines: Vec<(String, Vec<[f64; 2]>)>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let mut drawing = Drawing { name: name.to_owned(), ..Drawing::default() };
+    for (word, line) in lines {
+        let layer: Arc<str> = word.into();
+        if drawing.layers.iter().all(|l| l.name != layer) {
+            drawing.layers.push(Layer { name: Arc::clone(&layer), ..Layer::default() });
+        }
+        let samples = line.into_iter().map(|p| DVec2::from_array(p).into()).collect();
+        drawing.strokes.push(Stroke { samples, layer: Some(layer), ..Stroke::default() });
+    }
+    let mut bytes = Vec::new();
+    let written = py.detach(|| burgeon::formats::write_svg(&drawing, &mut bytes));
     written.map_err(|e| unusable(py, &e))?;
     Ok(PyBytes::new(py, &bytes))
 }

@@ -43,6 +43,28 @@ pub(crate) fn cloud(py: Python<'_>, cloud: Surveyed) -> PyResult<Bound<'_, PyDic
     Ok(dict)
 }
 
+/// How a scanner stands around plants, as Python asks for it.
+#[derive(FromPyObject)]
+pub(crate) struct Scan {
+    #[pyo3(item)]
+    points: u32,
+    #[pyo3(item)]
+    stations: u32,
+    #[pyo3(item)]
+    elevation: f64,
+    #[pyo3(item)]
+    noise: f64,
+    #[pyo3(item)]
+    seed: u64,
+}
+
+impl Scan {
+    pub(crate) fn spec(&self) -> (SurveySpec, Seed) {
+        let Self { points, stations, elevation, noise, seed } = *self;
+        (SurveySpec { points, stations, elevation_deg: elevation, noise_m: noise }, Seed::new(seed))
+    }
+}
+
 #[pymethods]
 impl RawPlant {
     #[getter]
@@ -153,20 +175,12 @@ impl RawPlant {
     }
 
     /// Points as a scanner sees them.
-    fn survey<'py>(
-        &self,
-        py: Python<'py>,
-        points: u32,
-        stations: u32,
-        elevation_deg: f64,
-        noise_m: f64,
-        seed: u64,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let spec = SurveySpec { points, stations, elevation_deg, noise_m };
+    fn survey<'py>(&self, py: Python<'py>, scan: Scan) -> PyResult<Bound<'py, PyDict>> {
+        let (spec, seed) = scan.spec();
         let held = &self.0;
         let made = compute(py, held.budget, |run| {
             let of = (held.plant(), held.model(), held.layout());
-            burgeon::survey(of, &spec, Seed::new(seed), run)
+            burgeon::survey(of, &spec, seed, run)
         })?;
         cloud(py, made.map_err(|e| refused(py, &e))?)
     }
@@ -225,6 +239,19 @@ impl RawPlant {
     #[getter]
     fn days(&self) -> Option<[f64; 2]> {
         self.0.scene.days(self.0.id, &self.0.document)
+    }
+
+    /// Where it stands in its document: x, y, z, turn about +Y in degrees, scale.
+    #[getter]
+    fn place(&self) -> ([f64; 3], f64, f64) {
+        let place = self.0.document.plant(self.0.id).map(|p| p.settings().placement).unwrap_or_default();
+        (place.position.to_array(), place.yaw_deg, place.scale)
+    }
+
+    /// Of a drawing: metres for each of its units, and the point of it that is the plant's origin.
+    #[getter]
+    fn front(&self) -> Option<(f64, [f64; 2])> {
+        self.0.shown()?.front.map(|f| (f.metres_per_unit, f.origin.to_array()))
     }
 
     /// The plant as a project of the Studio.

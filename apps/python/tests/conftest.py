@@ -27,8 +27,12 @@ def program():
 @pytest.fixture(scope="session")
 def shown(program):
     """The TOML of a preset."""
-    show = lambda word: [program, "presets", "--show", word]
-    return lambda word: subprocess.run(show(word), capture_output=True, text=True, check=True).stdout
+
+    def show(word):
+        asked = [program, "presets", "--show", word]
+        return subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+
+    return show
 
 
 @pytest.fixture(scope="session")

@@ -71,8 +71,14 @@ def test_bad_input_is_told(call, words):
 def test_too_much_is_refused_at_once():
     started = time.perf_counter()
     with pytest.raises(bg.BudgetError) as told:
-        bg.grow(method={"kind": "colonization", "envelope": {"shape": "sphere", "radius_m": 3.0, "centre": [0, 5, 0]}, "points": 9_000_000},
-                roots=[[x, 0, z] for x in range(10) for z in range(10)])
+        bg.grow(
+            method={
+                "kind": "colonization",
+                "envelope": {"shape": "sphere", "radius_m": 3.0, "centre": [0, 5, 0]},
+                "points": 9_000_000,
+            },
+            roots=[[x, 0, z] for x in range(10) for z in range(10)],
+        )
     assert told.value.code == "over-budget" and time.perf_counter() - started < 5
 
 
@@ -148,13 +154,16 @@ def test_threads_change_nothing(small):
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 def test_a_process_that_is_forked_off_grows_plants():
-    assert python(
-        "import os, burgeon as bg\n"
-        "bg.set_threads(2); a = bg.grow('hazel', age=3, detail=.2).digest\n"
-        "pid = os.fork()\n"
-        "if pid == 0: os._exit(0 if bg.grow('hazel', age=3, detail=.2).digest == a else 3)\n"
-        "print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))"
-    ) == "0"
+    assert (
+        python(
+            "import os, burgeon as bg\n"
+            "bg.set_threads(2); a = bg.grow('hazel', age=3, detail=.2).digest\n"
+            "pid = os.fork()\n"
+            "if pid == 0: os._exit(0 if bg.grow('hazel', age=3, detail=.2).digest == a else 3)\n"
+            "print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))"
+        )
+        == "0"
+    )
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")

@@ -1,8 +1,11 @@
 """Data sets: the same bytes on one process, on several, after some were killed; only what is missing is made again."""
 
 import hashlib
+import io
 import json
 import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -152,6 +155,45 @@ def test_processes_that_are_killed_are_replaced(tmp_path):
     got = dataset.generate("hazel", 8, tmp_path / "b", workers=2, **LONG)
     assert killer.killed, "no worker was killed"
     assert got == want and sums(tmp_path / "a") == sums(tmp_path / "b")
+
+
+def test_drawings_and_laz(tmp_path, program):
+    laspy = pytest.importorskip("laspy")
+    how = {**HOW, "formats": ("cloud", "laz", "drawing"), "picture": None}
+    first = dataset.generate("hazel", 4, tmp_path / "a", workers=1, **how)
+    assert dataset.generate("hazel", 4, tmp_path / "b", workers=2, **how)["shards"] == first["shards"]
+    for plant in dataset.read(tmp_path / "a"):
+        cloud, file = plant["cloud"], laspy.read(io.BytesIO(plant["laz"]))
+        x, y, z = cloud["points"].T
+        assert np.abs(np.array([file.x - x, file.y + z, file.z - y])).max() <= 0.000051
+        for name in ("part", "axis", "organ", "order", "distance"):
+            assert np.array_equal(file[name], cloud[name]) and file[name].dtype == cloud[name].dtype
+        assert np.array_equal(file.point_source_id, cloud["station"])
+        again = bg.grow("hazel", seed=plant["seed"], detail=0.1, textures=False, **plant["fields"])
+        assert plant["svg"] == again.drawing().to_svg()
+    # The command reads it, too.
+    tree = bg.grow("oak", seed=2, age=12, detail=0.2, textures=False, bare=True)
+    tree.cloud(60_000, stations=6).save(tmp_path / "oak.laz")
+    report = tmp_path / "report.json"
+    subprocess.run([program, "scan", tmp_path / "oak.laz", "-o", tmp_path / "oak.glb", "--report", report], check=True)
+    assert json.loads(report.read_text())["items"]
+    with pytest.raises(ValueError, match=r"written as \.npz, \.las or \.laz, not \.xyz"):
+        tree.cloud(100).save(tmp_path / "oak.xyz")
+    with pytest.raises(ValueError, match="formats are glb, cloud, laz"):
+        dataset.generate("hazel", 1, tmp_path / "c", maker="forest", formats="drawing", progress=False)
+
+
+def test_laspy_that_is_missing_is_told(monkeypatch):
+    monkeypatch.setitem(sys.modules, "laspy", None)
+    with pytest.raises(ImportError, match=r"burgeon\[laz\]"):
+        bg.leaf().cloud(100).to_bytes("laz")
+
+
+def test_croissant_is_what_its_authors_check(made):
+    croissant = pytest.importorskip("mlcroissant")
+    own = croissant.Dataset(jsonld=str(made[0] / "croissant.json"))
+    assert own.metadata.issues.errors == set()
+    assert len(own.metadata.distribution) == 3
 
 
 @pytest.mark.ray
