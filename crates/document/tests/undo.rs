@@ -275,7 +275,7 @@ fn command() -> BoxedStrategy<Command> {
 
 #[derive(Clone, Debug)]
 enum Act {
-    Run(Command),
+    Run(Box<Command>),
     Gesture(Vec<Command>, bool),
     Undo,
     Redo,
@@ -283,7 +283,7 @@ enum Act {
 
 fn act() -> impl Strategy<Value = Act> {
     prop_oneof![
-        6 => command().prop_map(Act::Run),
+        6 => command().prop_map(|c| Act::Run(Box::new(c))),
         2 => (vec(command(), 0..4), any::<bool>()).prop_map(|(c, keep)| Act::Gesture(c, keep)),
         2 => Just(Act::Undo),
         1 => Just(Act::Redo),
@@ -303,7 +303,7 @@ proptest! {
             match act {
                 Act::Run(command) => {
                     let steps = editor.done().len();
-                    if editor.run(command).is_ok() {
+                    if editor.run(*command).is_ok() {
                         prop_assert!(editor.revision() > revision);
                         let after = editor.document().clone();
                         prop_assert!(editor.undo().is_some());
