@@ -75,7 +75,8 @@ def draw(plant: "Plant") -> Drawing:
     """A plant from the front, as a line drawing.
 
     Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
-    outlines; of a plant that shows many, trunk and the limbs that it does not hide are drawn, and around the foliage the outline of the crown.
+    outlines; of a plant that shows many, trunk and those limbs that foliage does not hide are drawn, and around the foliage
+    the outline of the crown.
     """
     import numpy as np
 
@@ -86,7 +87,8 @@ def draw(plant: "Plant") -> Drawing:
     large = counts >= LARGE * SIZE**2
     size = max(float(np.ptp(np.array(_bounds(plant)), axis=0).max()), 1e-9)
     if large.sum() <= MOST_ORGANS and 2 * counts[large].sum() >= counts.sum():
-        lines = _stems(plant, sorted(wood), size) + _organs(plant, dict(zip(organs[large].tolist(), counts[large].tolist())), size)
+        seen = dict(zip(organs[large].tolist(), counts[large].tolist()))
+        lines = _stems(plant, sorted(wood), size) + _organs(plant, seen, size)
     else:
         lines = [*_stems(plant, _limbs(plant, wood, size / SIZE), size), Line("crown", _crown(plant.organs.position), -1)]
     return Drawing(plant.name, lines)
