@@ -159,9 +159,11 @@ def _organs(plant: "Plant", seen: "Dict[int, int]", size: float) -> "List[Line]"
             faces = part.faces[order[start:end]]
             points = part.vertices.astype(np.float64)
             depth = float(points[np.unique(faces), 2].mean())
-            middle = _middle(points[np.unique(faces), :2]) if part_of[row] in thin else None
-            if middle is not None:
-                found[row] = (depth, Line("stalk", middle, row))
+            if part_of[row] in thin:
+                # What is short and wide, such as the foot of a flower, is behind what it bears.
+                middle = _middle(points[np.unique(faces), :2])
+                if middle is not None:
+                    found[row] = (depth, Line("stalk", middle, row))
                 continue
             outline = _outline(points[:, :2], faces)
             if outline is None:
