@@ -49,6 +49,11 @@ fn build(tools: &Tools, release: bool) -> Outcome {
         bindgen(tools, &wasm, "web", &to)?;
         copy(&to, &dist.join(place))?;
     }
+    say("$ biome check (in apps/npm)");
+    let mut c =
+        prepare("node", &["node_modules/@biomejs/biome/bin/biome", "check", "--error-on-warnings", "."]);
+    c.current_dir(folder());
+    finish(c)?;
     say("$ tsc (in apps/npm)");
     let mut c = prepare("node", &["node_modules/typescript/bin/tsc", "-p", "."]);
     c.current_dir(folder());

@@ -11,8 +11,19 @@ use crate::toolchain::{apt_install, is_root_on_debian, shown};
 /// What builds the wheel, and reads what is in Python.
 pub(crate) const BUILD: &[&str] = &["maturin>=1.8,<2", "ruff>=0.14,<1"];
 /// What the tests import.
-const TEST: &[&str] =
-    &["numpy", "pytest", "hypothesis", "trimesh", "pillow", "psutil", "matplotlib", "nbclient", "ipykernel", "laspy[lazrs]", "mlcroissant"];
+const TEST: &[&str] = &[
+    "numpy",
+    "pytest",
+    "hypothesis",
+    "trimesh",
+    "pillow",
+    "psutil",
+    "matplotlib",
+    "nbclient",
+    "ipykernel",
+    "laspy[lazrs]",
+    "mlcroissant",
+];
 /// What the step of its own imports: large, and not there for every Python.
 const RAY: &[&str] = &["ray>=2"];
 

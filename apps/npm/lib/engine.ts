@@ -76,7 +76,9 @@ export function beside(spawn: () => Worker): Engine {
     };
     made.onerror = ({ message }) => {
       stop();
-      jobs.shift()?.reject(new Error(`the worker of burgeon could not go on: ${message ?? 'it did not load'}`));
+      jobs
+        .shift()
+        ?.reject(new Error(`the worker of burgeon could not go on: ${message ?? 'it did not load'}`));
       next();
     };
     return made;

@@ -20,7 +20,8 @@ export class BurgeonError extends Error {
     this.code = refusal.code;
     this.fields = refusal.fields;
     const { field, path, name, value, range, choices } = refusal.fields;
-    this.field = field ?? ([path, refusal.code === 'spec-unknown' ? name : ''].filter(Boolean).join('.') || undefined);
+    this.field =
+      field ?? ([path, refusal.code === 'spec-unknown' ? name : ''].filter(Boolean).join('.') || undefined);
     this.value = value ?? (refusal.code === 'spec-choice' ? name : undefined);
     this.range = range ?? choices;
   }

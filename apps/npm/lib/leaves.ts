@@ -127,7 +127,8 @@ function isCopy(
 ): boolean {
   const m = organs.subarray(16 * piece.organ, 16 * piece.organ + 16);
   // Single precision, of a plant and of an organ.
-  const near = 1e-5 * (1 + Math.hypot(m[12]!, m[13]!, m[14]!)) + 1e-3 * Math.hypot(m[0]!, m[1]!, m[2]!) * 0.01;
+  const near =
+    1e-5 * (1 + Math.hypot(m[12]!, m[13]!, m[14]!)) + 1e-3 * Math.hypot(m[0]!, m[1]!, m[2]!) * 0.01;
   for (let v = 0; v < piece.count; v++) {
     const [x, y, z] = [base.positions[3 * v]!, base.positions[3 * v + 1]!, base.positions[3 * v + 2]!];
     for (let axis = 0; axis < 3; axis++) {

@@ -108,7 +108,8 @@ function common(options: Common & SkinFields & { readonly fields?: object }, mor
     skin: {
       wind: options.wind ?? true,
       fields: skin,
-      texture_size: options.texture_size === undefined ? null : whole('texture_size', options.texture_size, 4096),
+      texture_size:
+        options.texture_size === undefined ? null : whole('texture_size', options.texture_size, 4096),
     },
     lods: whole('lods', options.lods ?? 0, 6),
     ...(options.budget === undefined ? {} : { budget: options.budget }),
@@ -117,7 +118,8 @@ function common(options: Common & SkinFields & { readonly fields?: object }, mor
 }
 
 function whole(name: string, value: number, most: number): number {
-  if (!Number.isInteger(value) || value < 0 || value > most) throw wrong(name, value, `a whole number, 0 to ${most}`);
+  if (!Number.isInteger(value) || value < 0 || value > most)
+    throw wrong(name, value, `a whole number, 0 to ${most}`);
   return value;
 }
 
@@ -139,7 +141,8 @@ function text(asked: object): string {
 function points(strokes: Strokes, yUp: boolean): { points: Float64Array; counts: Uint32Array } {
   const flat = strokes.map((stroke, row) => {
     const numbers = ArrayBuffer.isView(stroke) ? Array.from(stroke as Float64Array) : stroke.flat();
-    if (numbers.length % 2 !== 0) throw wrong(`strokes[${row}]`, `${numbers.length} numbers`, 'pairs of x and y');
+    if (numbers.length % 2 !== 0)
+      throw wrong(`strokes[${row}]`, `${numbers.length} numbers`, 'pairs of x and y');
     const odd = numbers.findIndex((x) => !Number.isFinite(x));
     if (odd >= 0) throw wrong(`strokes[${row}][${odd >> 1}]`, numbers[odd], 'a finite number');
     return numbers;
@@ -188,7 +191,11 @@ export function makers(engine: Engine): Makers {
       return make({ kind: 'sketch', asked: text(asked), ...ink }, options);
     },
     async leaf(file = '', options = {}) {
-      const asked: LeafAsked = { common: common(options, ['name']), name: options.name ?? null, text: file ?? '' };
+      const asked: LeafAsked = {
+        common: common(options, ['name']),
+        name: options.name ?? null,
+        text: file ?? '',
+      };
       return make({ kind: 'leaf', asked: text(asked) }, options);
     },
     async bloom(flower = 'lily', options = {}) {

@@ -304,7 +304,8 @@ function shortened(arrays: PartArrays, indices: Uint32Array): PartArrays {
   });
   const take = (column: Float32Array, size: number): Float32Array => {
     const out = new Float32Array(column.length > 0 ? size * kept.length : 0);
-    if (column.length > 0) kept.forEach((i, k) => out.set(column.subarray(size * i, size * (i + 1)), size * k));
+    if (column.length > 0)
+      kept.forEach((i, k) => out.set(column.subarray(size * i, size * (i + 1)), size * k));
     return out;
   };
   return {

@@ -132,14 +132,17 @@ export class Plant {
   }
 
   private check({ level, wind }: ObjectOptions): void {
-    if (level !== undefined && !this.answer.levels[level]) throw wrong('level', level, `0 to ${this.levels - 1}`);
+    if (level !== undefined && !this.answer.levels[level])
+      throw wrong('level', level, `0 to ${this.levels - 1}`);
     if (typeof wind === 'number' && !(wind >= 0 && wind <= 1)) throw wrong('wind', wind, '0 to 1');
   }
 
   private shown({ three }: ObjectOptions): Looks {
     const module = three ?? found;
     if (!module) {
-      throw new Error('three.js was not found: install it (npm install three), or pass it as { three: THREE }');
+      throw new Error(
+        'three.js was not found: install it (npm install three), or pass it as { three: THREE }',
+      );
     }
     this.looks ??= new Looks(module, this.answer);
     return this.looks;

@@ -68,7 +68,10 @@ function shader(of: Blown): { head: string; body: string } {
       vec3 transformed = mix(position, blow(position), uStrength);`;
     return { head: UNIFORMS + rest, body };
   }
-  return { head: UNIFORMS + rest, body: `${plain} vec3 transformed = mix(position, blow(position), uStrength);` };
+  return {
+    head: UNIFORMS + rest,
+    body: `${plain} vec3 transformed = mix(position, blow(position), uStrength);`,
+  };
 }
 
 /** Has wind move whatever is drawn with a material. */

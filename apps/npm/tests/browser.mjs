@@ -2,7 +2,16 @@
 // three.js as it is, without a bundler; that of react-three-fiber built by Vite from the installed package. Pictures to OUT.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  cpSync,
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { createServer } from 'node:http';
 import { dirname, extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -28,24 +37,37 @@ function react() {
     symlinkSync(join(own, 'node_modules', name), to, 'junction');
   }
   const vite = join(own, 'node_modules/vite/bin/vite.js');
-  execFileSync(process.execPath, [vite, 'build', '--logLevel', 'warn', '--base', './'], { cwd: folder, stdio: 'inherit' });
+  execFileSync(process.execPath, [vite, 'build', '--logLevel', 'warn', '--base', './'], {
+    cwd: folder,
+    stdio: 'inherit',
+  });
   return join(folder, 'dist');
 }
 
-const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.json': 'application/json' };
+const TYPES = {
+  '.html': 'text/html',
+  '.js': 'text/javascript',
+  '.wasm': 'application/wasm',
+  '.json': 'application/json',
+};
 
 /** Serves a folder; what was asked for is noted. */
 async function serve(folder) {
   const asked = [];
   const server = createServer((request, response) => {
-    const path = normalize(decodeURIComponent(new URL(request.url, 'http://x').pathname)).replace(/\/$/, '/index.html');
+    const path = normalize(decodeURIComponent(new URL(request.url, 'http://x').pathname)).replace(
+      /\/$/,
+      '/index.html',
+    );
     const file = join(folder, path);
     asked.push(path);
     if (!file.startsWith(folder) || !existsSync(file)) {
       response.writeHead(404).end();
       return;
     }
-    response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file));
+    response
+      .writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' })
+      .end(readFileSync(file));
   });
   await new Promise((done) => server.listen(0, '127.0.0.1', done));
   return { url: `http://127.0.0.1:${server.address().port}`, asked, close: () => server.close() };
@@ -60,7 +82,10 @@ async function open(url) {
   page.on('console', (m) => {
     const text = m.text();
     // SwiftShader tells how slow it is; react-three-fiber uses a clock that three.js will give up.
-    if (m.type() === 'error' || (m.type() === 'warning' && /three|shader|burgeon/i.test(text) && !/GPU stall|THREE\.Clock/.test(text)))
+    if (
+      m.type() === 'error' ||
+      (m.type() === 'warning' && /three|shader|burgeon/i.test(text) && !/GPU stall|THREE\.Clock/.test(text))
+    )
       faults.push(`${url}: ${text}`);
   });
   await page.goto(url);
@@ -147,13 +172,18 @@ try {
   assert.ok(moved[0] > 0.01 && moved[1] > 0.01, `wind moves it: ${shares}`);
   // Leaves as instances sway as their foot does, those of a mesh each vertex for itself: all but the same.
   assert.ok(moved[2] < 0.25 * moved[1] && moved[3] < 0.002, `the same in all ways to draw it: ${shares}`);
-  console.log(`plain three.js: drawn, ${seen.colours} colours; pixels that wind moves, instances, copies: ${shares}`);
+  console.log(
+    `plain three.js: drawn, ${seen.colours} colours; pixels that wind moves, instances, copies: ${shares}`,
+  );
   await page.close();
   plain.close();
 
   const folder = react();
   const built = await serve(folder);
-  assert.ok(readdirSync(join(folder, 'assets')).some((f) => f.startsWith('worker')), 'Vite found the worker');
+  assert.ok(
+    readdirSync(join(folder, 'assets')).some((f) => f.startsWith('worker')),
+    'Vite found the worker',
+  );
   const second = await open(`${built.url}/?detail=0.15`);
   await second.waitForTimeout(2000);
   assert.equal(second.workers().length, 1);

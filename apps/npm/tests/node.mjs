@@ -20,7 +20,14 @@ function installed(name, three) {
   mkdirSync(folder);
   writeFileSync(join(folder, 'package.json'), '{"type":"module","private":true}');
   const npm = process.platform === 'win32' ? 'npm.cmd' : 'npm';
-  const options = ['--offline', '--no-audit', '--no-fund', '--silent', '--omit=optional', '--legacy-peer-deps'];
+  const options = [
+    '--offline',
+    '--no-audit',
+    '--no-fund',
+    '--silent',
+    '--omit=optional',
+    '--legacy-peer-deps',
+  ];
   execFileSync(npm, ['install', ...options, tarball], { cwd: folder });
   if (three) symlinkSync(join(own, 'node_modules/three'), join(folder, 'node_modules/three'), 'junction');
   return folder;
@@ -59,11 +66,16 @@ test('drawings and leaves are those of the native program', async () => {
     const plant = await sketch(readFileSync(path), { name: `${name}.svg`, seed: 1 });
     assert.equal(plant.digest, expected[`drawing ${name}`], name);
   }
-  const marks = await leaf(readFileSync(join(root, 'fixtures/leaves/leaf1.csv'), 'utf8'), { name: 'leaf1', wind: false });
+  const marks = await leaf(readFileSync(join(root, 'fixtures/leaves/leaf1.csv'), 'utf8'), {
+    name: 'leaf1',
+    wind: false,
+  });
   assert.equal(marks.digest, expected['leaf1.csv']);
 });
 
-test('flowers are those of the native program', { skip: native ? false : 'BURGEON names no program' }, async () => {
+test('flowers are those of the native program', {
+  skip: native ? false : 'BURGEON names no program',
+}, async () => {
   const report = join(away, 'flower.json');
   for (const species of ['lily', 'rose']) {
     const args = ['bloom', 'run', species, '--day', '3', '--quiet', '--report', report];
@@ -76,12 +88,22 @@ test('flowers are those of the native program', { skip: native ? false : 'BURGEO
 });
 
 test('columns, tables and files fit together', async () => {
-  const tree = await grow('hazel', { seed: 5, detail: 0.3, lods: 2, files: ['glb', 'mtg', 'opf'], measures: true });
+  const tree = await grow('hazel', {
+    seed: 5,
+    detail: 0.3,
+    lods: 2,
+    files: ['glb', 'mtg', 'opf'],
+    measures: true,
+  });
   assert.equal(tree.levels, 3);
   for (const level of [0, 1, 2]) {
     for (const mesh of tree.meshes(level)) {
       const n = mesh.positions.length / 3;
-      assert.deepEqual([mesh.normals, mesh.uvs, mesh.wind, mesh.pivots].map((c) => c.length / n), [3, 2, 4, 3], mesh.name);
+      assert.deepEqual(
+        [mesh.normals, mesh.uvs, mesh.wind, mesh.pivots].map((c) => c.length / n),
+        [3, 2, 4, 3],
+        mesh.name,
+      );
       assert.ok(mesh.indices.every((i) => i < n));
       const told = mesh.pieces.reduce((sum, x, k) => sum + (k % 3 === 2 ? x : 0), 0);
       assert.equal(told, mesh.indices.length / 3);
@@ -114,32 +136,93 @@ test('strokes as points make a plant', async () => {
 
 test('what is wrong is named: field, value and range', async () => {
   const wrong = async (promise, expected) => {
-    const error = await promise.then(() => assert.fail('made'), (e) => e);
+    const error = await promise.then(
+      () => assert.fail('made'),
+      (e) => e,
+    );
     assert.ok(error instanceof BurgeonError, String(error));
     const { code, field, value, range } = error;
-    assert.deepEqual({ code, field, value, range: range?.slice(0, 20) }, { value: undefined, range: undefined, ...expected });
+    assert.deepEqual(
+      { code, field, value, range: range?.slice(0, 20) },
+      { value: undefined, range: undefined, ...expected },
+    );
     assert.ok(error.message.length > 10);
   };
   const trees = TREES.join(', ').slice(0, 20);
   await wrong(grow('oka'), { code: 'spec-choice', field: 'preset', value: 'oka', range: trees });
   await wrong(grow('oak', { sed: 3 }), { code: 'spec-unknown', field: 'sed', range: 'seed, wind, lods, bu' });
-  await wrong(bloom('rose', { detail: 1 }), { code: 'spec-unknown', field: 'detail', range: 'seed, wind, lods, bu' });
+  await wrong(bloom('rose', { detail: 1 }), {
+    code: 'spec-unknown',
+    field: 'detail',
+    range: 'seed, wind, lods, bu',
+  });
   await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
-  await wrong(grow('oak', { detail: 99 }), { code: 'field-range', field: 'detail', value: '99', range: '0.1 to 8' });
+  await wrong(grow('oak', { detail: 99 }), {
+    code: 'field-range',
+    field: 'detail',
+    value: '99',
+    range: '0.1 to 8',
+  });
   await wrong(grow('oak', { fields: { age: 'old' } }), { code: 'spec-kind', field: 'age', value: 'old' });
-  await wrong(grow('oak', { fields: { age: Number.NaN } }), { code: 'field-range', field: 'age', value: 'NaN', range: 'a finite number' });
-  await wrong(grow('oak', { seed: -1 }), { code: 'field-range', field: 'seed', value: '-1', range: 'a whole number, 0 to' });
-  await wrong(grow('oak', { seed: 1.5 }), { code: 'field-range', field: 'seed', value: '1.5', range: 'a whole number, 0 to' });
-  await wrong(grow('oak', { lods: 7 }), { code: 'field-range', field: 'lods', value: '7', range: 'a whole number, 0 to' });
-  await wrong(grow('oak', { budget: 9 }), { code: 'field-range', field: 'budget', value: '9', range: '1 to 4' });
+  await wrong(grow('oak', { fields: { age: Number.NaN } }), {
+    code: 'field-range',
+    field: 'age',
+    value: 'NaN',
+    range: 'a finite number',
+  });
+  await wrong(grow('oak', { seed: -1 }), {
+    code: 'field-range',
+    field: 'seed',
+    value: '-1',
+    range: 'a whole number, 0 to',
+  });
+  await wrong(grow('oak', { seed: 1.5 }), {
+    code: 'field-range',
+    field: 'seed',
+    value: '1.5',
+    range: 'a whole number, 0 to',
+  });
+  await wrong(grow('oak', { lods: 7 }), {
+    code: 'field-range',
+    field: 'lods',
+    value: '7',
+    range: 'a whole number, 0 to',
+  });
+  await wrong(grow('oak', { budget: 9 }), {
+    code: 'field-range',
+    field: 'budget',
+    value: '9',
+    range: '1 to 4',
+  });
   await wrong(grow({ toml: 'name = ' }), { code: 'spec-syntax', field: undefined });
-  await wrong(sketch([[[0, 0], [1, Number.NaN]]]), { code: 'field-range', field: 'strokes[0][1]', value: 'NaN', range: 'a finite number' });
-  await wrong(sketch([Float64Array.of(1, 2, 3)]), { code: 'field-range', field: 'strokes[0]', value: '"3 numbers"', range: 'pairs of x and y' });
+  await wrong(
+    sketch([
+      [
+        [0, 0],
+        [1, Number.NaN],
+      ],
+    ]),
+    { code: 'field-range', field: 'strokes[0][1]', value: 'NaN', range: 'a finite number' },
+  );
+  await wrong(sketch([Float64Array.of(1, 2, 3)]), {
+    code: 'field-range',
+    field: 'strokes[0]',
+    value: '"3 numbers"',
+    range: 'pairs of x and y',
+  });
   await wrong(sketch([]), { code: 'no-strokes', field: undefined });
   await wrong(sketch('<svg', { name: 'x.svg' }), { code: 'file-line', field: undefined });
-  await wrong(bloom('tulp'), { code: 'spec-choice', field: 'preset', value: 'tulp', range: FLOWERS.join(', ').slice(0, 20) });
+  await wrong(bloom('tulp'), {
+    code: 'spec-choice',
+    field: 'preset',
+    value: 'tulp',
+    range: FLOWERS.join(', ').slice(0, 20),
+  });
   // What is too much is said before it is made, and the core goes on.
-  const much = await grow('oak', { detail: 8, fields: { age: 200 } }).then(() => 'made', (e) => e.code);
+  const much = await grow('oak', { detail: 8, fields: { age: 200 } }).then(
+    () => 'made',
+    (e) => e.code,
+  );
   assert.ok(['over-budget', 'made', 'field-range'].includes(much), much);
   assert.ok((await grow('grass', { detail: 0.2 })).digest);
   await assert.rejects(grow('oak', { signal: AbortSignal.abort() }), { name: 'AbortError' });
@@ -169,7 +252,16 @@ test('objects of three.js: levels, leaves as instances, copies', async () => {
       mesh.getColorAt(i, c);
       for (let k = 0; k < position.count; k++) {
         v.fromBufferAttribute(position, k).applyMatrix4(m);
-        const row = [v.x, v.y, v.z, c.r * color.getX(k), c.g * color.getY(k), c.b * color.getZ(k), uv.getX(k), uv.getY(k)];
+        const row = [
+          v.x,
+          v.y,
+          v.z,
+          c.r * color.getX(k),
+          c.g * color.getY(k),
+          c.b * color.getZ(k),
+          uv.getX(k),
+          uv.getY(k),
+        ];
         drawn.set(mesh.name, [...(drawn.get(mesh.name) ?? []), ...row]);
       }
       if (i > 400) break;
@@ -181,29 +273,50 @@ test('objects of three.js: levels, leaves as instances, copies', async () => {
   for (let k = 0; k < leaves.uvs.length / 2; k++) {
     const at = [0, 1, 2].map((i) => leaves.positions[3 * k + i]);
     const key = at.map((x) => Math.round(x * 500)).join();
-    const row = [...at, ...[0, 1, 2].map((i) => leaves.colors[3 * k + i]), leaves.uvs[2 * k], leaves.uvs[2 * k + 1]];
+    const row = [
+      ...at,
+      ...[0, 1, 2].map((i) => leaves.colors[3 * k + i]),
+      leaves.uvs[2 * k],
+      leaves.uvs[2 * k + 1],
+    ];
     all.set(key, [...(all.get(key) ?? []), row]);
   }
   for (let k = 0; k < got.length; k += 8) {
     const row = got.slice(k, k + 8);
     const near = [0, 1, 2].map((i) => [-1, 0, 1].map((d) => Math.round(row[i] * 500) + d));
-    const there = near[0].flatMap((x) => near[1].flatMap((y) => near[2].flatMap((z) => all.get(`${x},${y},${z}`) ?? [])));
+    const there = near[0].flatMap((x) =>
+      near[1].flatMap((y) => near[2].flatMap((z) => all.get(`${x},${y},${z}`) ?? [])),
+    );
     const found = there.some((r) => r.every((x, i) => Math.abs(x - row[i]) < (i < 3 ? 1e-4 : 1e-3)));
     assert.ok(found, `vertex ${k / 8}: ${row}`);
   }
   const total = instances.reduce((sum, m) => sum + (m.count * m.geometry.index.count) / 3, 0);
-  const rest = fine.children.filter((m) => !m.isInstancedMesh).reduce((sum, m) => sum + m.geometry.index.count / 3, 0);
+  const rest = fine.children
+    .filter((m) => !m.isInstancedMesh)
+    .reduce((sum, m) => sum + m.geometry.index.count / 3, 0);
   assert.equal(total + rest, tree.report.counts.triangles);
   const bytes = (object) => {
     let sum = 0;
     object.traverse(({ geometry, instanceMatrix, instanceColor }) => {
-      for (const a of [...Object.values(geometry?.attributes ?? {}), geometry?.index, instanceMatrix, instanceColor]) sum += a?.array.byteLength ?? 0;
+      for (const a of [
+        ...Object.values(geometry?.attributes ?? {}),
+        geometry?.index,
+        instanceMatrix,
+        instanceColor,
+      ])
+        sum += a?.array.byteLength ?? 0;
     });
     return sum;
   };
   const plain = tree.object3D({ three: THREE, level: 0, instances: false });
   assert.ok(plain.isGroup && bytes(fine) < 0.6 * bytes(plain), `${bytes(fine)} of ${bytes(plain)}`);
-  const stand = tree.stand([{ x: 0, z: 0 }, { x: 5, z: 1, yaw: 90, scale: 2 }], { three: THREE, level: 2 });
+  const stand = tree.stand(
+    [
+      { x: 0, z: 0 },
+      { x: 5, z: 1, yaw: 90, scale: 2 },
+    ],
+    { three: THREE, level: 2 },
+  );
   assert.ok(stand.children.length > 0 && stand.children.every((m) => m.isInstancedMesh && m.count === 2));
   assert.throws(() => tree.stand([{ x: Number.NaN, z: 0 }], { three: THREE }), { field: 'places[0].x' });
   assert.throws(() => tree.object3D({ three: THREE, level: 3 }), { field: 'level', range: '0 to 2' });

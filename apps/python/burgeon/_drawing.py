@@ -75,7 +75,8 @@ def draw(plant: "Plant") -> Drawing:
     """A plant from the front, as a line drawing.
 
     Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
-    outlines; of a plant that shows many, trunk and the limbs that it does not hide are drawn, and around the foliage the outline of the crown.
+    outlines; of a plant that shows many, trunk and those limbs that foliage does not hide are drawn, and around the foliage
+    the outline of the crown.
     """
     import numpy as np
 
@@ -86,7 +87,8 @@ def draw(plant: "Plant") -> Drawing:
     large = counts >= LARGE * SIZE**2
     size = max(float(np.ptp(np.array(_bounds(plant)), axis=0).max()), 1e-9)
     if large.sum() <= MOST_ORGANS and 2 * counts[large].sum() >= counts.sum():
-        lines = _stems(plant, sorted(wood), size) + _organs(plant, dict(zip(organs[large].tolist(), counts[large].tolist())), size)
+        seen = dict(zip(organs[large].tolist(), counts[large].tolist()))
+        lines = _stems(plant, sorted(wood), size) + _organs(plant, seen, size)
     else:
         lines = [*_stems(plant, _limbs(plant, wood, size / SIZE), size), Line("crown", _crown(plant.organs.position), -1)]
     return Drawing(plant.name, lines)
@@ -157,9 +159,11 @@ def _organs(plant: "Plant", seen: "Dict[int, int]", size: float) -> "List[Line]"
             faces = part.faces[order[start:end]]
             points = part.vertices.astype(np.float64)
             depth = float(points[np.unique(faces), 2].mean())
-            middle = _middle(points[np.unique(faces), :2]) if part_of[row] in thin else None
-            if middle is not None:
-                found[row] = (depth, Line("stalk", middle, row))
+            if part_of[row] in thin:
+                # What is short and wide, such as the foot of a flower, is behind what it bears.
+                middle = _middle(points[np.unique(faces), :2])
+                if middle is not None:
+                    found[row] = (depth, Line("stalk", middle, row))
                 continue
             outline = _outline(points[:, :2], faces)
             if outline is None:

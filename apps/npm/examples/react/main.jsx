@@ -50,7 +50,11 @@ function Ready() {
 }
 
 createRoot(document.getElementById('root')).render(
-  <Canvas shadows="percentage" camera={{ position: [0, 4, 22], fov: 40 }} onCreated={({ camera }) => camera.lookAt(0, 4, 0)}>
+  <Canvas
+    shadows="percentage"
+    camera={{ position: [0, 4, 22], fov: 40 }}
+    onCreated={({ camera }) => camera.lookAt(0, 4, 0)}
+  >
     <Scene />
   </Canvas>,
 );

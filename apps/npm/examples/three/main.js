@@ -46,7 +46,9 @@ async function show() {
     shown = tree.object3D();
     shown.userData.wind.strength.value = form.wind.valueAsNumber;
     scene.add(shown);
-    say(`${tree.report.counts.triangles.toLocaleString('en')} triangles, ${Math.round(performance.now() - started)} ms`);
+    say(
+      `${tree.report.counts.triangles.toLocaleString('en')} triangles, ${Math.round(performance.now() - started)} ms`,
+    );
   } catch (e) {
     if (!(e instanceof BurgeonError)) throw e;
     say(e.message);
@@ -58,7 +60,12 @@ async function stand() {
   const birch = await grow('birch', { seed: 4, detail: Math.min(detail, 0.3), lods: 2, texture_size: 256 });
   const places = Array.from({ length: 30 }, (_, k) => {
     const [turn, far] = [k * 2.4, 20 + ((k * 37) % 23)];
-    return { x: far * Math.cos(turn), z: far * Math.sin(turn), yaw: k * 77, scale: 0.8 + 0.013 * ((k * 29) % 31) };
+    return {
+      x: far * Math.cos(turn),
+      z: far * Math.sin(turn),
+      yaw: k * 77,
+      scale: 0.8 + 0.013 * ((k * 29) % 31),
+    };
   });
   scene.add(birch.stand(places, { level: 2, wind: 0.3 }));
 }
