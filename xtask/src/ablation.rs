@@ -16,7 +16,7 @@ use reading::{RULES, Reading, read_without};
 
 use crate::made_strokes::made_sketches;
 use crate::quickdraw::drawings_of;
-use crate::read_drawings::Part;
+use crate::read_drawings::{Chosen, Part};
 
 /// Dealings of the drawings that the strokes read right are summed over.
 const DEALINGS: u64 = 4;
@@ -112,6 +112,9 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     }
     let others: Vec<Sheet<'_>> = others.into_iter().chain(made).map(shipped).collect();
 
+    let chosen = Chosen::of(sketches)?;
+    let [right, acceptable] = chosen.judged(&[]);
+
     let all = Score::of(&labelled, &[]);
     let (end, rest): (Vec<Sheet<'_>>, Vec<Sheet<'_>>) = labelled.into_iter().partition(Sheet::is_of_the_end);
     let last = Score::of(&end, &[]);
@@ -125,10 +128,11 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
          two things at once),\nand {} of {} parts labelled by others. The macro F1 is {:.4}.\n\n\
          Of drawings that the model of kinds has not seen either (those for the end): {} of {} clear strokes; the macro \
          F1 of\nthe same classes is {:.4}.\n\n\
+         Of {} whole drawings to choose by (below), {right} are right and {acceptable} acceptable.\n\n\
          The table shows how these figures change without each rule, and how many of {} fixtures and {} other drawings \
          are\nthen read differently.\n\n\
-         | rule | why | clear | doubtful | parts | macro F1 | fixtures | others |\n\
-         |---|---|---|---|---|---|---|---|\n",
+         | rule | why | clear | doubtful | parts | macro F1 | right | acceptable | fixtures | others |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
         all.right(),
         count(StrokeSource::Public, true),
         all.doubtful,
@@ -139,6 +143,7 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
         last.right(),
         (0..StrokeClass::ALL.len()).map(|k| last.labelled(k)).sum::<u32>(),
         last.mean_f1(&all.counted()),
+        chosen.count(),
         fixtures.len(),
         others.len(),
     );
@@ -147,18 +152,22 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     for rule in RULES {
         let off = [rule.name];
         let score = Score::of(&labelled, &off);
+        let now = chosen.judged(&off);
+        let change = |now: usize, before: usize| now.cast_signed() - before.cast_signed();
         let changed = |sheets: &[Sheet<'_>], before: &[Reading]| {
             sheets.iter().zip(before).filter(|(s, before)| differs(&s.read(&off), before)).count()
         };
         let _ = writeln!(
             out,
-            "| `{}` | {} | {:+} | {:+} | {:+} | {:+.4} | {} | {} |",
+            "| `{}` | {} | {:+} | {:+} | {:+} | {:+.4} | {:+} | {:+} | {} | {} |",
             rule.name,
             rule.why,
             i64::from(score.right()) - i64::from(all.right()),
             i64::from(score.doubtful) - i64::from(all.doubtful),
             i64::from(score.parts) - i64::from(all.parts),
             score.macro_f1() - all.macro_f1(),
+            change(now[0], right),
+            change(now[1], acceptable),
             changed(&fixtures, &fixtures_read),
             changed(&others, &others_read),
         );

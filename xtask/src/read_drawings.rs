@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use base::{Draw, Report, Run, Seed};
 use glam::DVec2;
-use ink::{Drawing, Source};
+use ink::{Classified, Drawing, Ink, Source};
 use reading::{Kind, OrganWord, Reading};
 use serde_json::{Value, json};
 
@@ -145,10 +145,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     if !folder.is_dir() {
         say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
     }
-    let mut cases = people(&folder, part)?;
-    let together = together(&cases, part, SIDE_BY_SIDE);
-    cases.extend(together);
-    cases.extend(made(part));
+    let cases = cases(&folder, part)?;
     let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
     // Called no plant: drawings by people, all others.
     let mut called = [0_usize; 2];
@@ -210,11 +207,88 @@ fn own_drawings() -> Outcome<Vec<String>> {
 
 /// What was read, and whether it was called no plant.
 fn read(drawing: &Drawing) -> (Reading, bool) {
+    read_without(&[], &Seen::of(drawing))
+}
+
+/// A drawing and what the classifier says of its strokes.
+struct Seen {
+    ink: Ink,
+    classes: Vec<Classified>,
+}
+
+impl Seen {
+    fn of(drawing: &Drawing) -> Self {
+        let ink = ink::clean(drawing, &mut Report::default());
+        let classes = ink::classify(&ink, &Run::plain());
+        Self { ink, classes }
+    }
+}
+
+fn read_without(off: &[&str], seen: &Seen) -> (Reading, bool) {
     let mut report = Report::default();
-    let ink = ink::clean(drawing, &mut Report::default());
-    let classes = ink::classify(&ink, &Run::plain());
-    let reading = reading::read(&ink, &classes, &mut report);
+    let reading = reading::read_without(off, &seen.ink, &seen.classes, &mut report);
     (reading, report.warnings.iter().any(|w| w.code == reading::UNLIKE_A_PLANT))
+}
+
+/// Salt of made drawings that nothing else has.
+const UNSEEN: u64 = 9;
+
+/// The drawings to choose by, to be read again and again with other rules.
+pub(crate) struct Chosen(Vec<(Case, Seen)>);
+
+impl Chosen {
+    /// Those of the people of `folder`, and made ones: those that are judged by, and of each way to draw a plant some that
+    /// no model has learnt from.
+    pub(crate) fn of(folder: &Path) -> Outcome<Self> {
+        let ways =
+            made_drawings::kinds::of_kinds(UNSEEN, MADE_TO_TEST).into_iter().filter(|w| w.1 != Kind::None);
+        let ways = ways.map(|(word, kind, lines)| Case {
+            set: word.to_owned(),
+            drawing: Drawing::from_polylines(word, &lines),
+            right: vec![kind],
+            acceptable: Vec::new(),
+            plants: Some(1),
+            kinds: Vec::new(),
+            own: usize::MAX,
+        });
+        Ok(Self(
+            cases(folder, Part::Choose)?
+                .into_iter()
+                .chain(ways)
+                .map(|case| {
+                    let seen = Seen::of(&case.drawing);
+                    (case, seen)
+                })
+                .collect(),
+        ))
+    }
+
+    /// How many drawings there are.
+    pub(crate) const fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// How many are read rightly, and how many so that a person would accept it, with some rules switched off.
+    pub(crate) fn judged(&self, off: &[&str]) -> [usize; 2] {
+        let mut found = [0, 0];
+        for (case, seen) in &self.0 {
+            match judge(case, read_without(off, seen).0).verdict {
+                Frame::Right => found[0] += 1,
+                Frame::Acceptable => found[1] += 1,
+                Frame::Wrong => {}
+            }
+        }
+        found
+    }
+}
+
+/// All drawings of a part.
+fn cases(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
+    let mut cases = people(folder, part)?;
+    let together = together(&cases, part, SIDE_BY_SIDE);
+    cases.extend(together);
+    cases.extend(made(part));
+    Ok(cases)
 }
 
 /// The drawings of people of one part.

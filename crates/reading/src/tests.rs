@@ -515,9 +515,22 @@ fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
         (11.5, 0.8),
         (12.5, 1.8),
     ]);
-    let r = guessed(&[(StrokeClass::TrunkOutline, flat), (StrokeClass::TrunkOutline, zigzag)]);
+    let r =
+        guessed(&[(StrokeClass::TrunkOutline, flat.clone()), (StrokeClass::TrunkOutline, zigzag.clone())]);
     assert_eq!((r.axes.len(), r.strokes[0].class), (0, StrokeClass::Ground), "{:?}", r.strokes);
     assert!(r.leaves.len() >= 3, "{} blades", r.leaves.len());
+    // The kind of the whole does not see it without the rule: then it is a cactus.
+    let kinds = ["", "zigzag"].map(|off| whole_without(off, &[zigzag.clone(), flat.clone()]));
+    assert_eq!(kinds, [Kind::Grass, Kind::Cactus]);
+}
+
+/// The kind of the one plant that programs read, with a rule switched off.
+fn whole_without(off: &str, lines: &[Vec<DVec2>]) -> Kind {
+    let ink = clean(&Drawing::from_polylines("whole", lines), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let r = read_without(&[off], &ink, &classes, &mut Report::default());
+    assert_eq!(r.plants.len(), 1);
+    r.plants[0].kind
 }
 
 fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
@@ -598,28 +611,15 @@ fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
         (StrokeClass::Axis, line((6.0, 0.0), (6.3, 3.0))),
     ]);
     assert_eq!((r.regions.len(), r.fruits.len(), r.leaves.len()), (0, 0, 5), "{:?}", r.strokes);
+    // Four of them are grass by the whole, too, and without the rule a cactus.
+    let four = [0.0, 3.0, 6.0, 9.0].map(v);
+    assert_eq!(["", "tuft"].map(|off| whole_without(off, &four)), [Kind::Grass, Kind::Cactus]);
     // A trough is no root: what is round below stays a crown.
     let bowl: Vec<DVec2> = (0..=40)
         .map(|i| ops::PI * f64::from(i) / 40.0)
         .map(|a| DVec2::new(-ops::cos(a), 1.0 - ops::sin(a)))
         .collect();
     assert_eq!(guessed(&[(StrokeClass::Crown, bowl)]).regions.len(), 1);
-}
-
-#[test]
-fn a_line_that_crosses_itself_all_over_is_a_scribble_not_petals() {
-    let tangle: Vec<DVec2> = (0..600)
-        .map(|i| f64::from(i) * 0.1)
-        .map(|t| DVec2::new(1.5 * ops::sin(1.9 * t), ops::sin(3.1 * t)))
-        .collect();
-    let r = guessed(&[(StrokeClass::Corolla, tangle)]);
-    assert_eq!((r.flowers.len(), r.strokes[0].class), (0, StrokeClass::Scribble));
-    // Petals in one go cross in the middle only.
-    let rose: Vec<DVec2> = (0..=300)
-        .map(|i| ops::PI * f64::from(i) / 300.0 + 0.1)
-        .map(|t| DVec2::new(ops::cos(t), ops::sin(t)) * ops::cos(9.0 * t))
-        .collect();
-    assert_eq!(guessed(&[(StrokeClass::Corolla, rose)]).strokes[0].class, StrokeClass::Corolla);
 }
 
 #[test]

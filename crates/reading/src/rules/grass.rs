@@ -1,6 +1,5 @@
-//! Rules about grass and scribbles: lines that carry nothing.
+//! Rules about grass: lines that carry nothing.
 
-use geom::crossing_points;
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -10,12 +9,6 @@ use crate::draft::Draft;
 use crate::near::bounds;
 use crate::thresholds::STRAIGHT;
 
-/// A tangle is known by its first so many crossings.
-const MOST_CROSSINGS: usize = 500;
-/// A tangle crosses itself more often than this.
-const TANGLED: usize = 8;
-/// Crossings of petals lie nearer to the middle than this share of the stroke's diagonal.
-const MIDDLE: f64 = 0.12;
 /// A row of grass goes down at least this often.
 const FEWEST_DIPS: usize = 5;
 /// A row turns about its middle by less than this, radians; petals go round.
@@ -35,26 +28,6 @@ const APART: f64 = 0.15;
 /// The turn between the legs, at this share of the diagonal from the root, is sharper than 114 degrees (the cosine).
 const AT_TURN: f64 = 0.06;
 const SHARP: f64 = 0.4;
-
-/// A line that crosses itself again and again all over the place is a scribble, not petals: those cross in the middle.
-pub(super) fn tangles(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Axis, Disc, Pot};
-    let mut found = Findings::default();
-    if any(draft, &[Axis, Disc, Pot]) {
-        return found;
-    }
-    for k in draft.of_class(StrokeClass::Corolla) {
-        let points = &draft.ink.strokes[k].points;
-        let Some((lo, hi)) = bounds(points).filter(|_| unsure(draft, k)) else { continue };
-        let middle = lo.midpoint(hi);
-        let crossings = crossing_points(points, MOST_CROSSINGS);
-        let wide = crossings.iter().filter(|p| p.distance(middle) > MIDDLE * lo.distance(hi)).count();
-        if crossings.len() > TANGLED && 2 * wide > crossings.len() {
-            found.set(k, StrokeClass::Scribble);
-        }
-    }
-    found
-}
 
 /// A stroke that goes up and down and on to the side is a row of grass blades, where no trunk needs a crown.
 pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {

@@ -140,12 +140,6 @@ pub const RULES: &[Rule] = &[
         "A long level line on which a plant stands, with nothing but lines below, is the ground over its roots.",
     ),
     rule(
-        "tree-in-one-stroke",
-        FEW,
-        trees::tree_in_one_stroke,
-        "An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.",
-    ),
-    rule(
         "stems-of-leaves",
         MANY,
         stems::stems,
@@ -175,12 +169,6 @@ pub const RULES: &[Rule] = &[
         MANY,
         pots::pots,
         "A box at the bottom with a flat top on which the plant stands is its pot.",
-    ),
-    rule(
-        "tangle",
-        ANY,
-        grass::tangles,
-        "A line that crosses itself all over the place is a scribble: petals cross in the middle.",
     ),
     rule(
         "zigzag",

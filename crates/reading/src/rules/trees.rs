@@ -7,14 +7,12 @@ use ink::StrokeClass;
 use super::{
     CLOSED, Findings, REACH, SIDES_APART, any, openness, outside, share_inside, standing, unsure, upright,
 };
-use crate::contour::{crown_outline, neck};
+use crate::contour::crown_outline;
 use crate::draft::Draft;
 use crate::near::bounds;
 use crate::rings::rings;
-use crate::thresholds::{SAME_PLACE, WELL_SHORT};
+use crate::thresholds::WELL_SHORT;
 
-/// A crown fills this share of its hull; the arms of a cactus leave hollows.
-const FULL: f64 = 0.78;
 /// The longer of a trunk's sides is at most one over this times as long as the other.
 const ALIKE: f64 = 0.55;
 /// A trunk is narrower than this share of its crown.
@@ -31,14 +29,6 @@ const LINE: f64 = 0.6;
 const STRAIGHT_LINE: f64 = 0.85;
 /// A fruit covers less than this share of its crown.
 const SMALL: f64 = 0.03;
-/// The longest piece of a body has more than this share of the length of all.
-const MAIN: f64 = 0.7;
-/// What hangs below a crown in one stroke is a trunk: narrower than this share of it, higher than that share of all, and wider
-/// than a line that was drawn twice (four steps of the pen, *sampled*). Such a crown fills this share of its hull.
-const HUNG_WIDTH: f64 = 0.4;
-const HUNG_HEIGHT: f64 = 0.2;
-const NO_LINE: f64 = 0.02;
-const HEAD_FULL: f64 = 0.6;
 /// Sides of a trunk are nearer to one another than so many times the shorter one's length; so many times as far apart above as
 /// below at most; and both feet stand within this of the lowest point.
 const BESIDE: f64 = 1.3;
@@ -60,43 +50,6 @@ const FRUIT_STRIDE: usize = 4;
 /// The line of the ground rises by less than this share of its width, and lies in this lowest share of the crown over it.
 const FLAT: f64 = 0.3;
 const CROWN_FOOT: f64 = 0.2;
-
-/// An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.
-pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Blade, Corolla, Crown, TrunkOutline};
-    let mut found = Findings::default();
-    if any(draft, &[Crown, Corolla, Blade]) {
-        return found;
-    }
-    let length = |k: usize| draft.ink.strokes[k].length;
-    let bodies: Vec<usize> = (0..draft.class.len()).filter(|&k| draft.class[k] == TrunkOutline).collect();
-    let total: f64 = bodies.iter().map(|&k| length(k)).sum();
-    // One of several pieces of a body is no tree.
-    let main: Vec<usize> = bodies.into_iter().filter(|&k| length(k) > MAIN * total).collect();
-    for k in main {
-        let points = &draft.ink.strokes[k].points;
-        let Some(outline) = unsure(draft, k).then(|| simple_outline(points)).flatten() else { continue };
-        let head = neck(&outline, false).map(|n| n.1);
-        if head.is_some_and(|h| signed_area(&h) > FULL * signed_area(&convex_hull(&h)))
-            || closes_above_its_trunk(points, &outline)
-        {
-            found.set(k, Crown);
-        }
-    }
-    found
-}
-
-/// The pen met its own line where crown and trunk meet: the outline is the crown, and the rest hangs below it.
-fn closes_above_its_trunk(points: &[DVec2], outline: &[DVec2]) -> bool {
-    let (Some((lo, hi)), Some(all)) = (bounds(outline), bounds(points)) else { return false };
-    let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < lo.y - SAME_PLACE).collect();
-    let hangs = bounds(&below).is_some_and(|(l, h)| {
-        h.x - l.x < HUNG_WIDTH * (hi.x - lo.x)
-            && lo.y - l.y > HUNG_HEIGHT * (all.1.y - all.0.y)
-            && h.x - l.x > NO_LINE
-    });
-    hangs && signed_area(outline) > HEAD_FULL * signed_area(&convex_hull(outline))
-}
 
 /// Two single lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.
 pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
