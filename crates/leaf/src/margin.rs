@@ -5,19 +5,8 @@ use glam::DVec3;
 use plant::{RimPoint, SplineBlade};
 
 use crate::blade::Leaf;
-use crate::marks::{FullMarks, MarksError};
+use crate::marks::{FullMarks, MarginPoint, MarksError};
 use crate::spec::LeafSpec;
-
-/// A point of the margin, known by the place of the blade that it lies nearest to, so that it goes where the blade goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MarginPoint {
-    /// That place: marks from the left margin (0) to the right (6).
-    pub column: f64,
-    /// That place: rows from the last (0) to the tip.
-    pub row: f64,
-    /// From there: to the right along the row, towards the tip, to the upper side; in lengths of the midrib.
-    pub off: DVec3,
-}
 
 /// Steps between marks in which the nearest place is looked for first.
 const STEPS: usize = 6;

@@ -3,8 +3,6 @@
 use base::Report;
 use glam::DVec3;
 
-use crate::margin::MarginPoint;
-
 /// Marks on each side vein, margin to margin; the fourth lies on the midrib.
 pub const MARKS_A_ROW: usize = 7;
 
@@ -63,6 +61,17 @@ pub struct FullRow {
     pub thickness: [f64; MARKS_A_ROW],
     /// Thickness of the midrib.
     pub midrib: f64,
+}
+
+/// A point of the margin, known by the place of the blade that it lies nearest to, so that it goes where the blade goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarginPoint {
+    /// That place: marks from the left margin (0) to the right (6).
+    pub column: f64,
+    /// That place: rows from the last (0) to the tip.
+    pub row: f64,
+    /// From there: to the right along the row, towards the tip, to the upper side; in lengths of the midrib.
+    pub off: DVec3,
 }
 
 /// Why marks cannot make a leaf. Rows and marks are counted from 1, as in the file.

@@ -29,7 +29,7 @@ pub use organ::{DRAWN_WIDER, Flower, Organ, OrganKind, Paint, PlantPaint, Shape}
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;
-pub use rim::{Netted, RimPoint};
-pub use sheet::{Chart, Sheet, SplineBlade, Vein, VeinShade, Venation};
+pub use rim::Netted;
+pub use sheet::{Chart, RimPoint, Sheet, SplineBlade, Vein, VeinShade, Venation};
 pub use topology::{Axis, AxisKind, Nodes, Plant};
 pub use validate::Fault;

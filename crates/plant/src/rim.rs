@@ -2,22 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use base::{Digest, Digestible};
 use geom::{KdTree2, SurfacePoint};
 use glam::{DVec2, DVec3};
 
-use crate::{FlatLeaf, SplineBlade};
-
-/// A place of the margin, and the place of the surface that it lies nearest to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RimPoint {
-    /// Parameters of that place, within the surface's domain.
-    pub u: f64,
-    /// As `u`.
-    pub v: f64,
-    /// Where the margin is.
-    pub place: DVec3,
-}
+use crate::{FlatLeaf, RimPoint, SplineBlade};
 
 /// A blade within its rim as triangles; see [`SplineBlade::netted`].
 #[derive(Clone, Debug, Default)]
@@ -146,10 +134,4 @@ fn dense(line: &[DVec2], step: f64) -> Vec<DVec2> {
         many.map(move |k| a.lerp(b, k / parts))
     };
     line.iter().zip(ends).flat_map(|(&a, &b)| parts(a, b)).collect()
-}
-
-impl Digestible for RimPoint {
-    fn digest(&self, d: &mut Digest) {
-        d.add(&self.u).add(&self.v).add(&self.place);
-    }
 }

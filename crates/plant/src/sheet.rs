@@ -4,7 +4,7 @@ use base::{Digest, Digestible};
 use geom::{BallBSpline, SplineSurface, SurfacePoint, subdivided};
 use glam::DVec3;
 
-use crate::{FlatLeaf, Frame, RimPoint};
+use crate::{FlatLeaf, Frame};
 
 /// One vein: a ball B-spline and the parameters of its marks.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +44,17 @@ pub struct VeinShade {
     pub blade: [f32; 3],
     /// How far the veins' colour reaches, metres, above 0.
     pub reach_m: f64,
+}
+
+/// A place of the margin, and the place of the surface that it lies nearest to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RimPoint {
+    /// Parameters of that place, within the surface's domain.
+    pub u: f64,
+    /// As `u`.
+    pub v: f64,
+    /// Where the margin is.
+    pub place: DVec3,
 }
 
 /// A blade as a spline surface with its veins (Wang et al. 2011, section 2), in its own frame as a [`Blade`](crate::Blade) is.
@@ -257,5 +268,11 @@ impl Digestible for SplineBlade {
 impl Digestible for Sheet {
     fn digest(&self, d: &mut Digest) {
         d.add(&self.points).add(&self.across).add(&self.along).add(&self.colors).add(&self.veins);
+    }
+}
+
+impl Digestible for RimPoint {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.u).add(&self.v).add(&self.place);
     }
 }
