@@ -62,6 +62,14 @@ pub fn acos_clamped(x: f64) -> f64 {
     libm::acos(x.clamp(-1.0, 1.0))
 }
 
+/// A float that is known to be a small count, rounded down; what is below 0 is 0.
+#[inline]
+pub fn whole(x: f64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to u32's range")]
+    let n = x.clamp(0.0, 4e9) as u32;
+    n
+}
+
 /// Linear interpolation: `a` at `t = 0`, `b` at `t = 1`.
 #[inline]
 pub fn lerp(a: f64, b: f64, t: f64) -> f64 {

@@ -8,7 +8,7 @@ use plant::{AxisId, AxisKind, NodeId, Plant};
 use crate::fork::{Bearer, Collar, reach};
 use crate::rings::{drawn, planes, rings};
 use crate::sleeve::{Circle, Sleeve, drop_flat};
-use crate::spec::{Budget, SkinSpec, whole};
+use crate::spec::{Budget, SkinSpec};
 use crate::spine::{Reach, Spine};
 use crate::traced::Traced;
 use crate::wind::{self, Wind, Wood};
@@ -170,7 +170,7 @@ pub(crate) fn tubes<'p>(
         };
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
         let repeats = match surface {
-            Surface::Bark => whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
+            Surface::Bark => base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
@@ -416,7 +416,7 @@ fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
         let forward = own.dot(along) > -0.3;
         (forward && own.is_finite()).then(|| (own + along * 0.3).normalize_or(own))
     });
-    let mut spine = Spine::new(&points, &radii, 4 * whole(rows) as usize, first)?;
+    let mut spine = Spine::new(&points, &radii, 4 * base::ops::whole(rows) as usize, first)?;
     if chain.bearer.is_none() && chain.surface == Surface::Bark {
         spine.root_flare();
     }

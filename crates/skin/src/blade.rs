@@ -120,7 +120,7 @@ impl BladeChart {
     fn middle(&self, y: f64) -> f64 {
         let at = ((y - self.low) / self.height).clamp(0.0, 1.0) * f64::from(STEPS);
         let whole = at.floor().min(f64::from(STEPS - 1));
-        let k = crate::spec::whole(whole) as usize;
+        let k = base::ops::whole(whole) as usize;
         base::ops::lerp(self.midrib[k], self.midrib[k + 1], at - whole)
     }
 

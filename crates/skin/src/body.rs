@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3};
 use mesh::TriMesh;
 
 use crate::sleeve::{Circle, drop_flat, narrow, narrow2, wide};
-use crate::spec::whole;
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
 use crate::tube::{TubeSpec, tube};
 
@@ -28,7 +27,7 @@ impl Columns {
 
 /// A disc: a dome of florets around +z, closed below by the receptacle. About `triangles` triangles.
 pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
-    let sides = whole((1.5 * triangles).sqrt().round().clamp(8.0, 64.0));
+    let sides = ops::whole((1.5 * triangles).sqrt().round().clamp(8.0, 64.0));
     let rows = (sides / 3).max(3);
     let circle = Circle::new(sides);
     let mut out = Columns::default();
@@ -87,7 +86,7 @@ pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMes
     }
     #[expect(clippy::cast_precision_loss, reason = "a few dozen rows")]
     let rows = line.len() as f64;
-    let sides = whole((0.5 * triangles / rows).round().clamp(8.0, 64.0));
+    let sides = ops::whole((0.5 * triangles / rows).round().clamp(8.0, 64.0));
     let sides = if ribs > 0 { (4 * ribs).min(64) } else { sides };
     let circle = Circle::new(sides);
     let (low, high) = (line[0].y, line[line.len() - 1].y);

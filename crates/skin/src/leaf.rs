@@ -132,7 +132,7 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
 fn kept(n: usize, detail: f64) -> Vec<usize> {
     let Some(last) = n.checked_sub(1) else { return Vec::new() };
     #[expect(clippy::cast_precision_loss, reason = "rows of a blade")]
-    let spans = crate::spec::whole((last as f64 * detail.clamp(0.0, 1.0).sqrt()).round()) as usize;
+    let spans = base::ops::whole((last as f64 * detail.clamp(0.0, 1.0).sqrt()).round()) as usize;
     let spans = spans.clamp(1, last.max(1));
     (0..=spans.min(last)).map(|k| (k * last + spans / 2) / spans).collect()
 }

@@ -30,7 +30,7 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let pairs = (0.5 * triangles.clamp(2.0, 60.0)).round();
     // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
     let bent = pairs >= 2.0;
-    let sides = crate::spec::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
+    let sides = base::ops::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
     let (kept, tip) = corners(outline, tip, 2 * sides + 2);
     let mut points: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
     // What the lost corners enclosed is made up for in width: a crown of such leaves is as full as it was.

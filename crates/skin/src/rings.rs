@@ -119,7 +119,7 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     }
     // Rings nearer than 0.35 radii add triangles but no shape.
     let most = (left * left / (0.35 * radius).max(f64::MIN_POSITIVE)).min(4000.0);
-    let n = crate::spec::whole(count.min(most.max(3.0)).round().max(2.0));
+    let n = base::ops::whole(count.min(most.max(3.0)).round().max(2.0));
     let total = weight[weight.len() - 1];
     let mut out = Vec::with_capacity(n as usize);
     let mut k = 0;

@@ -124,7 +124,7 @@ impl Shoots {
         let mut by_spread: Vec<(f64, usize)> = clusters.iter().map(spread).zip(0..).collect();
         base::sort_by(&mut by_spread, |a, b| a.0.total_cmp(&b.0));
         let tiles = DENSE.iter().filter_map(|share| {
-            let rank = crate::spec::whole(share * by_spread.len() as f64) as usize;
+            let rank = base::ops::whole(share * by_spread.len() as f64) as usize;
             let members = core::mem::take(&mut clusters[by_spread[rank].1]);
             tile(plant, &leaf, &members)
         });

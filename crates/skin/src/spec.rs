@@ -180,7 +180,7 @@ impl LeafMeshSpec {
         let times = |n: usize, low: f64| {
             #[expect(clippy::cast_precision_loss, reason = "at most 64")]
             let wanted = (n as f64 * detail.sqrt()).round();
-            whole(wanted.clamp(low, 64.0)) as usize
+            base::ops::whole(wanted.clamp(low, 64.0)) as usize
         };
         Self { subdivisions: times(self.subdivisions, 1.0), sides: times(self.sides, 3.0), ..self }
     }
@@ -373,7 +373,7 @@ impl Budget {
         };
         let tolerance = TOLERANCE * self.size / self.detail;
         let round = base::ops::PI / base::ops::acos_clamped(1.0 - (tolerance / radius.max(1e-12)).min(1.0));
-        whole(round.clamp(floor, 24.0_f64.max(floor)).ceil())
+        base::ops::whole(round.clamp(floor, 24.0_f64.max(floor)).ceil())
     }
 
     /// Triangles of a blade with this area (m2, at the size at which it is placed).
@@ -390,13 +390,6 @@ impl Budget {
         let least = (32.0 * self.detail).clamp(4.0, 8.0);
         (by_size.clamp(32.0, 1200.0).min(by_count) * self.detail).clamp(least, 20_000.0)
     }
-}
-
-/// A float that is known to be a small count, rounded down.
-pub(crate) fn whole(x: f64) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to u32's range")]
-    let n = x.clamp(0.0, 4e9) as u32;
-    n
 }
 
 #[cfg(test)]

@@ -75,7 +75,7 @@ impl Spine {
             let h = q[k].distance(q[k + 1]);
             // No finer than a quarter of the radius: finer steps only copy the jitter of a hand.
             let want = step.max(0.25 * rq[k].min(rq[k + 1]));
-            let pieces = crate::spec::whole((h / want).ceil().clamp(1.0, 512.0));
+            let pieces = base::ops::whole((h / want).ceil().clamp(1.0, 512.0));
             spine.knots.push((spine.p.len(), keep[k]));
             for j in 0..pieces {
                 let u = f64::from(j) / f64::from(pieces);

@@ -58,8 +58,8 @@ pub(super) fn disc(executor: &dyn Executor, size: u32, inks: &DiscInks) -> Textu
         let body = mix(inks.young, inks.open, ops::smoothstep(0.15, 0.55, r));
         let body = mix(body, inks.rim, ops::smoothstep(0.75, 1.0, r));
         let reach = (radius * pixels).ceil() + 1.0;
-        let low = |c: f64| crate::spec::whole((c * pixels - reach).max(0.0));
-        let high = |c: f64| crate::spec::whole((c * pixels + reach).min(pixels - 1.0));
+        let low = |c: f64| ops::whole((c * pixels - reach).max(0.0));
+        let high = |c: f64| ops::whole((c * pixels + reach).min(pixels - 1.0));
         for j in low(cy)..=high(cy) {
             for i in low(cx)..=high(cx) {
                 let (u, v) = ((f64::from(i) + 0.5) / pixels, (f64::from(j) + 0.5) / pixels);
