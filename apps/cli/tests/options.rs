@@ -132,6 +132,7 @@ const USES: &[&[&str]] = &[
     &["bloom", "run", "rose.svg", "-o", "o.obj"],
     &["bloom", "run", "rose", "-o", "o.mtg"],
     &["bloom", "run", "start.xyz", "--end", "end.xyz", "-o", "o.ply", "--day", "0.4"],
+    &["bloom", "run", "start.xyz", "--plant", "-o", "o.glb"],
     &["shape", "small.toml", "--edits", "edits.json", "-o", "o.glb", "--no-textures"],
     &["shape", "rose.svg", "--edits", "edits.json", "-o", "o.mtg"],
     &["shape", "one.burgeon", "--edits", "edits.json", "-o", "o.glb"],

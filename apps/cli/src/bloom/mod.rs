@@ -131,7 +131,7 @@ fn plant_formats(args: &BloomRunArgs) -> Outcome {
     let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
     // An animation moves its vertices itself.
     let film =
-        args.day.is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+        args.one_day().is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
     args.given.only_if(
         wind && !film,
         &["wind"],
@@ -157,7 +157,7 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     let picture = ["size", "view"];
     given.only_if(args.png.is_some(), &picture, "pictures", "--png FILE.png, which makes one, is missing")?;
     let extension = files::extension(&args.output);
-    let several = args.day.is_none() && extension.is_none_or(|e| e.eq_ignore_ascii_case("glb"));
+    let several = args.one_day().is_none() && extension.is_none_or(|e| e.eq_ignore_ascii_case("glb"));
     let one = "one shape is written";
     given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
     let film = several && extension.is_some();

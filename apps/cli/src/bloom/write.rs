@@ -62,7 +62,7 @@ pub(super) fn write_show(
         written.take(&shown);
         write_one(outputs, path, &shown, (axes, &args.axes))
     };
-    match (extension.as_deref(), args.day) {
+    match (extension.as_deref(), args.one_day()) {
         (None, _) => {
             let name = names::safe(&show.name);
             for k in 0..args.frames {
