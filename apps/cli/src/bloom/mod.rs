@@ -130,8 +130,8 @@ fn plant_formats(args: &BloomRunArgs) -> Outcome {
         if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
     let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
     // An animation moves its vertices itself.
-    let film =
-        args.one_day().is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+    let film = args.one_day().is_none()
+        && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
     args.given.only_if(
         wind && !film,
         &["wind"],

@@ -37,7 +37,12 @@ pub(super) fn run(
     let several =
         args.end.is_some() || files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let stages = "scans of several days";
-    args.given.only_if(several || !args.plant, &["law", "lattice", "straight"], stages, "this is one scan")?;
+    args.given.only_if(
+        several || !args.plant,
+        &["law", "lattice", "straight"],
+        stages,
+        "this is one scan",
+    )?;
     if args.plant && film && several {
         return Err(Failure::Bad(
             "--plant makes a plant of one day, and no animation: say which with --day, or name a folder for all days".into(),
