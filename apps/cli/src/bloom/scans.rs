@@ -21,12 +21,8 @@ use crate::output::Outputs;
 use crate::stages::{self, Loaded};
 use crate::{edits, files, inputs, poses, report};
 
-pub(super) fn run(
-    args: &BloomRunArgs,
-    law: Option<GrowthLaw>,
-    mut outputs: Outputs,
-    machine: &Machine,
-) -> Outcome {
+/// Fails on options that shapes of these scans have no use for.
+fn check(args: &BloomRunArgs) -> Outcome {
     let start = Path::new(&args.start);
     if !args.plant && files::extension(&args.output).is_some() {
         // Of points only surfaces are known, no structure.
@@ -48,6 +44,17 @@ pub(super) fn run(
             "--plant makes a plant of one day, and no animation: say which with --day, or name a folder for all days".into(),
         ));
     }
+    Ok(())
+}
+
+pub(super) fn run(
+    args: &BloomRunArgs,
+    law: Option<GrowthLaw>,
+    mut outputs: Outputs,
+    machine: &Machine,
+) -> Outcome {
+    let start = Path::new(&args.start);
+    check(args)?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let options = stages::Options { clean: !args.no_clean, split: !args.whole };
     let (loaded, read_ms) = machine.timed(|| {
