@@ -196,9 +196,8 @@ pub(crate) enum FrameWord {
 impl BloomRunArgs {
     /// The day that is made alone: that of `--day`, or of the only scan, if a plant is made of one.
     pub(crate) fn one_day(&self) -> Option<f64> {
-        let start = std::path::Path::new(&self.start);
-        let alone = self.end.is_none()
-            && crate::files::extension(start).is_some_and(|e| !e.eq_ignore_ascii_case("toml"));
+        let extension = std::path::Path::new(&self.start).extension();
+        let alone = self.end.is_none() && extension.is_some_and(|e| !e.eq_ignore_ascii_case("toml"));
         self.day.or_else(|| (self.plant && alone).then(|| self.start_day.unwrap_or(0.0)))
     }
 }
