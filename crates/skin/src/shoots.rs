@@ -132,7 +132,7 @@ impl Shoots {
         (tiles.len() == DENSE.len()).then_some(Self { leaf, tiles, shape: plant.shapes.len() })
     }
 
-    /// Takes the leaves of `plant`, of which these are the shoots, out of it and puts cards of `shoots` times [`LEAVES`]
+    /// Takes the leaves of `plant`, of which these are the shoots, out of it and puts cards of `shoots` times 12
     /// leaves each in their places.
     ///
     /// Guaranteed: together the cards show as much leaf as the leaves have. Cards are leaves with the keys of one of theirs.
