@@ -466,7 +466,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.Look.leaf_color': '叶片的颜色。',
   'tree.Look.leaf_color_to': '个别叶片偏向的颜色（新叶）；默认与叶色相同。',
   'tree.Look.leaf_variation': '叶色变化的幅度，0 至 1，默认 0.5。',
-  'tree.Look.season': '季节，-1 至 1，默认 0：夏季的叶片；-1：春前无叶，叶片由此展开；0.5：全部为秋色；1：全部落下。常绿树不变。',
+  'tree.Look.season':
+    '季节，-1 至 1，默认 0：夏季的叶片；-1：春前无叶，叶片由此展开；0.5：全部为秋色；1：全部落下。常绿树不变。',
   'tree.Look.autumn_color': '叶片在秋季的颜色；默认无：常绿。',
   'tree.Look.autumn_color_to': '个别叶片在秋季偏向的颜色；默认与“秋季叶色”相同。',
   'tree.Look.autumn_outside': '叶片先自树冠外侧变色并落下，如山毛榉和槭树，而不像桦树自内侧开始。默认否。',
