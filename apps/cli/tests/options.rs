@@ -145,8 +145,11 @@ const USES: &[&[&str]] = &[
 
 /// Options that work on such input, but find nothing in this one that they could change: no contour to fill, no branch
 /// beside the stem, one plant, veins as thick as the sides of the finest need.
-const NOTHING_TO_STEER: &[(&str, &[&str])] =
-    &[("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"])];
+const NOTHING_TO_STEER: &[(&str, &[&str])] = &[
+    ("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"]),
+    // The scan is of a bare stem.
+    ("--plant", &["materials"]),
+];
 
 const SMALL: &str = r#"
 name = "small"
