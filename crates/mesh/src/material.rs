@@ -61,6 +61,30 @@ pub struct Texture {
     pub pixels: Vec<u8>,
 }
 
+impl Texture {
+    /// Square pictures of `size` pixels a side, RGBA bytes, row by row in a square of `cells` by `cells`, which is 1 or more;
+    /// pictures beyond that are left out, and what no picture fills is 0.
+    ///
+    /// ```
+    /// let (red, blue) = ([255, 0, 0, 255], [0, 0, 255, 255]);
+    /// let all = mesh::Texture::joined([&red[..], &blue, &red].into_iter(), 1, 2);
+    /// assert_eq!((all.width, all.pixels), (2, [red, blue, red, [0; 4]].concat()));
+    /// ```
+    pub fn joined<'a>(pictures: impl Iterator<Item = &'a [u8]>, size: u32, cells: u32) -> Self {
+        let side = size * cells;
+        let (line, stride, columns) = (4 * size as usize, 4 * side as usize, cells as usize);
+        let mut pixels = vec![0; stride * side as usize];
+        for (k, picture) in pictures.take(columns * columns).enumerate() {
+            let corner = k / columns * size as usize * stride + k % columns * line;
+            for (y, part) in picture.chunks_exact(line).enumerate() {
+                let at = corner + y * stride;
+                pixels[at..at + line].copy_from_slice(part);
+            }
+        }
+        Self { width: side, height: side, pixels }
+    }
+}
+
 /// What a surface has beside its colour, each over the texture coordinates of the mesh. Default: none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Maps {

@@ -25,9 +25,9 @@ const FOOT: f64 = 0.04;
 /// Of the light of the sky, what reaches the inside of a crown however dense it is: light goes from leaf to leaf.
 const INSIDE: f64 = 0.3;
 
-/// The model as an octahedral impostor: an atlas of `size` pixels a side (128 to 4096) with 8 by 8 views of its colours, in the shade of
-/// its own leaves, of normals and depth ([`Impostor`]), on two upright pictures that cross in its middle. A shader that knows such atlases shows the two or three
-/// views nearest to the camera's; other programs show the crossing pictures.
+/// The model as an octahedral impostor: an atlas of `size` pixels a side (128 to 4096) with 8 by 8 views of its colours, in
+/// the shade of its own leaves, of normals and depth ([`Impostor`]), on two upright pictures that cross in its middle. A shader
+/// that knows such atlases shows the two or three views nearest to the camera's; other programs show the crossing pictures.
 ///
 /// Guaranteed: the same bits for any executor. Each view covers as many pixels as the model does. Of nothing nothing is made.
 /// Cost: as 64 pictures without light, about 50 ns a triangle each.
@@ -56,17 +56,8 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
     });
     let views: Vec<View> = views.into_iter().collect::<Result<_, Cancelled>>()?;
     let side = pixels * FRAMES;
-    let mut color = Texture { width: side, height: side, pixels: vec![0; 4 * (side * side) as usize] };
-    let mut normal = color.clone();
-    for (k, view) in views.iter().enumerate() {
-        let (row, stride) = (4 * pixels as usize, 4 * side as usize);
-        let corner = k / FRAMES as usize * pixels as usize * stride + k % FRAMES as usize * row;
-        for y in 0..pixels as usize {
-            let (to, from) = (corner + y * stride, y * row);
-            color.pixels[to..to + row].copy_from_slice(&view.color[from..from + row]);
-            normal.pixels[to..to + row].copy_from_slice(&view.normal[from..from + row]);
-        }
-    }
+    let atlas = |of: fn(&View) -> &[u8]| Texture::joined(views.iter().map(of), pixels, FRAMES);
+    let (color, normal) = (atlas(|v| &v.color), atlas(|v| &v.normal));
     #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
     let narrow = |p: DVec3| p.to_array().map(|x| x as f32);
     #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]

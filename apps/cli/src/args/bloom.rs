@@ -194,6 +194,11 @@ pub(crate) enum FrameWord {
 }
 
 impl BloomRunArgs {
+    /// Whether an animation is written.
+    pub(crate) fn is_film(&self) -> bool {
+        self.one_day().is_none() && self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"))
+    }
+
     /// The day that is made alone: that of `--day`, or of the only scan, if a plant is made of one.
     pub(crate) fn one_day(&self) -> Option<f64> {
         let extension = std::path::Path::new(&self.start).extension();

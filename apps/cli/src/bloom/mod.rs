@@ -129,11 +129,9 @@ fn plant_formats(args: &BloomRunArgs) -> Outcome {
     let written =
         if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
     let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
-    // An animation moves its vertices itself.
-    let film = args.one_day().is_none()
-        && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
     args.given.only_if(
-        wind && !film,
+        // An animation moves its vertices itself.
+        wind && !args.is_film(),
         &["wind"],
         "models of one day as .glb (--day), .usda or .usdz",
         "none is made",
@@ -157,10 +155,10 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     let picture = ["size", "view"];
     given.only_if(args.png.is_some(), &picture, "pictures", "--png FILE.png, which makes one, is missing")?;
     let extension = files::extension(&args.output);
-    let several = args.one_day().is_none() && extension.is_none_or(|e| e.eq_ignore_ascii_case("glb"));
+    let film = args.is_film();
+    let several = film || args.one_day().is_none() && extension.is_none();
     let one = "one shape is written";
     given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
-    let film = several && extension.is_some();
     given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
     let structure = extension.and_then(PlantFormat::from_extension);
     let structure = matches!(structure, Some(PlantFormat::Structure(_)));

@@ -28,8 +28,6 @@ fn check(args: &BloomRunArgs) -> Outcome {
         // Of points only surfaces are known, no structure.
         files::writable(&args.output)?;
     }
-    let film =
-        args.day.is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
     let several =
         args.end.is_some() || files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let stages = "scans of several days";
@@ -39,7 +37,7 @@ fn check(args: &BloomRunArgs) -> Outcome {
         stages,
         "this is one scan",
     )?;
-    if args.plant && film && several {
+    if args.plant && several && args.is_film() {
         return Err(Failure::Bad(
             "--plant makes a plant of one day, and no animation: say which with --day, or name a folder for all days".into(),
         ));

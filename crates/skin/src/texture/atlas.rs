@@ -138,7 +138,7 @@ impl<'a> Cell<'a> {
         let normal = maps.normal.map(|normal| {
             let mut normal = Arc::unwrap_or_clone(normal);
             for (rgba, (_, tilt)) in normal.pixels.chunks_exact_mut(4).zip(&places) {
-                lean([&mut rgba[..3]], *tilt);
+                lean(&mut rgba[..3], *tilt);
             }
             Arc::new(normal)
         });
@@ -146,8 +146,8 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Leans a normal as bytes.
-fn lean([rgb]: [&mut [u8]; 1], tilt: DVec2) {
+/// Leans a normal, three bytes.
+fn lean(rgb: &mut [u8], tilt: DVec2) {
     if tilt == DVec2::ZERO {
         return;
     }
@@ -159,20 +159,11 @@ fn lean([rgb]: [&mut [u8]; 1], tilt: DVec2) {
 
 /// Cells beside and below one another.
 fn joined(cells: &[Surface], size: u32) -> Surface {
-    let columns = columns(cells.len());
-    let side = size * u32::try_from(columns).unwrap_or(1);
+    let columns = u32::try_from(columns(cells.len())).unwrap_or(1);
     let join = |of: &dyn Fn(&Surface) -> Option<Arc<Texture>>| {
         let parts: Vec<Arc<Texture>> = cells.iter().map(of).collect::<Option<_>>()?;
-        let mut all = Texture { width: side, height: side, pixels: vec![0; 4 * (side * side) as usize] };
-        let (row, stride) = (4 * size as usize, 4 * side as usize);
-        for (k, part) in parts.iter().enumerate() {
-            let corner = k / columns * size as usize * stride + k % columns * row;
-            for (y, line) in part.pixels.chunks_exact(row).enumerate() {
-                let at = corner + y * stride;
-                all.pixels[at..at + row].copy_from_slice(line);
-            }
-        }
-        Some(Arc::new(all))
+        let parts = parts.iter().map(|p| p.pixels.as_slice());
+        Some(Arc::new(Texture::joined(parts, size, columns)))
     };
     let maps = Maps {
         normal: join(&|s| s.maps.normal.clone()),

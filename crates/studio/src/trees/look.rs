@@ -70,7 +70,8 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) -
     let mut late = late.into_iter();
     plant.organs.retain(|o| {
         let late = late.next().unwrap_or(0.0);
-        let away = if season < 0.0 { season + 1.0 <= spread * late } else { has_fallen(season, late) };
+        let bud = || Spring::of(season, spread * late).age <= 0.0;
+        let away = if season < 0.0 { bud() } else { has_fallen(season, late) };
         o.kind != OrganKind::Leaf || !away
     });
     before - plant.organs.len()
