@@ -1,6 +1,8 @@
 /** The camera: turned about what it looks at, led to a wish by itself, walked through the scene, and kept. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Box } from '../sheet/geometry';
+import type { PlantView } from '../wire';
 import { Walk, type WalkMode } from './walk';
 
 export const SIDES = ['front', 'back', 'left', 'right', 'top', 'bottom'] as const;
@@ -65,6 +67,29 @@ export interface RigEvents {
   walked(mode: WalkMode | undefined): void;
 }
 
+/**
+ * Has a camera see the part of a plant's front view that the sheet shows. The sheet's height decides; its middle is the
+ * picture's middle, whatever the widths are. `scale`: units of the stage a metre, `up`: of the plant's foot, `aspect`: width by
+ * height of the picture.
+ */
+export function frameSheet(
+  camera: THREE.OrthographicCamera,
+  front: NonNullable<PlantView['front']>,
+  sheet: Box,
+  scale: number,
+  up: number,
+  aspect: number,
+): void {
+  const k = front.metres_per_unit * scale;
+  const x = ((sheet.left + sheet.right) / 2 - front.x) * k;
+  const y = ((sheet.bottom + sheet.top) / 2 - front.y) * k + up;
+  const half = ((sheet.top - sheet.bottom) / 2) * k;
+  const wide = half * aspect;
+  [camera.left, camera.right, camera.bottom, camera.top] = [x - wide, x + wide, y - half, y + half];
+  camera.position.set(0, 0, 10);
+  camera.updateProjectionMatrix();
+}
+
 export class Rig {
   readonly far = new THREE.PerspectiveCamera(LENS.first, 1, 0.01, 200);
   readonly controls: OrbitControls;
@@ -99,6 +124,16 @@ export class Rig {
 
   leave(): void {
     this.wish = undefined;
+  }
+
+  /** With a tool in the hand the second button or two fingers turn the view. */
+  setHands(on: boolean): void {
+    this.controls.mouseButtons = on
+      ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE }
+      : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
+    this.controls.touches = on
+      ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE }
+      : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
   }
 
   /** Wishes to see a box whole; `across`: the share of the height that is free on both sides. */

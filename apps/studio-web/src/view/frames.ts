@@ -12,6 +12,8 @@ export interface Drawer {
   isLed(): boolean;
   /** Draws one, so many milliseconds after the one before; whether something still moves. */
   draw(ms: number): boolean;
+  /** When the last one is seen; undefined: at once. */
+  shown(): Promise<void> | undefined;
   /** Another grain from now on. */
   grained(grain: number): void;
 }
@@ -24,6 +26,9 @@ export class Frames {
   private frame = 0;
   private last = 0;
   private rendered = 0;
+  /** A picture is on its way to the screen, and whether another is wanted after it. */
+  private coming = false;
+  private again = false;
 
   constructor(
     private readonly slow: boolean,
@@ -32,6 +37,10 @@ export class Frames {
 
   redraw(): void {
     if (this.frame || this.drawer.away()) return;
+    if (this.coming) {
+      this.again = true;
+      return;
+    }
     if (!this.drawer.isLed()) this.last = performance.now();
     // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
     const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
@@ -51,8 +60,20 @@ export class Frames {
       if (this.slow) this.spare(now);
       const moves = this.drawer.draw(since);
       this.rendered = performance.now();
-      if (moves) this.redraw();
+      const shown = this.drawer.shown();
+      if (shown) void this.follow(shown, moves);
+      else if (moves) this.redraw();
     });
+  }
+
+  /** The next picture is drawn when this one is seen. */
+  private async follow(shown: Promise<void>, moves: boolean): Promise<void> {
+    this.coming = true;
+    this.again = moves;
+    await shown;
+    this.coming = false;
+    this.rendered = performance.now();
+    if (this.again) this.redraw();
   }
 
   /** The next picture is as fine as those at rest. */

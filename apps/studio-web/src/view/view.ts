@@ -16,7 +16,8 @@ import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import { onScreen, pointerOf, reachOf } from './aim';
 import { bonesOf } from './bones';
-import { Rig, type Side } from './camera';
+import { frameSheet, Rig, type Side } from './camera';
+import { Easel } from './easel';
 import { Frames } from './frames';
 import { type Guide, Guides } from './guides';
 import { immerse, type Within } from './immersion';
@@ -76,6 +77,9 @@ export class PlantView {
   private follow = true;
   private readonly slow: boolean;
   private readonly frames: Frames;
+  private readonly easel: Easel | undefined;
+  /** Shows the pictures and is touched. */
+  private readonly canvas: HTMLCanvasElement;
   /** A tool is in the hand: the first button is the tool's, the second turns the view. */
   private hands = false;
   /** A headset shows the scene. */
@@ -113,9 +117,16 @@ export class PlantView {
         this.render();
         return !there || (this.plants.standIn?.moves ?? false);
       },
+      shown: () => this.easel?.show(),
       grained: (grain) => this.renderer.setPixelRatio(grain),
     });
-    this.renderer = new THREE.WebGLRenderer({ antialias: !this.slow, powerPreference: 'high-performance' });
+    this.renderer = new THREE.WebGLRenderer({
+      antialias: !this.slow,
+      powerPreference: 'high-performance',
+      preserveDrawingBuffer: this.slow,
+    });
+    this.easel = this.slow ? new Easel(this.renderer.getContext() as WebGL2RenderingContext) : undefined;
+    this.canvas = this.easel?.canvas ?? this.renderer.domElement;
     this.renderer.shadowMap.enabled = true;
     // The light stands still: its shadows change with the plant only.
     this.renderer.shadowMap.autoUpdate = false;
@@ -124,7 +135,7 @@ export class PlantView {
     this.renderer.toneMappingExposure = 1.08;
     this.stage = new Stage(this.slow ? SHADOW.fast : SHADOW.fine, this.renderer, () => this.redraw());
     this.element.className = 'view';
-    const canvas = this.renderer.domElement;
+    const { canvas } = this;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
     // Before the camera: what takes an obstacle turns no view.
@@ -185,11 +196,12 @@ export class PlantView {
       },
     );
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
-    canvas.addEventListener('webglcontextlost', (e) => {
+    const { domElement } = this.renderer;
+    domElement.addEventListener('webglcontextlost', (e) => {
       e.preventDefault();
       this.onContext(true);
     });
-    canvas.addEventListener('webglcontextrestored', () => {
+    domElement.addEventListener('webglcontextrestored', () => {
       this.onContext(false);
       this.redraw();
     });
@@ -197,7 +209,7 @@ export class PlantView {
   }
 
   setLabel(label: string): void {
-    this.renderer.domElement.setAttribute('aria-label', label);
+    this.canvas.setAttribute('aria-label', label);
   }
 
   setDark(dark: boolean): void {
@@ -563,12 +575,7 @@ export class PlantView {
   setHands(on: boolean): void {
     if (on === this.hands) return;
     this.hands = on;
-    this.rig.controls.mouseButtons = on
-      ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE }
-      : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
-    this.rig.controls.touches = on
-      ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE }
-      : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
+    this.rig.setHands(on);
     // The tools' strip lies over the foot of the view.
     this.low = on ? STRIP : 0;
     this.inset = this.wanted;
@@ -616,10 +623,10 @@ export class PlantView {
     const { clientWidth: w, clientHeight: h } = this.element;
     const free = Math.max(1, h - this.low);
     const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
-    const world = new THREE.Box3(
-      seen.min.clone().multiplyScalar(this.scale).add(this.holder.position),
-      seen.max.clone().multiplyScalar(this.scale).add(this.holder.position),
-    );
+    const { position } = this.holder;
+    const world = new THREE.Box3();
+    for (const corner of [seen.min, seen.max])
+      world.expandByPoint(corner.clone().multiplyScalar(this.scale).add(position));
     this.rig.frame(world, across, now);
   }
 
@@ -784,24 +791,7 @@ export class PlantView {
     this.rig.far.updateProjectionMatrix();
     const front = this.seen?.front;
     if (!front || !this.sheetSeen) return;
-    const k = front.metres_per_unit * this.scale;
-    const seen = this.sheetSeen;
-    const up = this.holder.position.y;
-    // The sheet's height decides; its middle is the picture's middle, whatever the widths are.
-    const [cx, cy] = [
-      ((seen.left + seen.right) / 2 - front.x) * k,
-      ((seen.bottom + seen.top) / 2 - front.y) * k + up,
-    ];
-    const half = ((seen.top - seen.bottom) / 2) * k;
-    const wide = half * this.rig.far.aspect;
-    [this.flat.left, this.flat.right, this.flat.bottom, this.flat.top] = [
-      cx - wide,
-      cx + wide,
-      cy - half,
-      cy + half,
-    ];
-    this.flat.position.set(0, 0, 10);
-    this.flat.updateProjectionMatrix();
+    frameSheet(this.flat, front, this.sheetSeen, this.scale, this.holder.position.y, this.rig.far.aspect);
   }
 
   private resize(): void {
