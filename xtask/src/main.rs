@@ -167,8 +167,10 @@ fn types() -> Outcome {
 fn test() -> Outcome {
     let tools = web::setup()?;
     cargo(&["test", "--workspace", "--no-fail-fast"])?;
-    // Built with the tests; the library as a program of its own uses it.
+    // Built with the tests; the library as programs of their own use it.
     cargo(&["run", "--quiet", "--package", "burgeon", "--example", "inventory"])?;
+    let stand = ["--example", "stand", "--", "hazel", "--seeds", "2", "--ages", "5,10"];
+    cargo(&[&["run", "--quiet", "--package", "burgeon"][..], &stand].concat())?;
     web::test(&tools, true)?;
     npm::test(&tools)?;
     python::test(true)?;

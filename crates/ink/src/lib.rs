@@ -21,7 +21,7 @@ mod subjects;
 
 pub use class::StrokeClass;
 pub use classify::{
-    COMMON_GROUND, Classified, KeptMeasures, LONE_LINE, ModelError, Source, StrokeFeatures, classify,
+    COMMON_GROUND, Classified, KeptMeasures, LONE_LINE, Source, StrokeFeatures, SvmError, classify,
     classify_again, features,
 };
 #[cfg(any(test, feature = "training"))]

@@ -16,6 +16,7 @@ import {
 } from './geometry';
 import { drawFrame, drawGrid, drawLine, INK, LEAST_INK, type Line, lineThrough } from './ink';
 import { Pen } from './pen';
+import { both, reaches, roomOf, type Stale, staleOf, THICKEST } from './stale';
 
 export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'pull';
 
@@ -106,7 +107,7 @@ export class Sheet {
   private axis: number | undefined;
   /** Strength of the stabiliser, 0 to 3. */
   steady = 1;
-  private baseStale = true;
+  private stale: Stale = 'all';
   private frame = 0;
   private placed = false;
 
@@ -144,6 +145,7 @@ export class Sheet {
   // What is shown -----------------------------------------------------------------------------------------------
 
   setState(state: Pick<SketchState, 'strokes' | 'photo' | 'layers'>, fresh: StrokePoints[]): void {
+    const [photo, order] = [this.photo, this.order];
     this.photo = state.photo;
     if (!state.photo) this.placing = false;
     for (const { id, points } of fresh) this.points.set(id, points);
@@ -185,19 +187,19 @@ export class Sheet {
     this.pending = undefined;
     const left = [...this.selection].filter((id) => free.has(id));
     if (left.length !== this.selection.size) this.select(left);
-    this.redraw(true);
+    this.redraw(photo || this.photo ? 'all' : staleOf(order, this.order));
   }
 
   setImage(image: ImageBitmap): void {
     this.image?.close();
     this.image = image;
-    this.redraw(true);
+    this.redraw('all');
   }
 
   /** Shows lines in the colours of their pens, and not of what they were understood as. */
   setOwnColours(on: boolean): void {
     this.ownColours = on;
-    this.redraw(true);
+    this.redraw('all');
   }
 
   /** The pen that is held: colour, and width in pixels. */
@@ -207,7 +209,7 @@ export class Sheet {
 
   setAxis(axis: number | undefined): void {
     this.axis = axis;
-    this.redraw(true);
+    this.redraw('all');
   }
 
   get symmetric(): boolean {
@@ -217,14 +219,14 @@ export class Sheet {
   /** The stroke that was lifted will not come. */
   dropPending(): void {
     this.pending = undefined;
-    this.redraw(false);
+    this.redraw();
   }
 
   /** What each row of the document was understood as; a row beyond the document is the stroke being drawn. */
   setOrgans(organs: Map<number, string>, doubtful: ReadonlySet<number>): void {
-    let changed = false;
+    let changed: Stale;
     this.strokes.forEach((s, row) => {
-      changed ||= s.organ !== organs.get(row) || s.doubtful !== doubtful.has(row);
+      if (s.organ !== organs.get(row) || s.doubtful !== doubtful.has(row)) changed = both(changed, roomOf(s));
       [s.organ, s.doubtful] = [organs.get(row), doubtful.has(row)];
     });
     this.draftOrgan = organs.get(this.strokes.length);
@@ -239,7 +241,7 @@ export class Sheet {
 
   setDark(dark: boolean): void {
     this.dark = dark;
-    this.redraw(true);
+    this.redraw('all');
   }
 
   setLabel(label: string): void {
@@ -259,7 +261,7 @@ export class Sheet {
     this.selection = new Set(ids);
     const box = this.selectedBox();
     this.events.selected(ids, box && frameOf(this.view, box));
-    this.redraw(false);
+    this.redraw();
   }
 
   /** Says again what is selected: it moved on the screen, or what is known of it changed. */
@@ -306,7 +308,7 @@ export class Sheet {
     const box = this.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const { clientWidth: w, clientHeight: h } = this.element;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
-    this.redraw(true);
+    this.redraw('all');
     this.events.viewport();
   }
 
@@ -367,7 +369,7 @@ export class Sheet {
       const pen = new Pen(this.steady);
       this.act = { kind: 'draw', pen, mode: this.tool };
       this.trace(e, pen, false);
-      this.redraw(false);
+      this.redraw();
     }
   }
 
@@ -453,7 +455,7 @@ export class Sheet {
         this.moved();
         break;
     }
-    this.redraw(false);
+    this.redraw();
   }
 
   /** What a drag comes to with the pointer here. */
@@ -521,7 +523,7 @@ export class Sheet {
       case 'pan':
         break;
     }
-    this.redraw(true);
+    this.redraw('all');
   }
 
   /** Leaves what was begun: a second finger came, or the system took the pointer away. */
@@ -530,7 +532,7 @@ export class Sheet {
     this.act = undefined;
     if (act?.kind === 'draw') this.events.undraft();
     if (act?.kind === 'rub' || (act && 'moved' in act && act.moved)) this.events.end(false);
-    this.redraw(true);
+    this.redraw('all');
   }
 
   private band(from: [number, number], to: [number, number], add: boolean): void {
@@ -562,7 +564,7 @@ export class Sheet {
   }
 
   private moved(): void {
-    this.redraw(true);
+    this.redraw('all');
     this.events.viewport();
   }
 
@@ -587,7 +589,7 @@ export class Sheet {
     const hit = this.hit(at, reach);
     if (hit) {
       this.act.ids.add(hit.id);
-      this.redraw(true);
+      this.redraw('all');
     }
   }
 
@@ -613,44 +615,67 @@ export class Sheet {
     this.moved();
   }
 
-  private redraw(base: boolean): void {
-    this.baseStale ||= base;
+  private redraw(base?: Stale): void {
+    this.stale = both(this.stale, base);
     if (this.frame) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      if (this.baseStale) this.drawBase();
-      this.baseStale = false;
+      if (this.stale) this.drawBase(this.stale);
+      this.stale = undefined;
       this.drawTop();
     });
   }
 
-  private clear(canvas: HTMLCanvasElement): CanvasRenderingContext2D | undefined {
+  private penOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | undefined {
     const c = canvas.getContext('2d');
     if (!c) return undefined;
     const ratio = canvas.width / Math.max(1, this.element.clientWidth);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
     c.lineCap = 'round';
     c.lineJoin = 'round';
     return c;
   }
 
-  private drawBase(): void {
-    const c = this.clear(this.base);
+  private drawBase(stale: Box | 'all'): void {
+    const c = this.penOf(this.base);
     if (!c) return;
+    c.save();
+    const part = stale === 'all' ? undefined : this.clip(c, stale);
+    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
     this.under(c);
-    drawGrid(c, this.view, this.seen(), this.dark);
+    drawGrid(c, this.view, part ?? this.seen(), this.dark);
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
     for (const s of this.order) {
+      if (part && !reaches(s.box, part, THICKEST * (this.wideOf(s) / this.view.scale))) continue;
       c.globalAlpha = gone?.has(s.id) ? 0.15 : s.doubtful ? DOUBT : 1;
       this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
     }
-    c.globalAlpha = 1;
+    c.restore();
+  }
+
+  /** Lets only the pixels round a part of the drawing be drawn; the part that they are. */
+  private clip(c: CanvasRenderingContext2D, part: Box): Box {
+    const ratio = c.getTransform().a;
+    // Of a line as wide as the sheet's, and whole pixels.
+    const around = THICKEST * INK + 2;
+    const [left, top] = toScreen(this.view, part.left, part.top);
+    const [right, bottom] = toScreen(this.view, part.right, part.bottom);
+    const low = (at: number): number => Math.floor((at - around) * ratio) / ratio;
+    const high = (at: number): number => Math.ceil((at + around) * ratio) / ratio;
+    const [x0, y0, x1, y1] = [low(left), low(top), high(right), high(bottom)];
+    c.beginPath();
+    c.rect(x0, y0, x1 - x0, y1 - y0);
+    c.clip();
+    // A dot of the paper, too, may reach in from outside.
+    const [x, y] = toDrawing(this.view, x0 - 2, y1 + 2);
+    const [far, up] = toDrawing(this.view, x1 + 2, y0 - 2);
+    return { left: x, bottom: y, right: far, top: up };
   }
 
   private drawTop(): void {
-    const c = this.clear(this.top);
+    const c = this.penOf(this.top);
     if (!c) return;
+    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
     const live = this.act?.kind === 'draw' ? this.act : this.pending;
     // A layer that was only cleared may be shown with its old picture by browsers that draw without a graphics card.
     this.top.style.visibility =

@@ -21,7 +21,7 @@ mod training;
 pub use context::{KeptMeasures, features};
 pub use features::StrokeFeatures;
 pub use model::{Classified, Source};
-pub use svm::ModelError;
+pub use svm::SvmError;
 #[cfg(any(test, feature = "training"))]
 pub use training::{
     FEW_CLEAR, HeldOut, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes,

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::features::StrokeFeatures;
 use super::packed::unpack;
-use super::svm::{ModelError, Scale, Svm};
+use super::svm::{Scale, Svm, SvmError};
 use crate::StrokeClass;
 
 /// What decided the class of a stroke.
@@ -87,8 +87,8 @@ impl StrokeModels {
     /// Reads the models as programs carry them.
     ///
     /// # Errors
-    /// [`ModelError`] where they are no models of today's features.
-    pub(super) fn unpack(scale: &str, classes: &[u8]) -> Result<Self, ModelError> {
+    /// [`SvmError`] where they are no models of today's features.
+    pub(super) fn unpack(scale: &str, classes: &[u8]) -> Result<Self, SvmError> {
         Ok(Self {
             scale: Scale::parse(scale, &StrokeFeatures::NAMES)?,
             classes: unpack(classes, StrokeFeatures::NAMES.len())?,

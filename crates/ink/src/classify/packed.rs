@@ -4,7 +4,7 @@
 //! (i32), vectors of each class (u32), gamma and rho (f64), then coefficients (f32) and vectors (i16, in [`GRAIN`])
 //! column by column, because the numbers of a column are alike and so compress better.
 
-use super::svm::{ModelError, Svm};
+use super::svm::{Svm, SvmError};
 
 /// First bytes of the form.
 pub(super) const MAGIC: &[u8] = b"svm2";
@@ -16,8 +16,8 @@ pub(super) const GRAIN: f32 = 1.0 / 1024.0;
 /// Reads a machine for rows of `columns` numbers.
 ///
 /// # Errors
-/// [`ModelError`] where the bytes are not such a machine.
-pub(super) fn unpack(mut bytes: &[u8], columns: usize) -> Result<Svm, ModelError> {
+/// [`SvmError`] where the bytes are not such a machine.
+pub(super) fn unpack(mut bytes: &[u8], columns: usize) -> Result<Svm, SvmError> {
     let from = &mut bytes;
     if take(from, MAGIC.len())? != MAGIC {
         return Err(fault("not a packed machine"));
@@ -46,15 +46,15 @@ pub(super) fn unpack(mut bytes: &[u8], columns: usize) -> Result<Svm, ModelError
     Ok(Svm::new(gamma, labels, rho, starts, &coefficients, &values))
 }
 
-fn fault(what: impl Into<String>) -> ModelError {
-    ModelError { line: 0, what: what.into() }
+fn fault(what: impl Into<String>) -> SvmError {
+    SvmError { line: 0, what: what.into() }
 }
 
-fn cut() -> ModelError {
+fn cut() -> SvmError {
     fault("cut off")
 }
 
-fn take<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], ModelError> {
+fn take<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], SvmError> {
     let (taken, rest) = from.split_at_checked(count).ok_or_else(cut)?;
     *from = rest;
     Ok(taken)
@@ -65,7 +65,7 @@ fn numbers<T, const N: usize>(
     from: &mut &[u8],
     count: usize,
     read: fn([u8; N]) -> T,
-) -> Result<Vec<T>, ModelError> {
+) -> Result<Vec<T>, SvmError> {
     let (numbers, _) = take(from, count.saturating_mul(N))?.as_chunks::<N>();
     Ok(numbers.iter().map(|&bytes| read(bytes)).collect())
 }

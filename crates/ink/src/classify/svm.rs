@@ -7,15 +7,15 @@ use base::ops;
 /// Why a model's text cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the model: {what}")]
-pub struct ModelError {
+pub struct SvmError {
     /// Counted from 1; 0 where the text as a whole is meant.
     pub line: usize,
     /// What is wrong with it.
     pub what: String,
 }
 
-pub(super) fn fault(line: usize, what: impl Into<String>) -> ModelError {
-    ModelError { line, what: what.into() }
+pub(super) fn fault(line: usize, what: impl Into<String>) -> SvmError {
+    SvmError { line, what: what.into() }
 }
 
 /// A trained machine.
@@ -141,7 +141,7 @@ fn dot(a: &[f32], b: &[f32]) -> f32 {
 pub(super) fn numbers<'a, T: core::str::FromStr>(
     line: usize,
     words: impl Iterator<Item = &'a str>,
-) -> Result<Vec<T>, ModelError> {
+) -> Result<Vec<T>, SvmError> {
     words.map(|w| w.parse().map_err(|_e| fault(line, format!("{w} is not a number")))).collect()
 }
 
@@ -163,7 +163,7 @@ impl Scale {
     }
 
     /// Reads one line a column (name, mean, one over the deviation); the names must be these, in this order.
-    pub(super) fn parse(text: &str, names: &[&str]) -> Result<Self, ModelError> {
+    pub(super) fn parse(text: &str, names: &[&str]) -> Result<Self, SvmError> {
         let mut columns = Vec::new();
         for (k, content) in text.lines().enumerate() {
             let line = k + 1;

@@ -5,7 +5,7 @@ use core::fmt::Write as _;
 use libsvm_rs::{KernelType, SvmNode, SvmParameterBuilder, SvmProblem, SvmType};
 
 use crate::classify::packed::{GRAIN, MAGIC};
-use crate::classify::svm::{LANES, ModelError, Scale, Svm, fault, numbers};
+use crate::classify::svm::{LANES, Scale, Svm, SvmError, fault, numbers};
 
 /// C-SVC with a radial kernel, one class against one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +20,8 @@ impl RbfLearner {
     /// The model's text, from rows that are scaled already.
     ///
     /// # Errors
-    /// [`ModelError`] where there are fewer than two classes.
-    pub(super) fn learn(&self, rows: &[Vec<f64>], labels: &[i32]) -> Result<String, ModelError> {
+    /// [`SvmError`] where there are fewer than two classes.
+    pub(super) fn learn(&self, rows: &[Vec<f64>], labels: &[i32]) -> Result<String, SvmError> {
         libsvm_rs::set_quiet(true);
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
         let parameter = SvmParameterBuilder::new()
@@ -50,8 +50,8 @@ impl Svm {
     /// machine that is tested is the one that programs carry.
     ///
     /// # Errors
-    /// [`ModelError`] with the line.
-    pub(in crate::classify) fn parse(text: &str, columns: usize) -> Result<Self, ModelError> {
+    /// [`SvmError`] with the line.
+    pub(in crate::classify) fn parse(text: &str, columns: usize) -> Result<Self, SvmError> {
         let (mut gamma, mut rho, mut labels, mut counts) = (None, Vec::<f64>::new(), Vec::new(), Vec::new());
         let mut lines = text.lines().enumerate().map(|(k, l)| (k + 1, l));
         for (line, content) in lines.by_ref() {
@@ -148,8 +148,8 @@ impl Scale {
 /// Writes a machine of `columns` columns; [`unpack`](super::super::packed::unpack) gives it back bit for bit.
 ///
 /// # Errors
-/// [`ModelError`] where it has 2^32 of anything.
-pub(in crate::classify) fn pack(svm: &Svm, columns: usize) -> Result<Vec<u8>, ModelError> {
+/// [`SvmError`] where it has 2^32 of anything.
+pub(in crate::classify) fn pack(svm: &Svm, columns: usize) -> Result<Vec<u8>, SvmError> {
     let number = |n: usize| u32::try_from(n).map(u32::to_le_bytes).map_err(|e| fault(0, e.to_string()));
     let classes = svm.labels.len();
     let mut bytes = MAGIC.to_vec();

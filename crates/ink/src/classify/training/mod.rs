@@ -6,7 +6,7 @@ use base::{Draw, Run, Seed};
 
 use super::features::StrokeFeatures;
 use super::model::StrokeModels;
-use super::svm::{ModelError, Scale, Svm};
+use super::svm::{Scale, Svm, SvmError};
 use super::{Classified, KeptMeasures, judge};
 use crate::{Ink, StrokeClass};
 use libsvm::RbfLearner;
@@ -38,8 +38,8 @@ impl StrokeModelTexts {
     /// The classes as programs carry them: the same machine in a quarter of the bytes.
     ///
     /// # Errors
-    /// [`ModelError`] where the text is no model of today's features.
-    pub fn packed_classes(&self) -> Result<Vec<u8>, ModelError> {
+    /// [`SvmError`] where the text is no model of today's features.
+    pub fn packed_classes(&self) -> Result<Vec<u8>, SvmError> {
         let columns = StrokeFeatures::NAMES.len();
         pack(&Svm::parse(&self.classes, columns)?, columns)
     }
@@ -49,8 +49,8 @@ impl StrokeModels {
     /// Reads the models.
     ///
     /// # Errors
-    /// [`ModelError`] where a text is not a model of today's features.
-    pub(super) fn parse(texts: &StrokeModelTexts) -> Result<Self, ModelError> {
+    /// [`SvmError`] where a text is not a model of today's features.
+    pub(super) fn parse(texts: &StrokeModelTexts) -> Result<Self, SvmError> {
         Ok(Self {
             scale: Scale::parse(&texts.scale, &StrokeFeatures::NAMES)?,
             classes: Svm::parse(&texts.classes, StrokeFeatures::NAMES.len())?,
@@ -93,12 +93,12 @@ fn closed(class: StrokeClass) -> Option<bool> {
 /// digits, not decisions.
 ///
 /// # Errors
-/// [`ModelError`] where the table has fewer than two classes.
-pub fn train_strokes(rows: &[StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
+/// [`SvmError`] where the table has fewer than two classes.
+pub fn train_strokes(rows: &[StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
     train(&rows.iter().collect::<Vec<_>>())
 }
 
-fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
+fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
     let clear: Vec<&&StrokeRow> = rows.iter().filter(|r| r.is_clear()).collect();
     let values: Vec<Vec<f64>> = clear.iter().map(|r| r.features.values().to_vec()).collect();
     let scale = Scale::of(&values);
@@ -116,7 +116,7 @@ fn three(row: &StrokeRow) -> Vec<f64> {
 }
 
 /// The paper's own machine: closed outline (1) or line (0) by the three features alone. It is here to measure by.
-fn train_three(rows: &[&StrokeRow]) -> Result<Svm, ModelError> {
+fn train_three(rows: &[&StrokeRow]) -> Result<Svm, SvmError> {
     let clear = rows.iter().filter(|r| r.is_clear());
     let (values, sides): (Vec<Vec<f64>>, Vec<i32>) =
         clear.filter_map(|r| closed(r.label).map(|c| (three(r), i32::from(c)))).unzip();
@@ -128,8 +128,8 @@ fn train_three(rows: &[&StrokeRow]) -> Result<Svm, ModelError> {
 /// `seed` shuffles the dealing. Takes about a second.
 ///
 /// # Errors
-/// [`ModelError`] where the table has too few rows.
-pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFigures, ModelError> {
+/// [`SvmError`] where the table has too few rows.
+pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFigures, SvmError> {
     let mut found = vec![None; rows.len()];
     for (held, training) in folds(rows, seed) {
         let models = StrokeModels::parse(&train(&training)?)?;
@@ -162,8 +162,8 @@ impl HeldOut {
 /// A classifier for each tenth of the drawings, dealt as for [`cross_validate_strokes`].
 ///
 /// # Errors
-/// [`ModelError`] where the table has too few rows.
-pub fn held_out_strokes(rows: &[StrokeRow], seed: Seed) -> Result<Vec<HeldOut>, ModelError> {
+/// [`SvmError`] where the table has too few rows.
+pub fn held_out_strokes(rows: &[StrokeRow], seed: Seed) -> Result<Vec<HeldOut>, SvmError> {
     let fold = |(held, training): (Vec<usize>, Vec<&StrokeRow>)| {
         let drawings = held.into_iter().map(|i| rows[i].drawing.clone()).collect();
         Ok(HeldOut { drawings, models: StrokeModels::parse(&train(&training)?)? })

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use crate::StrokeClass;
 use crate::classify::features::StrokeFeatures;
-use crate::classify::svm::ModelError;
+use crate::classify::svm::SvmError;
 
 /// Who drew a stroke, which decides how it is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -90,9 +90,9 @@ pub fn write_stroke_table(rows: &[StrokeRow]) -> String {
 /// Reads a table.
 ///
 /// # Errors
-/// [`ModelError`] with the line that is wrong; also where the features are not the ones that are measured now.
-pub fn read_stroke_table(text: &str) -> Result<Vec<StrokeRow>, ModelError> {
-    let fault = |line: usize, what: &str| ModelError { line, what: what.to_owned() };
+/// [`SvmError`] with the line that is wrong; also where the features are not the ones that are measured now.
+pub fn read_stroke_table(text: &str) -> Result<Vec<StrokeRow>, SvmError> {
+    let fault = |line: usize, what: &str| SvmError { line, what: what.to_owned() };
     let mut lines = text.lines().enumerate();
     let want = format!("{HEAD},{}", StrokeFeatures::NAMES.join(","));
     if lines.next().is_none_or(|(_, head)| head != want) {
