@@ -29,10 +29,11 @@ async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
   );
 }
 
+/** What is to be seen, when nothing more is coming. */
 const seen = (page, part) =>
   page
-    .locator('.view canvas')
-    .screenshot()
+    .waitForSelector('.view[data-rests="1"]', { timeout: 60_000 })
+    .then(() => page.locator('.view canvas').screenshot())
     .then((b) => mean(page, b, part));
 const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));

@@ -14,6 +14,8 @@ export interface Drawer {
   draw(ms: number): boolean;
   /** When the last one is seen; undefined: at once. */
   shown(): Promise<void> | undefined;
+  /** Whether what is on the screen is what is wanted there, and nothing more is coming. */
+  rests(on: boolean): void;
   /** Another grain from now on. */
   grained(grain: number): void;
 }
@@ -36,7 +38,9 @@ export class Frames {
   ) {}
 
   redraw(): void {
-    if (this.frame || this.drawer.away()) return;
+    if (this.drawer.away()) return;
+    this.drawer.rests(false);
+    if (this.frame) return;
     if (this.coming) {
       this.again = true;
       return;
@@ -62,7 +66,7 @@ export class Frames {
       this.rendered = performance.now();
       const shown = this.drawer.shown();
       if (shown) void this.follow(shown, moves);
-      else if (moves) this.redraw();
+      else this.went(moves);
     });
   }
 
@@ -73,7 +77,13 @@ export class Frames {
     await shown;
     this.coming = false;
     this.rendered = performance.now();
-    if (this.again) this.redraw();
+    this.went(this.again);
+  }
+
+  /** A picture is seen; `more`: another is to follow it. */
+  private went(more: boolean): void {
+    if (more) this.redraw();
+    else this.drawer.rests(!this.frame && !this.rest);
   }
 
   /** The next picture is as fine as those at rest. */
@@ -87,8 +97,10 @@ export class Frames {
     this.drawn = now;
     this.refine(moving ? GRAIN.moving : GRAIN.rest);
     window.clearTimeout(this.rest);
+    this.rest = 0;
     if (moving)
       this.rest = window.setTimeout(() => {
+        this.rest = 0;
         this.drawn = -Infinity;
         this.redraw();
       }, 2 * SLOW_MS);

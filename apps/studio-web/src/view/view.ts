@@ -118,6 +118,9 @@ export class PlantView {
         return !there || (this.plants.standIn?.moves ?? false);
       },
       shown: () => this.easel?.show(),
+      rests: (on) => {
+        this.element.dataset['rests'] = on ? '1' : '0';
+      },
       grained: (grain) => this.renderer.setPixelRatio(grain),
     });
     this.renderer = new THREE.WebGLRenderer({
