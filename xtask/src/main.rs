@@ -52,7 +52,8 @@ cargo xtask COMMAND
                  published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
-  read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)
+  read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets),
+                 or whether they are read alike when they are drawn in another way (--changed)
   read-in-turn   draws drawings stroke by stroke in several orders: how often strokes become something else (docs/strokes.md)
   train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone

@@ -3,6 +3,8 @@
 //! What is counted is what was built of a drawing ([`Kind::of`]), never what a classifier says of itself. Drawings are
 //! told apart in three parts: one to learn from, one to choose by, and one that is looked at once, at the end.
 
+mod changed;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -19,7 +21,7 @@ use crate::made_drawings::{self, side_by_side};
 use crate::quickdraw::{drawing_of, json_lines, text_of};
 use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
 
-const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures] [--test]";
+const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE] [--test]";
 
 /// Sets of real drawings side by side.
 const SIDE_BY_SIDE: u64 = 60;
@@ -115,18 +117,26 @@ struct Judged {
 }
 
 /// Reads drawings by kind and number. With `--sheets`, writes contact sheets into `out/read`: each drawing beside what was
-/// read in it; with `--pictures`, beside the plant that the command makes of it.
+/// read in it; with `--pictures`, beside the plant that the command makes of it. With `--changed`, says instead how many of
+/// people's drawings are read as something else when they are drawn in another way; with `--without`, how many are read rightly
+/// without a rule.
 ///
 /// # Errors
 /// A sentence: a wrong option, or a file that cannot be read.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let mut folder = repository().join("../shared/data/sketches");
-    let (mut part, mut sheets, mut pictures) = (Part::Choose, false, false);
+    let (mut part, mut sheets, mut pictures, mut again) = (Part::Choose, false, false, false);
     let mut wanted = args.iter();
     while let Some(arg) = wanted.next() {
         match arg.as_str() {
             "--test" => part = Part::Test,
             "--sheets" => sheets = true,
+            "--changed" => again = true,
+            "--without" => {
+                let name = wanted.next().ok_or_else(|| USAGE.to_owned())?;
+                say(&Chosen::of(&folder)?.told_without(name));
+                return Ok(());
+            }
             "--pictures" => (sheets, pictures) = (true, true),
             "--part" => {
                 part = match wanted.next().map(String::as_str) {
@@ -145,13 +155,19 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     if !folder.is_dir() {
         say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
     }
-    let cases = cases(&folder, part)?;
+    if again {
+        let drawings: Vec<Drawing> = people(&folder, part)?.into_iter().map(|c| c.drawing).collect();
+        say(&format!("{} drawings of people:\n\n{}", drawings.len(), changed::table(&drawings)));
+        return Ok(());
+    }
+    let mut cases = cases(&folder, part)?;
+    cases.extend(ways(part));
     let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
     // Called no plant: drawings by people, all others.
     let mut called = [0_usize; 2];
     for case in cases {
         let (reading, unlike) = read(&case.drawing);
-        let people = case.kinds.is_empty() && !case.right.is_empty();
+        let people = case.kinds.is_empty() && !case.right.is_empty() && !case.set.starts_with("way: ");
         called[usize::from(!people)] += usize::from(unlike);
         let judged = judge(&case, reading);
         rows.entry(case.set.clone()).or_default().push((case, judged));
@@ -230,8 +246,25 @@ fn read_without(off: &[&str], seen: &Seen) -> (Reading, bool) {
     (reading, report.warnings.iter().any(|w| w.code == reading::UNLIKE_A_PLANT))
 }
 
-/// Salt of made drawings that nothing else has.
-const UNSEEN: u64 = 9;
+/// Salt of made drawings that nothing else has, and no model has learnt from.
+const UNSEEN: u64 = 8;
+
+/// Of each way to draw a plant some drawings that no model has learnt from.
+fn ways(part: Part) -> Vec<Case> {
+    let made = made_drawings::kinds::of_kinds(UNSEEN + part as u64, MADE_TO_TEST).into_iter();
+    made.filter(|w| w.1 != Kind::None)
+        .enumerate()
+        .map(|(k, (word, kind, lines))| Case {
+            set: format!("way: {word}"),
+            drawing: Drawing::from_polylines(format!("{word} {k}"), &lines),
+            right: Kind::ALL.into_iter().filter(|k| same(*k, kind)).collect(),
+            acceptable: Kind::ALL.into_iter().filter(|k| k.is_like(kind)).collect(),
+            plants: Some(1),
+            kinds: Vec::new(),
+            own: usize::MAX,
+        })
+        .collect()
+}
 
 /// The drawings to choose by, to be read again and again with other rules.
 pub(crate) struct Chosen(Vec<(Case, Seen)>);
@@ -240,21 +273,10 @@ impl Chosen {
     /// Those of the people of `folder`, and made ones: those that are judged by, and of each way to draw a plant some that
     /// no model has learnt from.
     pub(crate) fn of(folder: &Path) -> Outcome<Self> {
-        let ways =
-            made_drawings::kinds::of_kinds(UNSEEN, MADE_TO_TEST).into_iter().filter(|w| w.1 != Kind::None);
-        let ways = ways.map(|(word, kind, lines)| Case {
-            set: word.to_owned(),
-            drawing: Drawing::from_polylines(word, &lines),
-            right: vec![kind],
-            acceptable: Vec::new(),
-            plants: Some(1),
-            kinds: Vec::new(),
-            own: usize::MAX,
-        });
         Ok(Self(
             cases(folder, Part::Choose)?
                 .into_iter()
-                .chain(ways)
+                .chain(ways(Part::Choose))
                 .map(|case| {
                     let seen = Seen::of(&case.drawing);
                     (case, seen)
@@ -270,15 +292,25 @@ impl Chosen {
 
     /// How many are read rightly, and how many so that a person would accept it, with some rules switched off.
     pub(crate) fn judged(&self, off: &[&str]) -> [usize; 2] {
-        let mut found = [0, 0];
-        for (case, seen) in &self.0 {
-            match judge(case, read_without(off, seen).0).verdict {
-                Frame::Right => found[0] += 1,
-                Frame::Acceptable => found[1] += 1,
-                Frame::Wrong => {}
-            }
+        let found = self.verdicts(off);
+        [Frame::Right, Frame::Acceptable].map(|f| found.iter().filter(|v| **v == f).count())
+    }
+
+    fn verdicts(&self, off: &[&str]) -> Vec<Frame> {
+        self.0.iter().map(|(case, seen)| judge(case, read_without(off, seen).0).verdict).collect()
+    }
+
+    /// What a rule changes, drawing by drawing.
+    fn told_without(&self, rule: &str) -> String {
+        let (with, without) = (self.verdicts(&[]), self.verdicts(&[rule]));
+        let mut out = String::new();
+        for ((case, _), (a, b)) in self.0.iter().zip(with.iter().zip(&without)).filter(|(_, (a, b))| a != b) {
+            let _ = writeln!(out, "{}, {}: {a:?}, without `{rule}` {b:?}", case.set, case.drawing.name);
         }
-        found
+        let right = |list: &[Frame]| list.iter().filter(|v| **v == Frame::Right).count();
+        let _ =
+            write!(out, "{} right of {}, without `{rule}` {}", right(&with), self.count(), right(&without));
+        out
     }
 }
 
@@ -478,7 +510,11 @@ fn judge(case: &Case, reading: Reading) -> Judged {
 }
 
 fn same(found: Kind, meant: Kind) -> bool {
-    let group = |k| if k == Kind::Conifer { Kind::Tree } else { k };
+    let group = |k| match k {
+        Kind::Conifer => Kind::Tree,
+        Kind::Flowers => Kind::Flower,
+        k => k,
+    };
     group(found) == group(meant)
 }
 
@@ -526,7 +562,7 @@ fn table(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
         "{:34} {:>4} {:>6} {:>6} {:>6} {:>7}  found",
         "drawings", "all", "right", "accept", "wrong", "number"
     );
-    let mut sum = [[0_usize; 5]; 3];
+    let mut sum = [[0_usize; 5]; 4];
     for (set, list) in rows {
         let count = |f: Frame| list.iter().filter(|(_, j)| j.verdict == f).count();
         let counts = [
@@ -539,6 +575,7 @@ fn table(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
         let group = match list.first() {
             Some((c, _)) if c.kinds.len() == 1 => 2,
             Some((c, _)) if c.right.is_empty() => 1,
+            Some((c, _)) if c.set.starts_with("way: ") => 3,
             _ => 0,
         };
         sum[group].iter_mut().zip(counts).for_each(|(s, c)| *s += c);
@@ -564,7 +601,7 @@ fn table(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
         );
     }
     for (name, [all, right, accept, wrong, number]) in
-        ["one drawing", "several plants", "made trees"].iter().zip(sum)
+        ["one drawing", "several plants", "made trees", "ways to draw one"].iter().zip(sum)
     {
         let _ = writeln!(
             out,

@@ -13,12 +13,21 @@ use crate::kept::{alike, same_bits};
 use crate::near::{Near, bounds};
 use crate::thresholds::{ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{Veins, choose_midrib};
-use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord};
+use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord};
 
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
 const SESSILE: f64 = 0.02;
 /// As [`SESSILE`], as a share of the leaf's size: large leaves leave a larger gap.
 const SESSILE_SHARE: f64 = 0.08;
+/// A leaf or petal drawn as one line is half as wide as this share of its length.
+const LENS: f64 = 0.055;
+/// Petals that were drawn as lines are at least so many and at most so many; each begins within so many radii of the disc, points
+/// away from its middle by more than this cosine, and reaches at most so many times as far as the usual one.
+const FEWEST_RAYS: usize = 5;
+const MOST_RAYS: usize = 200;
+const RAY_FOOT: f64 = 1.6;
+const RAY_WAY: f64 = 0.7;
+const LONG_RAY: f64 = 1.8;
 /// Lines that are a tuft of grass at least: three are a stem with two branches.
 const FEWEST_BLADES: usize = 4;
 /// The ground under a tuft: its ends are this far apart as a share of its length, and it rises by less than that share of
@@ -52,7 +61,8 @@ const FAR: f64 = 0.25;
 
 /// Lines that fan out from the top of a trunk without a crown are the fronds of a palm.
 pub(crate) fn fronds(draft: &mut Draft<'_>) {
-    if draft.bodies.is_empty() || !draft.regions.is_empty() || (!draft.open_top && draft.blades.is_empty()) {
+    let bare = draft.regions.is_empty() && (draft.open_top || !draft.blades.is_empty());
+    if draft.bodies.is_empty() || !bare || draft.is_tree() {
         return;
     }
     let tops: Vec<(DVec2, f64)> = draft
@@ -77,7 +87,7 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
         let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
         let blade = fan.zip(stroke).and_then(|(last, k)| {
             let points = oriented(&line.points, last);
-            Sheetlet::lens(&points, k, 0.055 * polyline_length(&points))
+            Sheetlet::lens(&points, k, LENS * polyline_length(&points))
         });
         match blade {
             Some(blade) => {
@@ -85,6 +95,47 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
                 draft.blades.push(blade);
             }
             None => draft.lines.push(line),
+        }
+    }
+}
+
+/// Of what is taken for a flower, lines all round a disc that point away from it are its petals.
+pub(crate) fn rays(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
+    if !draft.kind.is_some_and(|k| k.is_like(Kind::Flower)) || draft.lines.len() > MOST_RAYS {
+        return;
+    }
+    for (disc, _) in discs {
+        // Whether a line that points away ends at the disc.
+        let away = |line: &Line| {
+            let ends = [line.points[0], line.points[line.points.len() - 1]];
+            let last = ends[1].distance(disc.centre) < ends[0].distance(disc.centre);
+            let (root, tip) = (ends[usize::from(last)] - disc.centre, ends[usize::from(!last)] - disc.centre);
+            let out = tip - root;
+            let at_disc = root.length() < RAY_FOOT * disc.radius;
+            (at_disc && out.dot(root) > RAY_WAY * out.length() * root.length())
+                .then_some((last, tip.length()))
+        };
+        let found: Vec<Option<(bool, f64)>> = draft.lines.iter().map(away).collect();
+        let mut reach: Vec<f64> = found.iter().flatten().map(|f| f.1).collect();
+        base::sort_numbers(&mut reach);
+        let Some(&usual) = reach.get(reach.len() / 2).filter(|_| reach.len() >= FEWEST_RAYS) else {
+            continue;
+        };
+        for (line, ray) in std::mem::take(&mut draft.lines).into_iter().zip(found) {
+            let stroke =
+                line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
+            // The stem goes on where petals end.
+            let petal = ray.filter(|r| r.1 < LONG_RAY * usual).zip(stroke).and_then(|((last, _), k)| {
+                let points = oriented(&line.points, last);
+                Sheetlet::lens(&points, k, LENS * polyline_length(&points))
+            });
+            match petal {
+                Some(petal) => {
+                    draft.set_organ(line.source, OrganWord::Leaf);
+                    draft.blades.push(petal);
+                }
+                None => draft.lines.push(line),
+            }
         }
     }
 }
@@ -98,7 +149,8 @@ pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
             use StrokeClass::{Corolla, Crown, Disc, Fruit, Pot, Scribble};
             [Corolla, Crown, Disc, Fruit, Pot, Scribble].contains(c)
         });
-    if !bare || draft.lines.len() < FEWEST_BLADES || draft.lines.len() > MOST_GRASS {
+    let few = draft.lines.len() < FEWEST_BLADES || draft.lines.len() > MOST_GRASS;
+    if !bare || few || draft.is_tree() {
         return;
     }
     let mut near = Near::new(0.04);

@@ -19,6 +19,14 @@ const TRUNK_TALL: f64 = 0.8;
 const TRUNK_SHARE: f64 = 0.12;
 const CROWN_SHARE: f64 = 0.2;
 
+/// The waist of what is known to be a tree lies in these levels of [`LEVELS`]; its trunk goes on up to where it is so many
+/// times as wide as there; and its crown fills this share of its hull, or it is bare branches.
+const WAIST: core::ops::Range<usize> = 3..42;
+const ABOVE_WAIST: f64 = 1.3;
+const FULL_CROWN: f64 = 0.65;
+/// Levels of the height at which the width is looked at.
+const LEVELS: usize = 60;
+
 /// The outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
 pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     let hull = convex_hull(points);
@@ -36,27 +44,18 @@ pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
 /// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown. `known`: it is a tree,
 /// so that the neck may be less clear.
 pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
-    const LEVELS: usize = 60;
     let (lo, hi) = bounds(outline)?;
     let height = hi.y - lo.y;
     #[expect(clippy::cast_precision_loss, reason = "60 levels")]
     let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
     let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
-    let widest = width.iter().copied().fold(0.0, f64::max);
-    let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
-    let mut below: Vec<f64> = width[..first_wide].to_vec();
-    base::sort_numbers(&mut below);
-    let median = below.get(below.len() / 2).copied()?;
-    // The neck ends where the outline first becomes clearly wider than the trunk for good.
-    let top = (0..=first_wide).rev().find(|&k| width[k] < TRUNK_WIDTH * median).map_or(first_wide, |k| k + 1);
+    let (top, narrow) = clear_neck(&width, if known { NECK_OF_A_TREE } else { NECK })
+        .or_else(|| waist(&width).filter(|_| known))?;
     let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-    let (thin, wider) = if known { NECK_OF_A_TREE } else { NECK };
-    let jump = width[(top + 3).min(LEVELS - 1)] > wider * width[top.saturating_sub(3)];
-    let fits = median < thin * widest
-        && trunk_height > TRUNK_TALL * median
+    let fits = trunk_height > TRUNK_TALL * narrow
         && trunk_height > TRUNK_SHARE * height
         && crown_height > CROWN_SHARE * height;
-    if !(fits && jump) {
+    if !fits {
         return None;
     }
     let cut = |keep_above: bool| {
@@ -74,7 +73,29 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
         }
         simple_outline(&part)
     };
-    cut(false).zip(cut(true))
+    let full =
+        |crown: &Vec<DVec2>| !known || signed_area(crown) > FULL_CROWN * signed_area(&convex_hull(crown));
+    cut(false).zip(cut(true).filter(full))
+}
+
+/// The level at which an outline becomes clearly wider than its lower part, for good, and how wide that is.
+fn clear_neck(width: &[f64], (thin, wider): (f64, f64)) -> Option<(usize, f64)> {
+    let widest = width.iter().copied().fold(0.0, f64::max);
+    let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
+    let mut below: Vec<f64> = width[..first_wide].to_vec();
+    base::sort_numbers(&mut below);
+    let median = below.get(below.len() / 2).copied()?;
+    let top = (0..=first_wide).rev().find(|&k| width[k] < TRUNK_WIDTH * median).map_or(first_wide, |k| k + 1);
+    let jump = width[(top + 3).min(LEVELS - 1)] > wider * width[top.saturating_sub(3)];
+    (median < thin * widest && jump).then_some((top, median))
+}
+
+/// As [`clear_neck`], of a trunk that is wide, or whose foot is: over its narrowest level.
+fn waist(width: &[f64]) -> Option<(usize, f64)> {
+    let at = WAIST.min_by(|&a, &b| width[a].total_cmp(&width[b]))?;
+    let widest = width[at..].iter().copied().fold(0.0, f64::max);
+    let top = (at..LEVELS).find(|&k| width[k] > ABOVE_WAIST * width[at])?;
+    (width[at] < NECK_OF_A_TREE.0 * widest).then_some((top, width[at]))
 }
 
 pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {

@@ -129,6 +129,11 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// The whole is taken for a tree: what stands is its trunk, and what leaves that are branches.
+    pub(crate) fn is_tree(&self) -> bool {
+        self.kind.is_some_and(|k| k.is_like(Kind::Tree))
+    }
+
     /// Strokes of a class that were drawn in parts mode.
     pub(crate) fn of_class(&self, class: StrokeClass) -> Vec<usize> {
         (0..self.class.len())
@@ -461,7 +466,9 @@ impl<'a> Draft<'a> {
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
         let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
         let orders = self.forest.order.iter().copied().max().unwrap_or(0);
-        let woody = crown || trunk || (orders >= 2 && flowers.is_empty() && self.bodies.is_empty());
+        let lines = orders >= 2 && flowers.is_empty() && self.bodies.is_empty();
+        let bare = self.is_tree() && orders >= 1;
+        let woody = crown || trunk || lines || bare;
         for axis in &mut self.forest.axes {
             if axis.kind == AxisKind::Stem && woody {
                 axis.kind = AxisKind::Branch;

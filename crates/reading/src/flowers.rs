@@ -21,7 +21,7 @@ use crate::draft::Draft;
 use crate::near::{Near, bounds};
 use crate::rings::Ring;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, STOPPED_SHORT, WELL_SHORT};
-use crate::{BladeReading, DiscReading, OrganWord};
+use crate::{BladeReading, DiscReading, Kind, OrganWord};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
@@ -115,11 +115,12 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         draft.of_class(StrokeClass::Axis).into_iter().map(|k| ink.strokes[k].points.as_slice()).collect();
     for k in draft.of_class(StrokeClass::Corolla) {
         let mut points = ink.strokes[k].points.clone();
+        // Of grass nothing is a trunk.
+        let lone = axes.is_empty() && discs.is_empty() && draft.kind != Some(Kind::Grass);
         if draft.bodies.is_empty()
-            && axes.is_empty()
+            && lone
             && let Some(outline) = geom::simple_outline(&points)
             && let Some((trunk, top)) = neck(&outline, false)
-            && discs.is_empty()
             && slender(&trunk)
         {
             let ring = Ring { points: trunk, ..Ring::default() };
@@ -134,7 +135,7 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         if pieces.is_empty() {
             pieces.extend(Sheetlet::new(&points, k));
         }
-        if draft.bodies.is_empty() && axes.is_empty() && discs.is_empty() {
+        if draft.bodies.is_empty() && lone {
             trunk_piece(draft, &mut pieces);
         }
         draft.organ[k] = if pieces.is_empty() { OrganWord::Ignored } else { OrganWord::Leaf };
@@ -184,6 +185,9 @@ fn core_of(
     axes: &[&[DVec2]],
 ) -> Core {
     let Some((lo, hi)) = bounds(points) else { return Core::Ground(0.0) };
+    if draft.kind == Some(Kind::Grass) {
+        return Core::Ground(lo.y);
+    }
     let size = lo.distance(hi);
     let hull = geom::convex_hull(points);
     let middle = if hull.len() > 2 { geom::centroid(&hull) } else { lo.midpoint(hi) };
@@ -297,7 +301,8 @@ fn by_disc(
                 return;
             }
             let (p, d) = match roots[i] {
-                Some(r) => (r, r.distance(disc.centre)),
+                // Loops in one go cross themselves farther out than where they stand.
+                Some(r) => (r, r.distance(disc.centre).min(blade.gap.distance(disc.centre))),
                 None => blade.nearest(disc.centre),
             };
             if d < reach && best.is_none_or(|(b, ..)| d < b) {

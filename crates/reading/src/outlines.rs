@@ -145,7 +145,7 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
             as_lines(draft, ring);
             continue;
         }
-        draft.open_top |= draft.trunk || closed.first().is_some_and(|l| !l.closed_end);
+        draft.open_top |= draft.trunk || draft.is_tree() || closed.first().is_some_and(|l| !l.closed_end);
         let first = draft.forest.add_body(closed, base.map(|b| b.0), source);
         draft.bodies.extend(first.filter(|_| base.is_none()));
         for &part in &ring.parts {
@@ -220,7 +220,7 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
         .map(|k| loops.get(k).map_or(draft.ink.strokes[*k].points.as_slice(), Vec::as_slice))
         .collect();
     let mut left_out = 0;
-    let is_tree = draft.kind.is_some_and(|k| k.is_like(Kind::Tree)) && draft.bodies.is_empty();
+    let is_tree = draft.is_tree() && draft.bodies.is_empty();
     for ring in rings(&points) {
         let Some(mut outline) = crown_outline(&ring.points) else {
             for &part in &ring.parts {
@@ -236,7 +236,10 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
             let source = Some(draft.ink.strokes[stroke].index);
             let bottom = Ring { gaps: Vec::new(), parts: Vec::new(), points: trunk };
             draft.open_top = true;
-            let row = draft.forest.add_body(limbs(&bottom, None), None, source);
+            // Below the neck there is nothing but the trunk: corners of a foot that flares are no limbs.
+            let mut trunk = limbs(&bottom, None);
+            trunk.truncate(1);
+            let row = draft.forest.add_body(trunk, None, source);
             draft.bodies.extend(row);
             outline = crown;
         }
@@ -455,7 +458,7 @@ pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
 
 /// Short lines on the outline of a cactus are its thorns: root and tip, with what bears them.
 pub(crate) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)> {
-    if draft.bodies.is_empty() || !draft.regions.is_empty() || draft.open_top {
+    if draft.bodies.is_empty() || !draft.regions.is_empty() || draft.open_top || draft.is_tree() {
         return Vec::new();
     }
     let height: f64 = draft.bodies.iter().map(|&r| draft.forest.length(r)).fold(0.0, f64::max);

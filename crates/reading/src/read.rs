@@ -3,11 +3,13 @@
 use std::cell::RefCell;
 
 use base::Report;
-use ink::{COMMON_GROUND, Classified, Ink, Source};
+use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
+use crate::built::pointed;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
+use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers,
     inertia, kinds, outlines, pressed, rules, several, veins,
@@ -196,6 +198,8 @@ const MOST_STROKES: usize = 200;
 /// A drawing of more strokes is not compared with other kinds at all: the numbers of the whole would take two fifths of
 /// the time of each stroke that is added, and the model learnt from none so large.
 const MOST_JUDGED: usize = 1000;
+/// A palm has at least so many fronds where the whole is known to be one.
+const FEWEST_FRONDS: usize = 2;
 /// Readings that are told.
 const TOLD: usize = 3;
 
@@ -212,8 +216,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     };
     // Petals round a middle were no chance either.
     let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
-    // Roots under the ground are those of what stands on it; the model learnt from no drawing that has any.
-    let rooted = reading.axes.iter().any(|a| a.kind == AxisKind::Root);
+    // Roots under the ground are those of what stands on it; the model learnt from no drawing that has any. Without a ground
+    // they are lines that lead down, of which each kind makes something else.
+    let rooted = reading.axes.iter().any(|a| a.kind == AxisKind::Root)
+        && reading.strokes.iter().any(|s| s.class == StrokeClass::Ground);
     let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
         let (own, sure) =
@@ -228,7 +234,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let mut again = Report::default();
         let tried = attempt(asked, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.
-        if other.kind.is_like(Kind::of(&tried)) {
+        if is_built(other.kind, &tried) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
         }
     }
@@ -257,6 +263,24 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
     reading
+}
+
+/// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood without a crown
+/// is a bare tree and a pointed crown down to the ground a fir, two fronds on a trunk are a palm, a body without leaves is a
+/// cactus, whatever it stands in, and blades that nothing bears are grass.
+fn is_built(kind: Kind, reading: &Reading) -> bool {
+    let no_flower = reading.flowers.is_empty() && reading.fruits.is_empty();
+    let bare = reading.regions.is_empty();
+    let needed = match kind {
+        Kind::Tree | Kind::Conifer => reading.woody && reading.regions.iter().all(|r| pointed(&r.outline)),
+        Kind::Palm => bare && reading.woody && reading.leaves.len() >= FEWEST_FRONDS,
+        Kind::Cactus => {
+            bare && reading.leaves.is_empty() && reading.axes.iter().any(|a| !a.half_width.is_empty())
+        }
+        Kind::Grass => bare && reading.axes.is_empty() && reading.leaves.len() >= FEWEST_PETALS,
+        _ => false,
+    };
+    kind.is_like(Kind::of(reading)) || (no_flower && needed)
 }
 
 /// A fruit and a root are built alike: the model says which of them it is.
@@ -316,14 +340,14 @@ fn attempt(
     outlines::bodies(&mut draft);
     outlines::crowns(&mut draft, report);
     draft.blades();
-    if draft.kind.is_some_and(bears_no_flower) {
-        draft.blades.iter_mut().for_each(|b| b.leaf = true);
-    }
     if !off.contains(&GREEN_LEAVES) {
         draft.green_leaves();
     }
     let discs = flowers::discs(&draft);
     flowers::corollas(&mut draft, &discs);
+    if draft.kind.is_some_and(bears_no_flower) {
+        draft.blades.iter_mut().for_each(|b| b.leaf = true);
+    }
     outlines::scribbled_trunk(&mut draft);
     draft.scribbled_crowns(report);
     let veins = veins::collect(&mut draft, off);
@@ -331,6 +355,7 @@ fn attempt(
     draft.last_resort(&discs, report);
     let thorns = outlines::thorns(&mut draft);
     attach::fronds(&mut draft);
+    attach::rays(&mut draft, &discs);
     attach::grass_blades(&mut draft);
     let (discs, nuts) = attach::part_discs(&draft, discs);
     let bearers = flowers::Bearers::new(&draft);

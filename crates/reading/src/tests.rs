@@ -1,3 +1,5 @@
+mod taken;
+
 use base::Report;
 use base::ops;
 use geom::contains;
@@ -520,17 +522,17 @@ fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
     assert_eq!((r.axes.len(), r.strokes[0].class), (0, StrokeClass::Ground), "{:?}", r.strokes);
     assert!(r.leaves.len() >= 3, "{} blades", r.leaves.len());
     // The kind of the whole does not see it without the rule: then it is a cactus.
-    let kinds = ["", "zigzag"].map(|off| whole_without(off, &[zigzag.clone(), flat.clone()]));
+    let kinds = ["", "zigzag"].map(|off| whole_without(off, &[zigzag.clone(), flat.clone()]).0);
     assert_eq!(kinds, [Kind::Grass, Kind::Cactus]);
 }
 
-/// The kind of the one plant that programs read, with a rule switched off.
-fn whole_without(off: &str, lines: &[Vec<DVec2>]) -> Kind {
+/// The kind and the leaves of the one plant that programs read, with a rule switched off.
+fn whole_without(off: &str, lines: &[Vec<DVec2>]) -> (Kind, usize) {
     let ink = clean(&Drawing::from_polylines("whole", lines), &mut Report::default());
     let classes = ink::classify(&ink, &base::Run::plain());
     let r = read_without(&[off], &ink, &classes, &mut Report::default());
     assert_eq!(r.plants.len(), 1);
-    r.plants[0].kind
+    (r.plants[0].kind, r.leaves.len())
 }
 
 fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
@@ -611,9 +613,9 @@ fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
         (StrokeClass::Axis, line((6.0, 0.0), (6.3, 3.0))),
     ]);
     assert_eq!((r.regions.len(), r.fruits.len(), r.leaves.len()), (0, 0, 5), "{:?}", r.strokes);
-    // Four of them are grass by the whole, too, and without the rule a cactus.
+    // Four of them are grass by the whole, too, but without the rule each is one broad blade.
     let four = [0.0, 3.0, 6.0, 9.0].map(v);
-    assert_eq!(["", "tuft"].map(|off| whole_without(off, &four)), [Kind::Grass, Kind::Cactus]);
+    assert_eq!(["", "tuft"].map(|off| whole_without(off, &four)), [(Kind::Grass, 8), (Kind::Grass, 4)]);
     // A trough is no root: what is round below stays a crown.
     let bowl: Vec<DVec2> = (0..=40)
         .map(|i| ops::PI * f64::from(i) / 40.0)

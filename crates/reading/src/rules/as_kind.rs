@@ -3,14 +3,16 @@
 //! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the user
 //! set stay.
 
-use geom::{contains, convex_hull, signed_area};
+use geom::{contains, convex_hull, polyline_length, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whole_flower, whole_tree};
+use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whole_flower, whole_tree};
+use crate::contour::neck;
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
+use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
 use crate::{Kind, READ_AS};
 
@@ -23,6 +25,10 @@ const NARROW: f64 = 0.55;
 /// A part of a crown has more than this share of the area of the largest part; a fruit in it less than that.
 const MAIN_CROWN: f64 = 0.12;
 const FRUIT: f64 = 0.05;
+/// What is enclosed makes up this share of the hull of the whole tree, or the tree is bare.
+const COVERED: f64 = 0.15;
+/// The outline of a trunk and its limbs fills less than this share of its hull.
+const HOLLOW: f64 = 0.65;
 /// A level line below this is the ground under a palm, and under a cactus below that.
 const LOW: f64 = 0.2;
 const LOWEST: f64 = 0.1;
@@ -158,9 +164,18 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
     let largest = green.iter().map(|p| p.area).fold(0.0, f64::max);
     let mut found = wood(&trunk);
     let main: Vec<&&Part> = green.iter().filter(|p| p.area > MAIN_CROWN * largest && !p.is_level()).collect();
+    if kind != Kind::Bush && is_bare(draft, parts, &main) {
+        let ground = |p: &Part| p.is_level() && p.lo.y < all.0.y + FOOT;
+        let class = |p: &Part| if ground(p) { StrokeClass::Ground } else { StrokeClass::Axis };
+        found.extend(green.iter().map(|p| (p.stroke, class(p))));
+        return found;
+    }
     let around: Vec<DVec2> = main.iter().flat_map(|p| p.hull.iter().copied()).collect();
     let hull = convex_hull(&around);
-    for p in &green {
+    let whole = green.iter().find(|p| p.area >= largest && p.lo.y < all.0.y + FOOT && kind != Kind::Bush);
+    let limbs = whole.filter(|p| trunk.is_empty() && is_limbs(draft, p)).map(|p| p.stroke);
+    found.extend(limbs.map(|k| (k, StrokeClass::TrunkOutline)));
+    for p in green.iter().filter(|p| limbs != Some(p.stroke)) {
         let inside = share_inside(&draft.ink.strokes[p.stroke].points, STRIDE, &hull) > WITHIN;
         let class = if p.is_level() && p.lo.y < all.0.y + FOOT {
             StrokeClass::Ground
@@ -176,6 +191,30 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
         found.push((p.stroke, class));
     }
     found
+}
+
+/// An outline with hollows and no neck goes round a trunk and its limbs.
+fn is_limbs(draft: &Draft<'_>, p: &Part) -> bool {
+    let points = &draft.ink.strokes[p.stroke].points;
+    let outline = simple_outline(points);
+    let hollow = outline.as_ref().is_none_or(|o| signed_area(o) < HOLLOW * p.area);
+    hollow && outline.is_none_or(|o| neck(&o, true).is_none())
+}
+
+/// What might be a crown encloses too little of the tree: bare branches, a fir of single twigs.
+fn is_bare(draft: &Draft<'_>, parts: &[Part], crown: &[&&Part]) -> bool {
+    let all: Vec<DVec2> = parts.iter().flat_map(|p| p.hull.iter().copied()).collect();
+    let whole = signed_area(&convex_hull(&all));
+    let lines: Vec<&[DVec2]> = crown.iter().map(|p| draft.ink.strokes[p.stroke].points.as_slice()).collect();
+    let enclosed = |ring: &Ring| {
+        let gaps: f64 = ring.gaps.iter().map(|&g| ring.gap(g)).map(|(a, b)| a.distance(b)).sum();
+        let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
+        let area = signed_area(&convex_hull(&ring.points));
+        // One line may leave its crown open; ends of twigs that happen to be near one another make none.
+        let left_open = ring.parts.len() == 1 && area > COVERED * whole;
+        if gaps < CLOSED * drawn || left_open { area } else { 0.0 }
+    };
+    rings(&lines).iter().map(enclosed).sum::<f64>() < COVERED * whole
 }
 
 fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
@@ -236,10 +275,15 @@ fn grass(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         let s = &draft.ink.strokes[p.stroke];
         let heights: Vec<f64> = s.points.iter().map(|q| q.y).collect();
-        if p.is_level() && dips(&heights, GRASS_DIP * p.tall()).len() < GRASS_DIPS {
-            StrokeClass::Ground
-        } else if dips(&heights, GRASS_DIP * p.tall()).len() >= GRASS_DIPS {
+        let low = |y: Option<&f64>| y.is_some_and(|y| *y < p.lo.y + 0.5 * p.tall());
+        let blades = dips(&heights, GRASS_DIP * p.tall()).len();
+        // Up and down twice is a row of two; down and up, two lines.
+        let row =
+            blades >= GRASS_DIPS || (blades + 1 == GRASS_DIPS && low(heights.first()) && low(heights.last()));
+        if row && !(p.is_level() && blades < GRASS_DIPS) {
             StrokeClass::Corolla
+        } else if p.is_level() {
+            StrokeClass::Ground
         } else if p.open < MOUTH {
             StrokeClass::Blade
         } else {

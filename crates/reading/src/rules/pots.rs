@@ -110,19 +110,22 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
     if boxes.len() != strokes.len() || draft.class.contains(&StrokeClass::Ground) {
         return found;
     }
-    for (k, s) in strokes.iter().enumerate() {
+    let level = |k: usize| {
         let (lo, hi) = boxes[k];
-        let level = openness(s) > LEVEL && hi.y - lo.y < FLAT * (hi.x - lo.x);
+        openness(&strokes[k]) > LEVEL && hi.y - lo.y < FLAT * (hi.x - lo.x)
+    };
+    for (k, &(lo, hi)) in boxes.iter().enumerate() {
         let others = || boxes.iter().enumerate().filter(|(j, _)| *j != k);
         let reach = others().map(|(_, b)| *b).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let wide = reach.is_some_and(|(l, h)| hi.x - lo.x > WIDE * (h.x - l.x));
-        if !unsure(draft, k) || !level || !wide {
+        if !unsure(draft, k) || !level(k) || !wide {
             continue;
         }
         let y = lo.y.midpoint(hi.y);
         let below: Vec<usize> =
             others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
-        let lines = below.iter().all(|&j| openness(&strokes[j]) > 0.5 && unsure(draft, j));
+        // What has a bottom is a pot.
+        let lines = below.iter().all(|&j| openness(&strokes[j]) > 0.5 && unsure(draft, j) && !level(j));
         let stands = others().any(|(j, b)| {
             b.1.y > y + RISES * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
         });

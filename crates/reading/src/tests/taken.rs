@@ -1,0 +1,122 @@
+//! Drawings taken for a kind: what is then built of them.
+
+use super::*;
+
+/// What is built of lines that are taken for a kind.
+fn taken(kind: Kind, lines: &[Vec<DVec2>]) -> Reading {
+    let ink = clean(&Drawing::from_polylines("taken", lines), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let r = read_as(Some(kind), &ink, &classes, &mut Report::default());
+    assert_eq!(r.validate().count(), 0);
+    r
+}
+
+fn thick(r: &Reading) -> usize {
+    r.axes.iter().filter(|a| !a.half_width.is_empty()).count()
+}
+
+#[test]
+fn a_tree_of_bare_branches_has_no_crown_and_no_thorns() {
+    // A trunk of two lines, and crooked twigs that enclose next to nothing.
+    let trunk = [line((-0.6, 0.0), (-0.4, 5.0)), line((0.6, 0.0), (0.4, 5.0))];
+    let twig = |k: i32| {
+        let (side, y) = (if k % 2 == 0 { 1.0 } else { -1.0 }, 3.0 + 0.4 * f64::from(k));
+        path(&[(side * 0.4, y), (side * 1.6, y + 0.6), (side * 1.9, y + 1.9)])
+    };
+    let lines: Vec<Vec<DVec2>> = trunk.into_iter().chain((0..6).map(twig)).collect();
+    let ink = clean(&Drawing::from_polylines("bare tree", &lines), &mut Report::default());
+    let said = |k| perhaps(if k < 2 { StrokeClass::TrunkOutline } else { StrokeClass::Crown }, 0.5);
+    let classes: Vec<Classified> = (0..lines.len()).map(said).collect();
+    let r = read_as(Some(Kind::Tree), &ink, &classes, &mut Report::default());
+    assert_eq!(r.validate().count(), 0);
+    assert_eq!(Kind::of(&r), Kind::Tree);
+    assert!(r.regions.is_empty() && r.thorns.is_empty() && r.leaves.is_empty(), "{:?}", r.strokes);
+    assert!(r.axes.iter().filter(|a| a.bearer.is_some()).count() >= 6, "each twig is borne");
+    // With its crown it is as before.
+    let crown = [lines[..2].to_vec(), vec![circle((0.0, 6.5), 2.4)]].concat();
+    let ink = clean(&Drawing::from_polylines("tree", &crown), &mut Report::default());
+    let r = read_as(Some(Kind::Tree), &ink, &classes[..3], &mut Report::default());
+    assert_eq!((Kind::of(&r), r.regions.len()), (Kind::Tree, 1));
+}
+
+#[test]
+fn a_fir_of_single_twigs_has_branches_on_both_sides() {
+    let trunk = line((0.0, 0.0), (0.0, 10.0));
+    let twig = |k: i32| {
+        let (y, half) = (3.0 + 1.2 * f64::from(k), 3.4 - 0.5 * f64::from(k));
+        path(&[(-half, y - 0.8), (0.0, y), (half, y - 0.8)])
+    };
+    let lines: Vec<Vec<DVec2>> = core::iter::once(trunk).chain((0..6).map(twig)).collect();
+    let r = taken(Kind::Tree, &lines);
+    assert!(r.woody && r.leaves.is_empty() && r.regions.is_empty(), "{:?}", r.strokes);
+    assert_eq!(r.axes.iter().filter(|a| a.bearer.is_some()).count(), 12, "each twig is two branches");
+}
+
+#[test]
+fn a_tree_in_one_line_is_cut_at_its_waist_and_bare_limbs_are_not() {
+    // A trunk with a wide foot, half as wide as its crown.
+    let waist = path(&[
+        (-2.4, 0.0),
+        (-1.2, 1.0),
+        (-1.2, 3.0),
+        (-3.0, 3.6),
+        (-3.0, 6.4),
+        (0.0, 7.6),
+        (3.0, 6.4),
+        (3.0, 3.6),
+        (1.2, 3.0),
+        (1.2, 1.0),
+        (2.4, 0.0),
+        (-2.4, 0.0),
+    ]);
+    let r = taken(Kind::Tree, &[waist]);
+    assert_eq!((r.regions.len(), thick(&r)), (1, 1), "{:?}", r.strokes);
+    assert_eq!(Kind::of(&r), Kind::Tree);
+    // Three limbs on a trunk, in one line.
+    let limbs = path(&[
+        (-1.0, 0.0),
+        (-0.8, 4.0),
+        (-3.6, 8.0),
+        (-3.0, 8.4),
+        (-0.3, 5.4),
+        (-0.4, 9.4),
+        (0.4, 9.4),
+        (0.3, 5.4),
+        (3.0, 8.4),
+        (3.6, 8.0),
+        (0.8, 4.0),
+        (1.0, 0.0),
+    ]);
+    let r = taken(Kind::Tree, &[limbs]);
+    assert_eq!((r.regions.len(), thick(&r), r.woody), (0, 3, true), "{:?}", r.strokes);
+}
+
+#[test]
+fn lines_all_round_a_disc_are_the_petals_of_a_flower() {
+    let ray = |k: i32| {
+        let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0 + 0.1);
+        line((1.1 * c, 8.0 + 1.1 * s), (3.0 * c, 8.0 + 3.0 * s))
+    };
+    let lines: Vec<Vec<DVec2>> =
+        [circle((0.0, 8.0), 1.0), line((0.0, 0.0), (0.0, 7.0))].into_iter().chain((0..12).map(ray)).collect();
+    let r = taken(Kind::Flower, &lines);
+    assert_eq!(r.flowers.iter().map(|f| f.petals.len()).collect::<Vec<_>>(), [12], "{:?}", r.strokes);
+    assert_eq!(r.axes.len(), 1, "the stem");
+}
+
+#[test]
+fn rows_of_grass_are_no_flower() {
+    let row = |x: f64| {
+        path(&[
+            (x, 0.0),
+            (x + 0.4, 3.0),
+            (x + 0.8, 0.6),
+            (x + 1.3, 4.0),
+            (x + 1.7, 0.4),
+            (x + 2.2, 3.0),
+            (x + 2.5, 0.0),
+        ])
+    };
+    let r = taken(Kind::Grass, &[row(0.0), row(3.4), row(6.6)]);
+    assert_eq!((r.flowers.len(), r.axes.len(), r.leaves.len()), (0, 0, 9), "{:?}", r.strokes);
+}
