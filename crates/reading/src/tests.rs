@@ -1,3 +1,4 @@
+mod flowers;
 mod taken;
 
 use base::Report;
@@ -87,169 +88,6 @@ fn a_flower_with_a_stem_and_two_leaves() {
     for leaf in &r.leaves {
         assert!(leaf.root.distance(leaf.tip) > 0.15 && leaf.midrib[0] == leaf.root, "{leaf:?}");
     }
-}
-
-#[test]
-fn petals_begun_at_their_tips_are_rooted_in_the_middle() {
-    let mut strokes: Vec<_> = petals((5.0, 10.0), 6, 2.0)
-        .into_iter()
-        .map(|mut p| {
-            p.rotate_left(20);
-            (StrokeClass::Blade, p)
-        })
-        .collect();
-    strokes.push((StrokeClass::Axis, line((5.0, 8.0), (5.2, 0.0))));
-    let (r, _) = reading(&strokes);
-    assert_eq!((r.flowers.len(), r.leaves.len()), (1, 0));
-    let f = &r.flowers[0];
-    assert_eq!(f.petals.len(), 6);
-    assert!(f.petals.iter().all(|p| p.root.distance(f.centre) < 0.03), "roots in the middle");
-}
-
-#[test]
-fn a_disc_gathers_its_petals_and_two_whorls_are_told_apart() {
-    let mut strokes = vec![(StrokeClass::Disc, circle((5.0, 10.0), 0.6))];
-    strokes.extend(petals((5.0, 10.0), 6, 3.0).into_iter().map(|p| (StrokeClass::Blade, p)));
-    strokes.extend(petals((5.0, 10.0), 6, 1.7).into_iter().map(|p| (StrokeClass::Blade, p)));
-    strokes.push((StrokeClass::Axis, line((5.0, 7.0), (5.2, 0.0))));
-    let (r, _) = reading(&strokes);
-    assert_eq!((r.flowers.len(), r.flowers[0].petals.len()), (1, 12));
-    let inner = r.flowers[0].petals.iter().filter(|p| p.whorl == 1).count();
-    assert_eq!(inner, 6);
-    assert!(r.flowers[0].disc.is_some_and(|d| d.centre.distance(r.flowers[0].centre) < 1e-9));
-}
-
-/// `n` petals on a ring of a share of their reach, unevenly by up to a tenth of it, begun at their roots or their tips.
-fn ring_of_petals(n: i32, ring: f64, seed: u64) -> Vec<Vec<DVec2>> {
-    let r = &mut base::Seed::new(seed).stream(base::Draw::Test);
-    let mut petals = Vec::new();
-    for k in 0..n {
-        let a = ops::TAU * (f64::from(k) + r.range(-0.1, 0.1)) / f64::from(n) + 0.3;
-        let reach = 3.0 * r.range(0.93, 1.07);
-        let (foot, lean) = (3.0 * ring * r.range(0.9, 1.1), a + r.range(-0.04, 0.04));
-        let root = (5.0 + foot * ops::cos(a), 10.0 + foot * ops::sin(a));
-        let tip = (5.0 + reach * ops::cos(lean), 10.0 + reach * ops::sin(lean));
-        let wide = (3.6 * (0.5 + 0.5 * ring) * ops::PI / f64::from(n)).min(1.6);
-        let mut petal = leaf(root, tip, wide);
-        if seed.is_multiple_of(2) {
-            petal.rotate_left(20);
-        }
-        petals.push(petal);
-    }
-    petals
-}
-
-#[test]
-fn petals_on_a_ring_without_a_disc_are_one_flower() {
-    for (n, ring) in [(6, 0.25), (6, 0.35), (8, 0.2), (8, 0.3), (8, 0.4), (12, 0.2), (12, 0.3), (16, 0.35)] {
-        for seed in 1..=12 {
-            let mut strokes: Vec<_> =
-                ring_of_petals(n, ring, seed).into_iter().map(|p| (StrokeClass::Blade, p)).collect();
-            strokes.push((StrokeClass::Axis, line((5.0, 10.0 - 3.0 * ring), (5.2, 0.0))));
-            strokes.push((StrokeClass::Blade, leaf((5.1, 4.0), (7.5, 5.5), 0.8)));
-            strokes.push((StrokeClass::Blade, leaf((5.1, 3.0), (2.5, 4.5), 0.8)));
-            let (r, _) = reading(&strokes);
-            let petals: Vec<usize> = r.flowers.iter().map(|f| f.petals.len()).collect();
-            let what = format!("{n} petals at {ring}, seed {seed}");
-            assert_eq!((petals, r.leaves.len()), (vec![n.unsigned_abs() as usize], 2), "{what}");
-            assert!(r.flowers[0].bearer.is_some(), "{what}: on its stem");
-            strokes.truncate(n.unsigned_abs() as usize);
-            let (r, _) = reading(&strokes);
-            assert_eq!((r.flowers.len(), r.leaves.len()), (1, 0), "{what}, alone");
-        }
-    }
-}
-
-#[test]
-fn leaves_along_a_stem_and_two_flowers_side_by_side_are_no_ring() {
-    // Five pairs of leaves, and two flowers of which each petal is nearer to the other flower's than to its own.
-    let mut strokes = vec![(StrokeClass::Axis, line((5.0, 12.0), (5.2, 0.0)))];
-    for k in 0..5 {
-        let y = 2.0 + 2.0 * f64::from(k);
-        strokes.push((StrokeClass::Blade, leaf((5.05, y), (7.5, y + 1.0), 0.8)));
-        strokes.push((StrokeClass::Blade, leaf((5.05, y), (2.5, y + 1.0), 0.8)));
-    }
-    let (r, _) = reading(&strokes);
-    assert_eq!((r.flowers.len(), r.leaves.len()), (0, 10));
-    for seed in 1..=12 {
-        let mut strokes = Vec::new();
-        for x in [0.0, 6.6] {
-            for mut petal in ring_of_petals(8, 0.3, seed) {
-                petal.iter_mut().for_each(|p| p.x += x);
-                strokes.push((StrokeClass::Blade, petal));
-            }
-            strokes.push((StrokeClass::Axis, line((5.0 + x, 9.1), (5.2 + x, 0.0))));
-        }
-        let (r, _) = reading(&strokes);
-        let petals: Vec<usize> = r.flowers.iter().map(|f| f.petals.len()).collect();
-        assert_eq!(petals, [8, 8], "seed {seed}");
-    }
-}
-
-/// The petals of a cone with radius and height, whose axis stands out of the sheet by an angle, as they are seen.
-fn petals_of_a_cone(n: i32, (radius, height): (f64, f64), out: f64) -> Vec<Vec<DVec2>> {
-    let (s, c) = ops::sin_cos(out.to_radians());
-    let seen = |t: f64, a: f64| {
-        let (x, v) = (radius * t * ops::cos(a), radius * t * ops::sin(a));
-        DVec2::new(400.0 + x, 600.0 + height * t * c + v * s)
-    };
-    let half = 0.8 * ops::PI / f64::from(n);
-    let petal = |k: i32| {
-        let a = ops::TAU * f64::from(k) / f64::from(n) + 0.3;
-        let side = |sign: f64| {
-            move |i: i32| {
-                let t = f64::from(i) / 20.0;
-                seen(t, a + sign * half * ops::sin(ops::PI * t).sqrt())
-            }
-        };
-        (0..20).map(side(1.0)).chain((0..=20).rev().map(side(-1.0))).collect()
-    };
-    (0..n).map(petal).collect()
-}
-
-#[test]
-fn no_petal_of_a_tilted_cone_is_lost() {
-    for (radius, height) in [(120.0, 100.0), (120.0, 60.0), (120.0, 2.0), (100.0, 150.0)] {
-        for out in [20.0, 30.0, 45.0, 60.0] {
-            for n in [5, 6, 8, 12] {
-                let petals = petals_of_a_cone(n, (radius, height), out).into_iter();
-                let mut strokes: Vec<_> = petals.map(|p| (StrokeClass::Blade, p)).collect();
-                strokes.push((StrokeClass::Axis, line((400.0, 600.0), (405.0, 200.0))));
-                let (r, _) = reading(&strokes);
-                let petals: Vec<usize> = r.flowers.iter().map(|f| f.petals.len()).collect();
-                let what = format!("radius {radius}, height {height}, {out} degrees, {n} petals");
-                assert_eq!((petals, r.leaves.len()), (vec![n.unsigned_abs() as usize], 0), "{what}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_rose_window_in_one_stroke() {
-    let scallops: Vec<DVec2> = (0..=400)
-        .map(|i| ops::TAU * f64::from(i) / 400.0)
-        .map(|t| {
-            DVec2::new(5.0, 10.0) + DVec2::new(ops::cos(t), ops::sin(t)) * (2.0 + ops::sin(4.0 * t).abs())
-        })
-        .collect();
-    let (r, _) =
-        reading(&[(StrokeClass::Corolla, scallops), (StrokeClass::Axis, line((5.0, 8.0), (5.0, 0.0)))]);
-    assert_eq!((r.flowers.len(), r.leaves.len(), r.axes.len()), (1, 0, 1));
-    assert_eq!(r.flowers[0].petals.len(), 8);
-    assert_eq!(organs(&r), ["petal", "branch"]);
-}
-
-#[test]
-fn leaves_thick_along_a_branch_are_no_flower() {
-    let mut strokes = vec![(StrokeClass::Axis, line((0.0, 0.0), (10.0, 3.0)))];
-    for i in 0..30 {
-        let x = 0.5 + 0.3 * f64::from(i);
-        let up = if i % 2 == 0 { 1.0 } else { -1.0 };
-        strokes.push((StrokeClass::Blade, leaf((x, 0.3 * x), (x + 0.5, 0.3 * x + up), 0.4)));
-    }
-    let (r, _) = reading(&strokes);
-    assert_eq!((r.flowers.len(), r.leaves.len()), (0, 30));
-    assert!(r.leaves.iter().all(|l| l.bearer.is_some()), "all borne");
 }
 
 #[test]
@@ -573,38 +411,6 @@ fn lines_below_a_long_level_line_are_roots() {
 }
 
 #[test]
-fn green_beside_petals_of_another_colour_is_a_leaf() {
-    let mut lines = vec![circle((5.0, 8.0), 0.8)];
-    lines.extend(petals((5.0, 8.0), 8, 3.0));
-    lines.push(line((5.0, 7.2), (5.0, 0.0)));
-    let mut drawing = Drawing::from_polylines("flower", &lines);
-    let of = |drawing: &Drawing, off: &[&str]| {
-        let ink = clean(drawing, &mut Report::default());
-        let class = |k: u32| match k {
-            0 => StrokeClass::Disc,
-            9 => StrokeClass::Axis,
-            _ => StrokeClass::Blade,
-        };
-        let classes: Vec<Classified> = ink.strokes.iter().map(|s| perhaps(class(s.index), 0.9)).collect();
-        let r = read_without(off, &ink, &classes, &mut Report::default());
-        (r.flowers.iter().map(|f| f.petals.len()).sum::<usize>(), r.leaves.len())
-    };
-    let paint = |drawing: &mut Drawing, petal: [u8; 3], two: [u8; 3]| {
-        for (k, s) in drawing.strokes.iter_mut().enumerate() {
-            s.color = Some(if k == 3 || k == 7 { two } else { petal });
-        }
-    };
-    paint(&mut drawing, [200, 30, 60], [40, 150, 50]);
-    assert_eq!(of(&drawing, &[]), (6, 2));
-    assert_eq!(of(&drawing, &["green-leaves"]), (8, 0));
-    // Where all are green, or none is, colours say nothing.
-    paint(&mut drawing, [40, 150, 50], [90, 180, 60]);
-    assert_eq!(of(&drawing, &[]), (8, 0));
-    paint(&mut drawing, [200, 30, 60], [230, 200, 40]);
-    assert_eq!(of(&drawing, &[]), (8, 0));
-}
-
-#[test]
 fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
     let v = |x: f64| path(&[(x - 1.0, 4.0), (x, 0.0), (x + 1.2, 4.0)]);
     let r = guessed(&[
@@ -825,19 +631,6 @@ fn each_of_several_plants_is_read_by_itself_and_stays_where_it_was_drawn() {
     set[0] = Classified::by_user(StrokeClass::Fruit);
     let r = read(&ink, &set, &mut Report::default());
     assert_eq!(r.strokes[0].class, StrokeClass::Fruit);
-}
-
-#[test]
-fn round_petals_about_a_disc_are_a_flower() {
-    let mut lines = vec![circle((5.0, 8.0), 0.7), line((5.0, 0.0), (5.0, 6.0))];
-    lines.extend((0..5).map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 5.0)).map(|(s, c)| {
-        let way = DVec2::new(c, s) * 1.7 + DVec2::new(5.0, 8.0);
-        circle((way.x, way.y), 0.95)
-    }));
-    let ink = clean(&Drawing::from_polylines("flower", &lines), &mut Report::default());
-    let r = read(&ink, &ink::classify(&ink, &base::Run::plain()), &mut Report::default());
-    assert_eq!((r.flowers.len(), r.flowers.first().map(|f| f.petals.len())), (1, Some(5)), "{:?}", r.strokes);
-    assert_eq!((r.plants[0].kind, r.regions.len()), (Kind::Flower, 0));
 }
 
 #[test]
