@@ -24,6 +24,8 @@ struct Tally {
     ground: u64,
     noise: u64,
     others: u64,
+    /// Of leaves; 0 for a bare tree.
+    leaves: u64,
     wood: u64,
     other_things: u64,
     bridges: u64,
@@ -156,6 +158,7 @@ fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> Tally {
         ground: t.ground as u64,
         noise: t.noise as u64,
         others: t.others as u64,
+        leaves: t.leaves as u64,
         wood: t.wood as u64,
         other_things: t.other_things as u64,
         bridges: t.bridges as u64,

@@ -59,7 +59,7 @@ impl Stalk {
 }
 
 /// Pieces of a stalk that stand straight at every day.
-const STILL: usize = 4;
+const STILL: usize = 8;
 
 impl FlowerSpec {
     /// Place of flower `f` in the order in which the flowers of a cluster open, 0 to 1.
@@ -100,7 +100,7 @@ impl FlowerSpec {
         let share = ops::lerp(ops::lerp(self.nods.bud, 1.0, open), self.nods.wilted, wilt);
         let single = self.umbel <= 1;
         let nod = if single { rad((self.nod_deg * share).min(170.0)) } else { 0.0 };
-        let line = bent(DVec3::ZERO, self.stalk_m, [0.0, nod], 12);
+        let line = bent(DVec3::ZERO, self.stalk_m, [0.0, nod], 24);
         let end = line.last().copied().unwrap_or_default();
         let axis = bent(end, self.cluster.axis_m, [0.0, rad(self.cluster.arch_deg)], 16);
         Stalk { line, nod, axis, radius: self.stalk_radius() }

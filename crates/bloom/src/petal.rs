@@ -201,11 +201,61 @@ pub(crate) struct Nest {
     /// Metres a step.
     step: f64,
     angle: [f64; FINE + 1],
+    /// Distance from the axis that a closed bud leaves at each height, and its top.
+    room: [f64; FINE + 1],
+    top: f64,
 }
+
+/// What lies inside a closed bud is so much narrower: a share of the distance from the axis, of its length at most.
+const WITHIN: f64 = 0.16;
+const MARGIN: f64 = 0.02;
+/// In a closed bud, edges are so far over one another at most, in distances from the axis.
+const OVER: f64 = 0.06;
 
 impl Nest {
     pub(crate) fn new(reach: f64) -> Self {
-        Self { step: reach.max(1e-6) / FINE as f64, angle: [f64::INFINITY; FINE + 1] }
+        let far = [f64::INFINITY; FINE + 1];
+        Self { step: reach.max(1e-6) / FINE as f64, angle: far, room: far, top: f64::INFINITY }
+    }
+
+    /// The greatest distance from the axis at a height, in a bud that closes.
+    fn room(&self, height: f64) -> f64 {
+        self.room[self.bin(height)]
+    }
+
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to FINE")]
+    fn bin(&self, height: f64) -> usize {
+        // Insertions may lie below the base of the flower.
+        (height / self.step + 0.1 * FINE as f64).clamp(0.0, FINE as f64) as usize
+    }
+
+    /// A bud that closes shuts in what lies within it, where it bends inwards.
+    fn shut_in(&mut self, curve: &Curve) {
+        if curve.closed <= 0.0 {
+            return;
+        }
+        let mut wide = [0.0_f64; FINE + 1];
+        let inwards = curve.points.windows(2).zip(&curve.angles).filter(|(_, a)| **a < 0.0);
+        for (pair, _) in inwards {
+            let [a, b] = [pair[0][1], pair[1][1]].map(|h| self.bin(h));
+            let r = pair[0][0].max(pair[1][0]);
+            wide[a.min(b)..=a.max(b)].iter_mut().for_each(|w| *w = w.max(r));
+        }
+        let top = curve.points.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
+        let (end, last) = (curve.points[FINE][0], self.bin(top));
+        let tight = ops::smoothstep(0.0, 0.4, curve.closed);
+        for (k, w) in wide.into_iter().enumerate() {
+            let r = if w > 0.0 {
+                w
+            } else if k > last {
+                end
+            } else {
+                continue;
+            };
+            let within = r - (WITHIN * r).min(MARGIN * curve.length);
+            self.room[k] = self.room[k].min(ops::lerp(1.6 * r, within, tight));
+        }
+        self.top = self.top.min(top - 2.0 * self.step + (1.0 / tight.max(1e-9) - 1.0) * curve.length);
     }
 
     /// The greatest angle to the axis at a way from the base, radians.
@@ -229,11 +279,14 @@ impl Nest {
 }
 
 /// The line that a petal follows in the half plane of its azimuth, by even steps.
+#[derive(Clone)]
 pub(crate) struct Curve {
     length: f64,
     /// Distance from the axis, height, and sine and cosine of the angle to the axis.
     points: [[f64; 4]; FINE + 1],
     angles: [f64; FINE + 1],
+    /// How far it comes back to the axis, 0 to 1: what does so closes a bud.
+    closed: f64,
 }
 
 impl Curve {
@@ -243,7 +296,7 @@ impl Curve {
         let bent =
             |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (mut radius, mut height) = (whorl.insertion.radius_m, whorl.insertion.height_m);
-        let least = radius.min(0.0012);
+        let least = radius.min(0.0012).min(0.03 * state.length);
         let step = state.length / FINE as f64;
         let mut points = [[0.0; 4]; FINE + 1];
         let mut angles = [0.0; FINE + 1];
@@ -255,9 +308,13 @@ impl Curve {
             points[k] = [radius, height, sin, cos];
             // A profile that comes to the axis runs up along it.
             radius = (radius + sin * step).max(least);
-            height += cos * step;
+            height = (height + cos * step).min(nest.top.max(height));
+            radius = radius.min(nest.room(height));
         }
-        Self { length: state.length, points, angles }
+        let widest = points.iter().map(|p| p[0]).fold(0.0, f64::max);
+        let comes_back = 1.0 - ops::smoothstep(0.3, 0.7, points[FINE][0] / widest.max(1e-9));
+        let closed = comes_back * (1.0 - ops::smoothstep(0.25, 0.6, state.open));
+        Self { length: state.length, points, angles, closed }
     }
 
     fn at(&self, v: f64) -> [f64; 4] {
@@ -301,6 +358,7 @@ impl FlowerSpec {
             ground.next_ring(n, size);
         }
         let mut shared: Option<(Curve, State, Vec<[f32; 3]>)> = None;
+        let mut innermost: Option<Curve> = None;
         for &(rank, k) in &order {
             let last = f64::from(n.max(2) - 1);
             let later = if together { 0.0 } else { ring.succession * f64::from(rank) / last };
@@ -320,6 +378,9 @@ impl FlowerSpec {
                 if loose {
                     state.wilt = (state.wilt + 0.6 * (times.life - released)).min(0.85);
                 }
+                if !loose {
+                    innermost = Some(curve.clone());
+                }
                 let colors = Self::colors(ring, &state, rows);
                 if alone {
                     let grid = self.petal(ring, (&curve, &state, colors), rows, (k, rank));
@@ -332,6 +393,10 @@ impl FlowerSpec {
                 let grid = self.petal(ring, (curve, state, colors.clone()), rows, (k, rank));
                 bed.petal(kind, grid);
             }
+        }
+        // Petals of one ring lie over one another; the next ring lies within.
+        if let Some(curve) = innermost {
+            nest.shut_in(&curve);
         }
     }
 
@@ -368,6 +433,16 @@ impl FlowerSpec {
             Aestivation::Valvate => 0.485 * whorl.narrowest(),
             Aestivation::Fused => 0.5 * apart,
         };
+        // In a bud that closes, neighbours meet; as it opens, they get the width that is theirs.
+        let meet = match whorl.aestivation {
+            Aestivation::Contorted | Aestivation::Imbricate => 0.54 * apart,
+            Aestivation::Valvate => widest,
+            Aestivation::Fused => 0.0,
+        };
+        let lean = whorl.lean_m.abs()
+            * if whorl.aestivation == Aestivation::Imbricate { 0.5 * f64::from(whorl.count) } else { 1.0 };
+        let even = whorl.spacing_deg <= 0.0 && whorl.count > 1;
+        let shut = if even { curve.closed * (1.0 - ops::smoothstep(0.0, 0.35, state.open)) } else { 0.0 };
         let level = 0.5 * f64::from(whorl.count.max(1) - 1) - f64::from(rank);
         let twist = rad(whorl.twist_deg) * (1.0 - state.open);
         for (i, &row) in rows.along.iter().enumerate() {
@@ -382,8 +457,9 @@ impl FlowerSpec {
                     broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from(u8::from(i % 2 == 1));
                 }
                 let [radius, height, s, c] = curve.at(v);
-                let spread =
-                    if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
+                let wrapped = if fused { widest } else { broad / radius.max(1e-4) };
+                let shut = shut * meet * (1.0 - ops::smoothstep(0.92, 1.0, v));
+                let spread = wrapped.max(shut).min(0.9 * ops::PI).min(widest);
                 let angle = azimuth + u * spread + twist * v;
                 let (sin, cos) = ops::sin_cos(angle);
                 // Waves are those of the whole flower: petals that lie over one another wave together.
@@ -394,6 +470,7 @@ impl FlowerSpec {
                     Aestivation::Imbricate => whorl.lean_m * level,
                     _ => 0.0,
                 };
+                let own = own * (OVER * radius / (curve.closed * lean).max(1e-12)).min(1.0);
                 let cup = whorl.cup * state.open * half * u * u * v.min(0.3) / 0.3;
                 let lean = own - cup + room * Self::waves(angle, v, state);
                 let (r, y) = ((radius + lean * c).max(1e-5), height - lean * s);

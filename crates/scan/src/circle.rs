@@ -16,6 +16,8 @@ pub(crate) struct Circle {
     pub(crate) share: f64,
     /// The share of its circumference that has points, 0 to 1.
     pub(crate) covered: f64,
+    /// Of all points, the share well inside it: wood has none.
+    pub(crate) inside: f64,
 }
 
 /// Sectors of a circumference.
@@ -81,6 +83,8 @@ pub(crate) fn fit_circle(points: &[DVec2], noise: f64, largest: f64, stream: &mu
         own: near.len(),
         share: near.len() as f64 / points.len() as f64,
         covered: sectors.iter().filter(|s| **s).count() as f64 / SECTORS as f64,
+        inside: points.iter().filter(|p| p.distance(centre) < radius - 2.0 * width).count() as f64
+            / points.len() as f64,
     })
 }
 

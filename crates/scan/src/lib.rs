@@ -7,6 +7,7 @@
 //! | `ground` | [`Ground`]: the terrain below a tree |
 //! | `ways` | ways along the surface from the foot, across gaps |
 //! | `stems` | what stands on the ground: the tree, and what is left out |
+//! | `foliage` | leaves told from wood |
 //! | `levels` | level sets of the ways: the skeleton |
 //! | `circle` | circles through noisy points |
 //! | `radii` | radii from circles, the pipe model where points are few |
@@ -16,6 +17,7 @@
 
 mod circle;
 mod error;
+mod foliage;
 mod ground;
 mod levels;
 mod radii;

@@ -12,6 +12,11 @@ use crate::ways::Ways;
 
 /// Points of a cross-section that are looked at.
 const MOST: usize = 400;
+/// Circles with a greater error of the logarithm, or a shorter arc, tell nothing.
+const VAGUE: f64 = 0.5;
+const ARC: f64 = 0.3;
+/// Nor do circles with a greater share of the points inside: leaves and twigs fill them.
+const HOLLOW: f64 = 0.08;
 /// Axes measured in one job.
 const GROUP: usize = 32;
 
@@ -75,6 +80,10 @@ fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) 
             let ratio = circle.radius / wide;
             let odd = if (0.6..1.6).contains(&ratio) { 0.0 } else { 0.3 * ops::ln(ratio).abs() };
             let error = error_of(&circle, noise) + odd;
+            // What tells no more than the model does is mostly of twigs side by side, and too wide.
+            if error > VAGUE || circle.covered < ARC || circle.inside > HOLLOW {
+                return None;
+            }
             let middle = ring.middle + u * circle.centre.x + v * circle.centre.y;
             Some(Measured { radius: circle.radius, error, middle, covered: circle.covered })
         })
@@ -93,6 +102,9 @@ fn error_of(c: &Circle, noise: f64) -> f64 {
     (0.02 * 0.02 + scatter * scatter + arc * arc + blur * blur + others * others + rough * rough).sqrt()
 }
 
+/// The largest loads that the pipe model is fitted to at first: down to this share.
+const OCTAVES: f64 = 16.0;
+
 /// The pipe model as measured: `ln r = a + b ln load`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipes {
@@ -105,8 +117,22 @@ pub(crate) struct Pipes {
 }
 
 impl Pipes {
-    /// From loads (metres of wood above) and what was measured; loads of all sizes count alike.
-    pub(crate) fn fit(rows: &[(f64, Measured)]) -> Self {
+    /// From loads (metres of wood above) and what was measured. Wood that would be thinner than `least` is not looked at:
+    /// there the circles are of what lies side by side. Also the load from which on it was.
+    pub(crate) fn fit(rows: &[(f64, Measured)], least: f64) -> (Self, f64) {
+        let most = rows.iter().map(|r| r.0).fold(0.0, f64::max);
+        let mut from = most / OCTAVES;
+        let above = |from: f64| rows.iter().copied().filter(|r| r.0 >= from).collect::<Vec<_>>();
+        let mut fit = Self::of(&above(from));
+        for _ in 0..4 {
+            from = ops::exp((ops::ln(least.max(1e-6)) - fit.a) / fit.b).min(most / OCTAVES);
+            fit = Self::of(&above(from));
+        }
+        (fit, from)
+    }
+
+    /// Of all rows; loads of all sizes count alike.
+    fn of(rows: &[(f64, Measured)]) -> Self {
         let sound: Vec<(f64, f64, f64)> = rows
             .iter()
             .filter(|(load, m)| *load > 0.0 && m.error < 0.25 && m.covered > 0.4)
@@ -217,8 +243,8 @@ pub(crate) fn smooth(
         if let Some(m) = &measured[i] {
             let off = ops::ln(m.radius) - pipes.log_radius(loads[i]) - x;
             let mut e2 = m.error * m.error;
-            // Beyond three standard errors a circle is of something else.
-            let far = off * off / (9.0 * (e2 + v));
+            // Beyond three standard errors a circle is of something else, beyond two if it is wider: neighbours widen.
+            let far = off * off / (if off > 0.0 { 4.0 } else { 9.0 } * (e2 + v));
             if far > 1.0 {
                 e2 *= far * far;
             }
@@ -270,7 +296,7 @@ mod tests {
                 (load, at(r, 0.05))
             })
             .collect();
-        let p = Pipes::fit(&rows);
+        let (p, _) = Pipes::fit(&rows, 0.001);
         assert!((p.b - 0.45).abs() < 0.01 && (p.a - ops::ln(0.01)).abs() < 0.03, "{p:?}");
     }
 

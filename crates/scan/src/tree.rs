@@ -6,6 +6,7 @@ use glam::DVec3;
 use plant::{AxisKind, NodeId, Plant};
 
 use crate::ScanTreeError;
+use crate::foliage;
 use crate::ground::Ground;
 use crate::levels::Rings;
 use crate::radii::{Measured, Pipes, measure, smooth};
@@ -28,6 +29,10 @@ pub struct FoundTree {
 
 /// Least points of a tree.
 const FEWEST: usize = 200;
+/// Circles of fewer cubes across show no radius.
+const RESOLVED: f64 = 1.0;
+/// A pipe model of a greater exponent is of leaves.
+const STEEP: f64 = 3.0;
 /// Higher is no tree, metres: the highest is 116.
 const HIGHEST: f64 = 130.0;
 
@@ -73,7 +78,23 @@ pub fn find_tree(
     run.cancel.check()?;
     stems.tell(&ways, report, &mut tally);
     let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
-    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), mine);
+    tally.scattered = foliage::scattered(&ways, mine);
+    let in_leaf = tally.scattered > foliage::SCATTERED;
+    let woody = in_leaf.then(|| foliage::wood(&ways, mine));
+    let is_wood = |c: usize| mine(c) && woody.as_ref().is_none_or(|w| w[c]);
+    let leaves = (0..ways.len()).filter(|&c| mine(c) && !is_wood(c));
+    tally.leaves = leaves.map(|c| ways.voxels.rows(c).len()).sum();
+    run.cancel.check()?;
+    if in_leaf {
+        base::warn!(
+            report,
+            "scan-in-leaf",
+            { points = tally.leaves },
+            "the tree is in leaf: {points} points were taken for leaves and left out. Radii of twigs come from those of \
+             the wood that was seen; a scan without leaves is truer"
+        );
+    }
+    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), is_wood);
     run.cancel.check()?;
     rings.prune(3.0);
     tally.rings = rings.rings.iter().filter(|r| r.alive).count();
@@ -90,8 +111,18 @@ pub fn find_tree(
         tally.wood += ring.cubes.iter().map(|&c| ways.voxels.rows(c as usize).len()).sum::<usize>();
     }
     let foot = stems.foot(&site, &rings);
-    let (plant, pipes) = wood(&above, &ways, &rings, &axes, &found, foot);
+    let (plant, pipes) = wood(&above, &ways, &rings, &axes, &found, foot, in_leaf);
     (tally.pipe_exponent, tally.pipe_scatter) = (1.0 / pipes.b, pipes.scatter);
+    let exponent = tally.pipe_exponent;
+    if in_leaf && exponent > STEEP {
+        base::warn!(
+            report,
+            "scan-radii-unsure",
+            { exponent = exponent },
+            "too little wood is seen among the leaves: radii and volume of branches are not to be trusted (pipe model \
+             {exponent:.1}, trees have 1.5 to 3); scan the tree without leaves"
+        );
+    }
     debug_assert_eq!(plant.validate().next(), None, "a found tree is sound");
     Ok(FoundTree { plant, foot, ground, tally })
 }
@@ -180,6 +211,7 @@ fn wood(
     axes: &[(u32, Vec<u32>)],
     found: &[Vec<Option<Measured>>],
     foot: DVec3,
+    in_leaf: bool,
 ) -> (Plant, Pipes) {
     let load = |k: u32| rings.rings[k as usize].load;
     let rows: Vec<(f64, Measured)> = axes
@@ -188,7 +220,8 @@ fn wood(
         .flat_map(|((_, run), found)| run.iter().zip(found))
         .filter_map(|(&k, m)| Some((load(k), (*m)?)))
         .collect();
-    let pipes = Pipes::fit(&rows);
+    let least = RESOLVED * ways.voxels.cell();
+    let (pipes, from) = Pipes::fit(&rows, least);
     let mut plant = Plant::default();
     // Of each ring: its node, radius and offset from the pipe model.
     let mut node_of: Vec<Option<NodeId>> = vec![None; rings.rings.len()];
@@ -199,6 +232,10 @@ fn wood(
         let mut found = found.clone();
         if let Some(below) = Some(*bearer).filter(|b| *b != NONE) {
             hide(&mut found, run, rings, &plant, node_of[below as usize]);
+        }
+        for (m, &k) in found.iter_mut().zip(run) {
+            let thin = load(k) < from || (!in_leaf && m.is_some_and(|m| m.radius < least));
+            *m = m.filter(|_| !thin);
         }
         let (radii, offsets) = smooth(&loads, &found, &pipes, below, 0.06);
         run.iter().zip(&offsets).for_each(|(&k, &o)| offset_of[k as usize] = o);

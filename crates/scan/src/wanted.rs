@@ -32,6 +32,10 @@ pub struct Tally {
     pub noise: usize,
     /// Of other things: other trees, people, walls.
     pub others: usize,
+    /// Of leaves; 0 for a bare tree.
+    pub leaves: usize,
+    /// Share of places about which the cloud is neither a line nor a surface.
+    pub scattered: f64,
     /// Of wood.
     pub wood: usize,
     /// Other things that stand on the ground.

@@ -133,6 +133,47 @@ fn volume_height_and_diameter_come_back_and_the_cone_is_far_off() {
     assert_eq!(again.plant.digest_hex(), found.plant.digest_hex());
 }
 
+/// Leaves of 6 cm, ten along each twig and bough.
+fn leaves(p: &Plant) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    let mut s = Seed::new(9).stream(Draw::Test);
+    let tips: Vec<DVec3> =
+        p.axes[1..].iter().flat_map(|a| a.node_ids()).map(|n| p.nodes.position[n.index()]).collect();
+    for at in tips.iter().flat_map(|t| [*t; 6]) {
+        let mut way = || DVec3::new(s.normal(), s.normal(), s.normal()).normalize();
+        let (long, across) = (way(), way());
+        let wide = long.cross(across).normalize() * 0.02;
+        let foot = at + long * 0.03;
+        let corners = [foot, foot + long * 0.03 + wide, foot + long * 0.06, foot + long * 0.03 - wide];
+        let first = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
+        #[expect(clippy::cast_possible_truncation, reason = "a mesh")]
+        mesh.positions.extend(corners.map(|c| c.to_array().map(|x| x as f32)));
+        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    mesh
+}
+
+#[test]
+fn a_tree_in_leaf_keeps_its_wood_and_its_leaves_are_left_out() {
+    let truth = tree();
+    let a = truth.measure();
+    for (meshes, in_leaf) in [
+        (vec![wood_mesh(&truth), leaves(&truth), ground()], true),
+        (vec![wood_mesh(&truth), ground()], false),
+    ] {
+        let mut report = Report::default();
+        let found = find_tree(&cloud(&meshes), &TreeScanSpec::default(), &Run::plain(), &mut report).unwrap();
+        let b = found.plant.measure();
+        println!("in leaf {in_leaf}: {} of {} m3, {:?}", b.wood_volume_m3, a.wood_volume_m3, found.tally);
+        assert_eq!(report.warnings.iter().any(|w| w.code == "scan-in-leaf"), in_leaf);
+        assert_eq!(found.tally.leaves > 0, in_leaf);
+        assert!((b.dbh_m.unwrap() / a.dbh_m.unwrap() - 1.0).abs() < 0.05, "{:?} {:?}", b.dbh_m, a.dbh_m);
+        assert!((b.height_m / a.height_m - 1.0).abs() < 0.05, "{} {}", b.height_m, a.height_m);
+        let volume = b.wood_volume_m3 / a.wood_volume_m3;
+        assert!((volume - 1.0).abs() < 0.15, "{volume}");
+    }
+}
+
 #[test]
 fn half_of_the_points_change_little() {
     let truth = tree();
