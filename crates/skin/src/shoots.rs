@@ -74,7 +74,7 @@ pub(crate) struct Tile {
     pub(crate) wood: Vec<[DVec2; 2]>,
     /// Middle of the leaves.
     middle: DVec2,
-    /// What leaves and wood cover, square metres.
+    /// What leaves cover, square metres: wood is no foliage, and is lost in small textures.
     covered: f64,
 }
 
@@ -335,7 +335,7 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
     let middle = leaves.iter().map(|l| l.at + l.along * (0.5 * leaf.length() * l.scale)).sum::<DVec2>()
         / leaves.len() as f64;
     let mut tile = Tile { card, leaves, wood, middle, covered: 0.0 };
-    tile.covered = covered(&tile.card, |p| tile.seen(cut, p).is_some() || tile.on_wood(p));
+    tile.covered = covered(&tile.card, |p| tile.seen(cut, p).is_some());
     (tile.covered > 0.0).then_some(tile)
 }
 
