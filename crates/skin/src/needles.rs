@@ -2,11 +2,9 @@
 //!
 //! `axes of a blade + Needles -> needles as tapered lines, in the cells of a grid -> which is seen at a place`
 
-use base::ops;
+use base::{Draw, Seed, ops};
 use glam::DVec2;
 use plant::Blade;
-
-use crate::texture::random;
 
 /// The needles of a shoot. Lengths are shares of the blade's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,15 +144,15 @@ impl Needles {
             shade: 0.5,
             wood: true,
         }));
-        let key = u32::try_from(row).unwrap_or(0);
         // From the sides, and in two rows that lie more forward and hide the wood.
-        for (layer, share, lean) in [(0_u32, 1.0, 1.0), (1, 0.82, 0.55), (2, 0.6, 0.25)] {
+        for (layer, share, lean) in [(0_u64, 1.0, 1.0), (1, 0.82, 0.55), (2, 0.6, 0.25)] {
+            let seed = Seed::new(row as u64).child(layer);
             let mut walked = 0.35 * spacing;
             let mut k = 0_u32;
             while walked < whole {
                 let (from, way) = point(axis, walked);
-                let chance = |n: i32| random(i32::try_from(k).unwrap_or(0) * 7 + n, key * 31 + layer + 11);
-                let side = if (k + layer).is_multiple_of(2) { 1.0 } else { -1.0 };
+                let chance = |n: u64| seed.child(8 * u64::from(k) + n).stream(Draw::Curl).uniform();
+                let side = if (u64::from(k) + layer).is_multiple_of(2) { 1.0 } else { -1.0 };
                 // Towards the tip needles are shorter and close up.
                 let close =
                     ops::smoothstep(1.0 - 1.2 * self.length * unit / whole.max(1e-9), 1.0, walked / whole);

@@ -413,7 +413,7 @@ impl<'a> Ground<'a> {
         match (wish, self.tile(row), shape) {
             (Wish::Card(_), Some((_, tile)), _) => tile.share(),
             (Wish::Card(_), None, Shape::Blade(blade)) => {
-                leaf_share(blade, self.cards.and_then(|s| s.needles.as_ref()))
+                leaf_share(blade, self.cards.and_then(|s| s.needles.as_deref()))
             }
             _ => 1.0,
         }

@@ -71,7 +71,7 @@ pub struct SkinSpec {
     /// The needles of leaves that are whole shoots of them: too fine for outlines, so that they are cards in any case where
     /// there are textures. Saved with the tree, not here. Default none.
     #[serde(skip)]
-    pub needles: Option<Needles>,
+    pub needles: Option<Arc<Needles>>,
     /// Shoots that cards of leaves may be of. Not saved. Default none.
     #[serde(skip)]
     pub shoots: Option<Arc<Shoots>>,

@@ -24,7 +24,6 @@ pub(crate) use bark::bark;
 pub(crate) use blades::{GREEN, LeafInks, PALE_GREEN, PALE_PETAL, inks as petal_inks};
 pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};
 pub(crate) use foliage::{LEAF_ROUGHNESS, any_blade, leaf, petals};
-pub(crate) use noise::random;
 pub(crate) use patterns::{paint as paint_material, painted as painted_material};
 pub(crate) use relief::Surface;
 

@@ -169,12 +169,14 @@ fn serrate(blade: &mut Blade, teeth: u32) {
 
 /// A line through these points without corners (Catmull and Rom 1974).
 fn curve(points: &[DVec2]) -> Vec<DVec2> {
-    let at = |k: isize| points[k.clamp(0, points.len() as isize - 1) as usize];
-    let mut out = Vec::with_capacity(8 * points.len());
-    for k in 0..points.len() as isize - 1 {
-        let [a, b, c, d] = [at(k - 1), at(k), at(k + 1), at(k + 2)];
-        out.extend((0..8).map(|i| {
-            let t = f64::from(i) / 8.0;
+    const STEPS: u32 = 8;
+    let mut out = Vec::new();
+    for (k, w) in points.windows(2).enumerate() {
+        let (b, c) = (w[0], w[1]);
+        let a = if k > 0 { points[k - 1] } else { b };
+        let d = points.get(k + 2).copied().unwrap_or(c);
+        out.extend((0..STEPS).map(|i| {
+            let t = f64::from(i) / f64::from(STEPS);
             0.5 * (2.0 * b
                 + (c - a) * t
                 + (2.0 * a - 5.0 * b + 4.0 * c - d) * (t * t)

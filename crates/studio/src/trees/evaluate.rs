@@ -2,6 +2,8 @@
 //!
 //! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
 
+use std::sync::Arc;
+
 use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
 use growth::{BladeForm, BlossomSpec, Grown, Look, Method, TreeSpec};
@@ -355,7 +357,7 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
     // It has a texture of its own, too, which no atlas shows.
     let foliage = if options.leaf.is_some() { Foliage::Outlines } else { options.skin.foliage };
-    let needles = if options.leaf.is_some() { None } else { needles(&spec.blade) };
+    let needles = if options.leaf.is_some() { None } else { needles(&spec.blade).map(Arc::new) };
     dressed(SkinSpec { seed, foliage, needles, ..options.skin.clone() }, &spec.look, form)
 }
 

@@ -79,7 +79,7 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
     let level = level.min(6);
     let shoots = (skin.foliage == Foliage::ByLevel && level > 0)
-        .then(|| Shoots::of(plant, skin.needles.as_ref()).map(Arc::new))
+        .then(|| Shoots::of(plant, skin.needles.as_deref()).map(Arc::new))
         .flatten();
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;

@@ -206,22 +206,22 @@ const LEAVES_CM: [(&str, f64, f64); 19] = [
     ("oak", 6.0, 14.0), // B, S: Quercus robur
     ("oak-colonization", 6.0, 14.0),
     ("oak-lsystem", 6.0, 14.0),
-    ("lime", 3.0, 9.0),       // S: Tilia cordata
-    ("beech", 4.0, 10.0),     // S: Fagus sylvatica
-    ("birch", 3.0, 7.0),      // S: Betula pendula
-    ("alder", 3.0, 10.5),     // S: Alnus glutinosa
-    ("hazel", 5.0, 12.0),     // S: Corylus avellana
-    ("maple", 7.0, 18.0),     // B: Acer platanoides
-    ("poplar", 5.0, 10.0),    // S: Populus nigra
-    ("willow", 8.0, 17.0),    // B, F: Salix babylonica
-    ("cherry", 5.0, 15.0),    // B: Prunus serrulata
-    ("bamboo", 10.0, 30.0),   // F: Bambusa vulgaris
-    ("terminalia", 3.0, 8.0), // Terminalia mantaly
-    ("ash", 18.0, 35.0),      // S: Fraxinus excelsior
-    ("elm", 7.0, 16.0),       // S: Ulmus glabra
+    ("lime", 3.0, 9.0),         // S: Tilia cordata
+    ("beech", 4.0, 10.0),       // S: Fagus sylvatica
+    ("birch", 3.0, 7.0),        // S: Betula pendula
+    ("alder", 3.0, 10.5),       // S: Alnus glutinosa
+    ("hazel", 5.0, 12.0),       // S: Corylus avellana
+    ("maple", 7.0, 18.0),       // B: Acer platanoides
+    ("poplar", 5.0, 10.0),      // S: Populus nigra
+    ("willow", 8.0, 17.0),      // B, F: Salix babylonica
+    ("cherry", 5.0, 15.0),      // B: Prunus serrulata
+    ("bamboo", 10.0, 30.0),     // F: Bambusa vulgaris
+    ("terminalia", 3.0, 8.0),   // Terminalia mantaly
+    ("ash", 18.0, 35.0),        // S: Fraxinus excelsior
+    ("elm", 7.0, 16.0),         // S: Ulmus glabra
     ("plane-tree", 12.0, 25.0), // B: Platanus x hispanica
-    ("olive", 4.0, 10.0),     // B: Olea europaea
-    ("apple", 4.0, 10.0),     // F: Malus pumila
+    ("olive", 4.0, 10.0),       // B: Olea europaea
+    ("apple", 4.0, 10.0),       // F: Malus pumila
 ];
 
 #[test]
