@@ -29,6 +29,13 @@ export const TREES = [
   'grass',
   'beech',
   'cedar',
+  'ash',
+  'elm',
+  'plane-tree',
+  'apple',
+  'olive',
+  'larch',
+  'yew',
 ] as const;
 
 /** The species of flowers. */
@@ -164,7 +171,7 @@ export type BladeForm =
   "needle"
   | /** A bundle of needles that spread from one place: pine, larch. */
   "tuft"
-  | /** A short shoot with needles on both sides: fir, spruce, yew. */
+  | /** A shoot with side shoots, all in needles or scales: fir, spruce, yew, cypress. */
   "spray"
   | /** The end of a shoot in long needles, a third of its length, that lean forward: pine. */
   "brush";
@@ -179,6 +186,12 @@ export type BladeSpec = {
   fold?: number | null;
   /** The form, default ovate. */
   form?: BladeForm;
+  /** Of a spray: length of a needle or scale over that of the spray, 0.01 to 0.6; default 0.1. */
+  needle?: number | null;
+  /** Of a spray: side shoots on each side, 0 to 12; default 3. */
+  shoots?: number | null;
+  /** Teeth of the margin on each side, 0 to 60; default none. */
+  teeth?: number | null;
   /** Width relative to the form's usual, 0.1 to 4; default 1. */
   width?: number | null;
 };

@@ -35,7 +35,7 @@ pub enum BladeForm {
     Needle,
     /// A bundle of needles that spread from one place: pine, larch.
     Tuft,
-    /// A short shoot with needles on both sides: fir, spruce, yew.
+    /// A shoot with side shoots, all in needles or scales: fir, spruce, yew, cypress.
     Spray,
     /// The end of a shoot in long needles, a third of its length, that lean forward: pine.
     Brush,
@@ -59,6 +59,15 @@ pub struct BladeSpec {
     /// Slope of the halves along the midrib, -1 to 2; default the form's.
     #[schemars(range(min = -1.0, max = 2.0))]
     pub fold: Option<f64>,
+    /// Teeth of the margin on each side, 0 to 60; default none. Few triangles leave them out.
+    #[schemars(range(min = 0, max = 60))]
+    pub teeth: Option<u32>,
+    /// Of a spray: length of a needle or scale over that of the spray, 0.01 to 0.6; default 0.1.
+    #[schemars(range(min = 0.01, max = 0.6))]
+    pub needle: Option<f64>,
+    /// Of a spray: side shoots on each side, 0 to 12; default 3.
+    #[schemars(range(min = 0, max = 12))]
+    pub shoots: Option<u32>,
 }
 
 impl BladeForm {

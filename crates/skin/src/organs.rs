@@ -412,7 +412,9 @@ impl<'a> Ground<'a> {
     fn share(&self, wish: Wish, (row, shape): (usize, &Shape)) -> f64 {
         match (wish, self.tile(row), shape) {
             (Wish::Card(_), Some((_, tile)), _) => tile.share(),
-            (Wish::Card(_), None, Shape::Blade(blade)) => leaf_share(blade),
+            (Wish::Card(_), None, Shape::Blade(blade)) => {
+                leaf_share(blade, self.cards.and_then(|s| s.needles.as_deref()))
+            }
             _ => 1.0,
         }
     }

@@ -167,6 +167,7 @@ impl Slot {
                 let shown = spec.shoots.as_ref().map(|s| s.leaf.clone()).or_else(|| own().cloned());
                 let what = Leafage {
                     venation: spec.venation.unwrap_or(Venation::Pinnate),
+                    needles: spec.needles.as_deref().copied(),
                     leaf: &shown.unwrap_or_else(any_blade),
                     shoots: spec.shoots.as_deref(),
                     inks,

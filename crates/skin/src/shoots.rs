@@ -8,6 +8,7 @@ use mesh::TriMesh;
 use plant::{Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
 
 use crate::blade::BladeChart;
+use crate::needles::{Cut, Needles};
 use crate::sleeve::{drop_flat, narrow2};
 
 /// How leaves are drawn.
@@ -73,7 +74,7 @@ pub(crate) struct Tile {
     pub(crate) wood: Vec<[DVec2; 2]>,
     /// Middle of the leaves.
     middle: DVec2,
-    /// What leaves and wood cover, square metres.
+    /// What leaves cover, square metres: wood is no foliage, and is lost in small textures.
     covered: f64,
 }
 
@@ -81,6 +82,8 @@ pub(crate) struct Tile {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shoots {
     pub(crate) leaf: Blade,
+    /// What of it is leaf.
+    pub(crate) cut: Cut,
     pub(crate) tiles: Vec<Tile>,
     /// Where the cards of the tiles stand among the shapes of a plant whose leaves are drawn as shoots.
     shape: usize,
@@ -106,11 +109,13 @@ pub(crate) fn chart_place(uv: DVec2) -> DVec2 {
 }
 
 impl Shoots {
-    /// The shoots of a plant with leaves of one flat form; none where there are few leaves, or of no such form.
+    /// The shoots of a plant with leaves of one flat form, which may be shoots in needles; none where there are few leaves, or of
+    /// no such form.
     ///
     /// Cost: n log n in leaves, and some 10 ms for measuring what shoots cover.
-    pub fn of(plant: &Plant) -> Option<Self> {
+    pub fn of(plant: &Plant, needles: Option<&Needles>) -> Option<Self> {
         let (shape, leaf) = leaf_shape(plant)?;
+        let cut = Cut::new(&leaf, needles);
         let leaves = leaves_of(plant, shape);
         let mut clusters = clusters(plant, &leaf, leaves, LEAVES);
         if clusters.len() < 2 * DENSE.len() {
@@ -126,10 +131,10 @@ impl Shoots {
         let tiles = DENSE.iter().filter_map(|share| {
             let rank = base::ops::whole(share * by_spread.len() as f64) as usize;
             let members = core::mem::take(&mut clusters[by_spread[rank].1]);
-            tile(plant, &leaf, &members)
+            tile(plant, &leaf, &cut, &members)
         });
         let tiles: Vec<Tile> = tiles.collect();
-        (tiles.len() == DENSE.len()).then_some(Self { leaf, tiles, shape: plant.shapes.len() })
+        (tiles.len() == DENSE.len()).then_some(Self { leaf, cut, tiles, shape: plant.shapes.len() })
     }
 
     /// Takes the leaves of `plant`, of which these are the shoots, out of it and puts cards of `shoots` times 12
@@ -199,17 +204,12 @@ impl Tile {
     }
 
     /// The leaf that is seen at a place of the plane.
-    pub(crate) fn seen(&self, leaf: &Blade, p: DVec2) -> Option<(&FlatLeaf, DVec2)> {
+    pub(crate) fn seen(&self, leaf: &Cut, p: DVec2) -> Option<(&FlatLeaf, DVec2)> {
         self.leaves.iter().rev().find_map(|flat| {
             let own = flat.local(p);
-            within(leaf, own).then_some((flat, own))
+            leaf.has(own).then_some((flat, own))
         })
     }
-}
-
-/// Whether a place of a blade's plane is on it.
-pub(crate) fn within(leaf: &Blade, p: DVec2) -> bool {
-    p.is_finite() && geom::contains(&leaf.outline, p)
 }
 
 /// The flat form that most leaves have.
@@ -283,7 +283,7 @@ fn frame(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Frame> {
 }
 
 /// A cluster as it is painted: its leaves turned into its plane.
-fn tile(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Tile> {
+fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Tile> {
     let frame = frame(plant, leaf, members)?;
     let mut deep: Vec<(f64, &Organ)> =
         members.iter().map(|&i| &plant.organs[i]).map(|o| (frame.localise(middle(o, leaf)).z, o)).collect();
@@ -335,18 +335,15 @@ fn tile(plant: &Plant, leaf: &Blade, members: &[usize]) -> Option<Tile> {
     let middle = leaves.iter().map(|l| l.at + l.along * (0.5 * leaf.length() * l.scale)).sum::<DVec2>()
         / leaves.len() as f64;
     let mut tile = Tile { card, leaves, wood, middle, covered: 0.0 };
-    tile.covered = covered(&tile, leaf);
+    tile.covered = covered(&tile.card, |p| tile.seen(cut, p).is_some());
     (tile.covered > 0.0).then_some(tile)
 }
 
-/// What leaves and wood of a tile cover, square metres.
-fn covered(tile: &Tile, leaf: &Blade) -> f64 {
-    let chart = BladeChart::new(&tile.card);
+/// What is seen of a card, square metres.
+fn covered(card: &Blade, is_seen: impl Fn(DVec2) -> bool) -> f64 {
+    let chart = BladeChart::new(card);
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SAMPLES);
-    let seen = |&(i, j): &(u32, u32)| {
-        let p = chart.place(DVec2::new(at(i), at(j)));
-        tile.seen(leaf, p).is_some() || tile.on_wood(p)
-    };
+    let seen = |&(i, j): &(u32, u32)| is_seen(chart.place(DVec2::new(at(i), at(j))));
     let all = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
     let size = chart.place(DVec2::new(1.0, 0.0)) - chart.place(DVec2::new(0.0, 1.0));
     all.filter(seen).count() as f64 / f64::from(SAMPLES * SAMPLES) * (size.x * size.y).abs()
@@ -395,7 +392,7 @@ pub(crate) fn card_mesh(blade: &Blade, part: [f64; 4]) -> TriMesh {
 }
 
 /// Of a card of a blade, what is leaf, 0 to 1.
-pub(crate) fn leaf_share(blade: &Blade) -> f64 {
+pub(crate) fn leaf_share(blade: &Blade, needles: Option<&Needles>) -> f64 {
     let flat = Blade { relief: Relief::default(), lift: Lift::Flat, ..blade.clone() };
     let mesh = card_mesh(&flat, [0.0, 0.0, 1.0, 1.0]);
     let area = |t: &[u32; 3]| {
@@ -403,5 +400,12 @@ pub(crate) fn leaf_share(blade: &Blade) -> f64 {
         0.5 * (b - a).cross(c - a).length()
     };
     let card: f64 = mesh.triangles.iter().map(area).sum();
-    (geom::signed_area(&blade.outline).abs() / card.max(f64::MIN_POSITIVE)).min(1.0)
+    let leaf = match needles {
+        Some(needles) => {
+            let cut = Cut::new(blade, Some(needles));
+            covered(blade, |p| cut.has(p))
+        }
+        None => geom::signed_area(&blade.outline).abs(),
+    };
+    (leaf / card.max(f64::MIN_POSITIVE)).min(1.0)
 }

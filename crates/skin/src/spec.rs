@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use spec::Colour;
 
 use crate::natural::{BarkKind, Venation};
+use crate::needles::Needles;
 use crate::shoots::{Foliage, Shoots};
 use crate::{Wearer, Worn};
 
@@ -67,6 +68,10 @@ pub struct SkinSpec {
     /// Chosen for an export, not saved.
     #[serde(skip)]
     pub foliage: Foliage,
+    /// The needles of leaves that are whole shoots of them: too fine for outlines, so that they are cards in any case where
+    /// there are textures. Saved with the tree, not here. Default none.
+    #[serde(skip)]
+    pub needles: Option<Arc<Needles>>,
     /// Shoots that cards of leaves may be of. Not saved. Default none.
     #[serde(skip)]
     pub shoots: Option<Arc<Shoots>>,
@@ -96,6 +101,7 @@ impl Default for SkinSpec {
             steady_m: None,
             crowd: None,
             foliage: Foliage::default(),
+            needles: None,
             shoots: None,
             worn: Worn::default(),
             seed: Seed::default(),
@@ -106,7 +112,8 @@ impl Default for SkinSpec {
 impl SkinSpec {
     /// Whether leaves are cards.
     pub fn cards(&self) -> bool {
-        self.foliage == Foliage::Cards && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
+        let wanted = self.foliage == Foliage::Cards || self.needles.is_some();
+        wanted && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
     }
 
     /// The part of the atlas with the leaf, and how many cells that has.

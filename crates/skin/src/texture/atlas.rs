@@ -13,12 +13,15 @@ use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, byte, mix, shade};
 use crate::BladeChart;
 use crate::natural::Venation;
-use crate::shoots::{Shoots, Tile, chart_place, columns, within};
+use crate::needles::{Cut, Needles, SeenNeedle};
+use crate::shoots::{Shoots, Tile, chart_place, columns};
 
 /// What an atlas shows.
 pub(crate) struct Leafage<'a> {
     pub(crate) venation: Venation,
     pub(crate) leaf: &'a Blade,
+    /// Of leaves that are shoots in needles.
+    pub(crate) needles: Option<Needles>,
     pub(crate) shoots: Option<&'a Shoots>,
     pub(crate) inks: &'a LeafInks,
     /// sRGB, of the wood of shoots.
@@ -32,19 +35,28 @@ pub(crate) fn atlas(what: &Leafage<'_>, size: u32, executor: &dyn Executor) -> S
     content.add("atlas").add(&(what.venation as u32)).add(&size);
     content.add(&what.leaf.outline).add(&what.leaf.midrib).add(&what.leaf.veins);
     content.add(&what.inks.dark).add(&what.inks.light).add(&what.inks.vein).add(&what.wood);
+    if let Some(needles) = what.needles {
+        for x in [needles.length, needles.width, needles.spacing, needles.angle] {
+            content.add(&x);
+        }
+    }
     if let Some(shoots) = what.shoots {
         shoots.digest(&mut content);
     }
     Surface::kept(content, || {
         let plan = Plan::new(what.venation, what.leaf, executor);
+        let cut = Cut::new(what.leaf, what.needles.as_ref());
         let tiles = what.shoots.map_or(&[][..], |s| &s.tiles);
         let cells: Vec<Surface> = core::iter::once(None)
             .chain(tiles.iter().map(Some))
-            .map(|tile| Cell::new(what, &plan, tile).painted(size, executor))
+            .map(|tile| Cell::new(what, (&plan, &cut), tile).painted(size, executor))
             .collect();
         joined(&cells, size)
     })
 }
+
+/// Below the one half at which holes are cut: where needles cover 43 % and more, coarser copies are closed.
+const GAP: f64 = 0.12;
 
 /// What one place of a cell shows.
 struct Seen {
@@ -57,6 +69,7 @@ struct Seen {
 struct Cell<'a> {
     what: &'a Leafage<'a>,
     plan: &'a Plan,
+    cut: &'a Cut,
     tile: Option<&'a Tile>,
     chart: BladeChart,
     extent: DVec2,
@@ -65,12 +78,12 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(what: &'a Leafage<'a>, plan: &'a Plan, tile: Option<&'a Tile>) -> Self {
+    fn new(what: &'a Leafage<'a>, (plan, cut): (&'a Plan, &'a Cut), tile: Option<&'a Tile>) -> Self {
         let chart = BladeChart::new(tile.map_or(what.leaf, |t| &t.card));
         let extent = (chart.place(DVec2::new(1.0, 0.5)) - chart.place(DVec2::new(0.0, 0.5))).x;
         let high = chart.place(DVec2::new(0.5, 0.0)).y - chart.place(DVec2::new(0.5, 1.0)).y;
         let scale = tile.map_or(1.0, |t| t.leaves.iter().map(|l| l.scale).fold(0.0, f64::max));
-        Self { what, plan, tile, chart, extent: DVec2::new(extent.max(1e-9), high.max(1e-9)), scale }
+        Self { what, plan, cut, tile, chart, extent: DVec2::new(extent.max(1e-9), high.max(1e-9)), scale }
     }
 
     fn at(&self, u: f64, v: f64) -> Seen {
@@ -85,15 +98,15 @@ impl<'a> Cell<'a> {
         };
         let Some(tile) = self.tile else {
             let clamped = uv.clamp(DVec2::ZERO, DVec2::ONE);
-            let spot = self.plan.spot(inks, clamped.x, clamped.y);
-            return Seen { spot, tilt: DVec2::ZERO, covered: inside && within(self.what.leaf, p) };
+            let spot = self.leaf_spot(p, clamped);
+            return Seen { spot, tilt: DVec2::ZERO, covered: inside && self.cut.has(p) };
         };
         if !inside {
             return none();
         }
-        if let Some((flat, own)) = tile.seen(self.what.leaf, p) {
+        if let Some((flat, own)) = tile.seen(self.cut, p) {
             let uv = self.plan.chart.uv(own);
-            let mut spot = self.plan.spot(inks, uv.x, uv.y);
+            let mut spot = self.leaf_spot(own, uv);
             spot.height *= flat.scale / self.scale;
             spot.paint = shade(spot.paint, flat.lit);
             return Seen { spot, tilt: flat.tilt, covered: true };
@@ -104,6 +117,34 @@ impl<'a> Cell<'a> {
             seen.covered = true;
         }
         seen
+    }
+
+    /// The leaf at a place of its plane, and of its chart.
+    fn leaf_spot(&self, p: DVec2, uv: DVec2) -> Spot {
+        let inks = self.what.inks;
+        let Some(needles) = &self.cut.needles else { return self.plan.spot(inks, uv.x, uv.y) };
+        match needles.at(p) {
+            Some(SeenNeedle::Wood) => Spot { height: 0.35, paint: self.what.wood, rough: 0.95, through: 0.0 },
+            Some(SeenNeedle::Needle { across, along, shade: own }) => {
+                // Round, with a pale line on each side of the keel; light towards its tip, which the sun sees.
+                let round = (1.0 - across * across).max(0.0).sqrt();
+                let paint = mix(inks.dark, inks.light, 0.15 + 0.45 * own + 0.35 * along);
+                let paint = shade(paint, 0.72 + 0.28 * along.max(round));
+                Spot { height: 0.4 + 0.5 * round, paint, rough: 0.72, through: 0.3 }
+            }
+            None => Spot { height: 0.0, paint: mix(inks.dark, inks.light, 0.45), rough: 0.9, through: 0.3 },
+        }
+    }
+
+    /// Alpha of what is no leaf: a little between needles, so that coarser copies of the texture, in which each pixel is
+    /// the mean of many, close there and do not lose the needles.
+    fn gap(&self, u: f64, v: f64) -> f64 {
+        let p = self.chart.place(chart_place(DVec2::new(u, v)));
+        let between = match self.tile {
+            None => self.cut.between(p),
+            Some(tile) => tile.leaves.iter().any(|l| self.cut.between(l.local(p))),
+        };
+        if between { GAP } else { 0.0 }
     }
 
     fn painted(&self, size: u32, executor: &dyn Executor) -> Surface {
@@ -126,6 +167,7 @@ impl<'a> Cell<'a> {
                     |du: f64, dv: f64| f64::from(u8::from(self.at(u + du * pixel, v + dv * pixel).covered));
                 let around = part(0.3, 0.1) + part(0.9, 0.3) + part(0.1, 0.7) + part(0.7, 0.9);
                 let alpha = 0.2 * (around + part(0.5, 0.5));
+                let alpha = alpha.max(self.gap(u + 0.5 * pixel, v + 0.5 * pixel));
                 row.push((byte(alpha), self.at(u + 0.5 * pixel, v + 0.5 * pixel).tilt));
             }
             row

@@ -7,12 +7,19 @@ use glam::DVec2;
 use growth::{BladeForm, BladeSpec};
 use plant::{Blade, Lift, Relief};
 use sketch::LeafForm;
+use skin::Needles;
 
 /// The blade that a spec asks for, of length 1.
 pub fn tree_blade(spec: &BladeSpec) -> Blade {
-    let mut blade = form_blade(spec.form);
-    let width = spec.width.filter(|w| w.is_finite()).unwrap_or(1.0).clamp(0.1, 4.0);
-    blade.outline.iter_mut().for_each(|p| p.x *= width);
+    let mut blade = form_blade(spec);
+    if let Some(teeth) = spec.teeth.filter(|n| *n > 0) {
+        serrate(&mut blade, teeth.min(60));
+    }
+    let width = width(spec);
+    // Needles of a wider spray are as long; its side shoots are longer.
+    if spec.form != BladeForm::Spray {
+        blade.outline.iter_mut().for_each(|p| p.x *= width);
+    }
     if let Some(bend) = spec.bend {
         (blade.relief.bend_a, blade.relief.bend_b) = (0.25 * bend, 0.75 * bend);
         blade.relief.keep_length = true;
@@ -23,17 +30,22 @@ pub fn tree_blade(spec: &BladeSpec) -> Blade {
     blade
 }
 
-fn form_blade(form: BladeForm) -> Blade {
+/// How much wider than usual.
+fn width(spec: &BladeSpec) -> f64 {
+    spec.width.filter(|w| w.is_finite()).unwrap_or(1.0).clamp(0.1, 4.0)
+}
+
+fn form_blade(spec: &BladeSpec) -> Blade {
     let own = |right: Vec<DVec2>, relief: Relief| mirrored(&right, relief);
     let soft = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
-    match form {
+    match spec.form {
         BladeForm::Ovate => LeafForm::Ovate.blade(),
         BladeForm::Elliptic => LeafForm::Elliptic.blade(),
         BladeForm::Lanceolate => LeafForm::Lanceolate.blade(),
         BladeForm::Cordate => LeafForm::Cordate.blade(),
-        BladeForm::Lobed => LeafForm::Lobed.blade(),
+        BladeForm::Lobed => own(lobed(), soft),
         BladeForm::Leaflet => LeafForm::Leaflet.blade(),
-        BladeForm::Spray => LeafForm::Spray.blade(),
+        BladeForm::Spray => spray(spec),
         BladeForm::Obovate => {
             let right = (1..=8).map(|i| {
                 let v = f64::from(i) / 9.0;
@@ -74,22 +86,176 @@ fn mirrored(right: &[DVec2], relief: Relief) -> Blade {
     Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
 }
 
-/// Half of five lobes around the end of the stalk: two of each side, the middle one is the tip.
+/// Four round lobes a side between narrow notches, the third the largest, on a wedge that widens upwards from small ears
+/// (Quercus robur).
+fn lobed() -> Vec<DVec2> {
+    const LOBES: f64 = 4.0;
+    const STEPS: u32 = 56;
+    (1..STEPS)
+        .map(|i| {
+            let v = f64::from(i) / f64::from(STEPS);
+            let hull = 0.33 * ops::powf(v, 0.8) * ops::powf(1.0 - v, 0.42) / 0.53;
+            let phase = LOBES * ops::powf((v - 0.03).max(0.0), 0.92) - 0.08;
+            let notch = ops::powf(0.5 + 0.5 * ops::cos(2.0 * PI * phase), 2.2);
+            // Shallow towards the tip, which is one blunt lobe.
+            let deep = 0.46 * (1.0 - ops::smoothstep(0.72, 0.95, v));
+            let ear = 0.045 * ops::powf((1.0 - (v - 0.035).abs() / 0.035).max(0.0), 0.5);
+            let wide = (hull * (1.0 - deep * notch) + ear).max(0.012);
+            // Lobes point forward.
+            DVec2::new(wide, v + 0.10 * hull * (1.0 - notch) * (1.0 - v))
+        })
+        .collect()
+}
+
+/// Half of five lobes around the end of the stalk, each drawn out to a point with a tooth or two beside it (Acer
+/// platanoides): two of each side, the middle one is the tip.
 fn palmate() -> Vec<DVec2> {
     [
-        (0.1, -0.04),
-        (0.34, -0.1),
-        (0.27, 0.1),
-        (0.42, 0.17),
-        (0.6, 0.42),
-        (0.41, 0.45),
-        (0.39, 0.57),
-        (0.16, 0.46),
-        (0.2, 0.7),
-        (0.09, 0.83),
+        (0.1, -0.06),
+        (0.22, -0.11),
+        (0.36, -0.13),
+        (0.35, -0.06),
+        (0.45, -0.02),
+        (0.38, 0.04),
+        (0.33, 0.1),
+        (0.45, 0.13),
+        (0.58, 0.16),
+        (0.56, 0.23),
+        (0.67, 0.35),
+        (0.56, 0.36),
+        (0.55, 0.46),
+        (0.43, 0.4),
+        (0.3, 0.37),
+        (0.18, 0.39),
+        (0.2, 0.52),
+        (0.24, 0.64),
+        (0.34, 0.74),
+        (0.23, 0.74),
+        (0.18, 0.78),
+        (0.18, 0.87),
+        (0.09, 0.87),
     ]
     .map(|(x, y)| DVec2::new(x, y))
     .to_vec()
+}
+
+/// Teeth along the margin of a blade, which point forward; the foot of the blade has none.
+fn serrate(blade: &mut Blade, teeth: u32) {
+    let Some(tip) = blade.outline.iter().position(|p| *p == DVec2::Y) else { return };
+    let side = &blade.outline[..=tip];
+    let whole = geom::polyline_length(side);
+    let step = 0.86 * whole / f64::from(teeth);
+    let smooth = curve(side);
+    let long = geom::polyline_length(&smooth);
+    let at = |s: f64| geom::point_at(&smooth, s * long / whole).unwrap_or(DVec2::Y);
+    let mut right = vec![DVec2::ZERO];
+    right.extend((1..4).map(|k| at(0.035 * whole * f64::from(k))));
+    for k in 0..teeth {
+        let from = 0.13 * whole + step * f64::from(k);
+        let (a, b) = (at(from), at(from + 0.8 * step));
+        let way = (b - a).normalize_or_zero();
+        right.push(a);
+        right.push(b + DVec2::new(way.y, -way.x) * (0.32 * step));
+    }
+    right.push(DVec2::Y);
+    // A tooth of the far end may reach over the tip.
+    right.retain(|p| *p == DVec2::ZERO || (p.x > 0.0 && p.y < 0.995) || *p == DVec2::Y);
+    let n = right.len();
+    right.extend((1..n - 1).rev().map(|k| DVec2::new(-right[k].x, right[k].y)).collect::<Vec<_>>());
+    if geom::self_crossings(&right) == 0 {
+        blade.outline = right;
+    }
+}
+
+/// A line through these points without corners (Catmull and Rom 1974).
+fn curve(points: &[DVec2]) -> Vec<DVec2> {
+    const STEPS: u32 = 8;
+    let mut out = Vec::new();
+    for (k, w) in points.windows(2).enumerate() {
+        let (b, c) = (w[0], w[1]);
+        let a = if k > 0 { points[k - 1] } else { b };
+        let d = points.get(k + 2).copied().unwrap_or(c);
+        out.extend((0..STEPS).map(|i| {
+            let t = f64::from(i) / f64::from(STEPS);
+            0.5 * (2.0 * b
+                + (c - a) * t
+                + (2.0 * a - 5.0 * b + 4.0 * c - d) * (t * t)
+                + (3.0 * b - a - 3.0 * c + d) * (t * t * t))
+        }));
+    }
+    out.extend(points.last());
+    out
+}
+
+/// The needles of a spray.
+pub(super) fn needles(spec: &BladeSpec) -> Option<Needles> {
+    if spec.form != BladeForm::Spray || spec.file.is_some() {
+        return None;
+    }
+    let length = spec.needle.filter(|x| x.is_finite()).unwrap_or(0.1).clamp(0.01, 0.6);
+    // Scales lie close and overlap; needles stand off.
+    Some(if length < SCALES {
+        Needles { length, width: 0.4 * length, spacing: 0.5 * length, angle: 0.5 }
+    } else {
+        let width = (0.075 * length).clamp(0.005, 0.02);
+        Needles { length, width, spacing: 2.2 * width, angle: 0.95 }
+    })
+}
+
+/// Below this share of the spray's length needles are scales.
+const SCALES: f64 = 0.045;
+
+/// A shoot with its side shoots, each of which has some of its own where they are many: its veins are their axes, its outline
+/// holds their needles.
+fn spray(spec: &BladeSpec) -> Blade {
+    let needle = needles(spec).map_or(0.1, |n| n.length);
+    let shoots = spec.shoots.unwrap_or(3).min(12);
+    let mut axes = vec![vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::Y * (1.0 - 0.9 * needle)]];
+    for k in 0..2 * shoots {
+        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let v = 0.1 + 0.72 * (f64::from(k) + 0.5) / f64::from(2 * shoots);
+        let length =
+            width(spec) * (0.5 * (1.0 - v) + 0.04) * (0.9 + 0.2 * ops::sin(2.4 * f64::from(k)).abs());
+        let axis = bent(DVec2::new(0.0, v), DVec2::Y, side * 0.9, length);
+        let (from, way) = (axis[0].lerp(axis[2], 0.5), (axis[2] - axis[0]).normalize_or_zero());
+        axes.push(axis.to_vec());
+        for n in 0..shoots / 4 {
+            let back = if n % 2 == 0 { side } else { -side };
+            let share = 0.35 * f64::from(n) / f64::from(shoots / 4);
+            axes.push(bent(from.lerp(axis[2], share), way, back * 0.7, 0.4 * length).to_vec());
+        }
+    }
+    // How far its needles reach to the side, by height.
+    const BINS: usize = 14;
+    let mut wide = [0.012_f64; BINS];
+    for axis in &axes {
+        let way = (axis[axis.len() - 1] - axis[0]).normalize_or_zero();
+        for k in 0..=12 {
+            let p =
+                geom::point_at(axis, geom::polyline_length(axis) * f64::from(k) / 12.0).unwrap_or(axis[0]);
+            for turn in [-0.9, -0.4, 0.0, 0.4, 0.9] {
+                let (s, c) = ops::sin_cos(turn);
+                let tip = p + DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s) * needle;
+                let bin = ops::whole(tip.y.clamp(0.0, 0.999) * BINS as f64) as usize;
+                wide[bin] = wide[bin].max(tip.x.abs());
+            }
+        }
+    }
+    let right = wide.iter().zip(0_u32..).map(|(x, k)| DVec2::new(*x, (f64::from(k) + 0.5) / BINS as f64));
+    let mut blade =
+        mirrored(&right.collect::<Vec<_>>(), Relief { bend_b: 0.08, fold: 0.25, ..Relief::default() });
+    blade.veins = axes.split_off(1);
+    blade
+}
+
+/// A side shoot: it leaves `way` by an angle and turns towards it.
+fn bent(from: DVec2, way: DVec2, angle: f64, length: f64) -> [DVec2; 3] {
+    let turned = |by: f64| {
+        let (s, c) = ops::sin_cos(by);
+        DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s)
+    };
+    let middle = from + turned(angle) * (0.5 * length);
+    [from, middle, middle + turned(0.7 * angle) * (0.5 * length)]
 }
 
 /// Five leaflets a side.

@@ -52,6 +52,13 @@ presets![
     "grass",
     "beech",
     "cedar",
+    "ash",
+    "elm",
+    "plane-tree",
+    "apple",
+    "olive",
+    "larch",
+    "yew",
 ];
 
 impl Preset {

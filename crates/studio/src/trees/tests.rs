@@ -202,21 +202,26 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
 /// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees and
 /// Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade without its
 /// stalk; of compound leaves the whole leaf.
-const LEAVES_CM: [(&str, f64, f64); 14] = [
+const LEAVES_CM: [(&str, f64, f64); 19] = [
     ("oak", 6.0, 14.0), // B, S: Quercus robur
     ("oak-colonization", 6.0, 14.0),
     ("oak-lsystem", 6.0, 14.0),
-    ("lime", 3.0, 9.0),       // S: Tilia cordata
-    ("beech", 4.0, 10.0),     // S: Fagus sylvatica
-    ("birch", 3.0, 7.0),      // S: Betula pendula
-    ("alder", 3.0, 10.5),     // S: Alnus glutinosa
-    ("hazel", 5.0, 12.0),     // S: Corylus avellana
-    ("maple", 7.0, 18.0),     // B: Acer platanoides
-    ("poplar", 5.0, 10.0),    // S: Populus nigra
-    ("willow", 8.0, 17.0),    // B, F: Salix babylonica
-    ("cherry", 5.0, 15.0),    // B: Prunus serrulata
-    ("bamboo", 10.0, 30.0),   // F: Bambusa vulgaris
-    ("terminalia", 3.0, 8.0), // Terminalia mantaly
+    ("lime", 3.0, 9.0),         // S: Tilia cordata
+    ("beech", 4.0, 10.0),       // S: Fagus sylvatica
+    ("birch", 3.0, 7.0),        // S: Betula pendula
+    ("alder", 3.0, 10.5),       // S: Alnus glutinosa
+    ("hazel", 5.0, 12.0),       // S: Corylus avellana
+    ("maple", 7.0, 18.0),       // B: Acer platanoides
+    ("poplar", 5.0, 10.0),      // S: Populus nigra
+    ("willow", 8.0, 17.0),      // B, F: Salix babylonica
+    ("cherry", 5.0, 15.0),      // B: Prunus serrulata
+    ("bamboo", 10.0, 30.0),     // F: Bambusa vulgaris
+    ("terminalia", 3.0, 8.0),   // Terminalia mantaly
+    ("ash", 18.0, 35.0),        // S: Fraxinus excelsior
+    ("elm", 7.0, 16.0),         // S: Ulmus glabra
+    ("plane-tree", 12.0, 25.0), // B: Platanus x hispanica
+    ("olive", 4.0, 10.0),       // B: Olea europaea
+    ("apple", 4.0, 10.0),       // F: Malus pumila
 ];
 
 #[test]
@@ -235,8 +240,23 @@ fn leaves_as_made_have_the_size_of_their_species() {
         assert!(share > 0.95 && lengths.len() > 100, "{key}: {share} of {} leaves", lengths.len());
     }
     // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm, Cedrus libani 1.5 to 3.5 cm.
-    for (key, least, most) in [("pine", 2.0, 8.0), ("umbrella-pine", 8.0, 20.0), ("cedar", 1.5, 3.5)] {
+    // S: Picea abies 1 to 2.5 cm, Larix decidua 2 to 4 cm, Taxus baccata 1 to 4 cm; F: Cunninghamia lanceolata 0.8 to 6.5 cm.
+    let needles = [
+        ("pine", 2.0, 8.0),
+        ("umbrella-pine", 8.0, 20.0),
+        ("cedar", 1.5, 3.5),
+        ("spruce", 1.0, 2.5),
+        ("larch", 2.0, 4.0),
+        ("yew", 1.0, 4.0),
+        ("chinese-fir", 0.8, 6.5),
+    ];
+    for (key, least, most) in needles {
         let spec = young(key);
+        if let Some(needle) = spec.blade.needle {
+            let length = 100.0 * needle * spec.leaves.length_m;
+            assert!((least..most).contains(&length), "{key}: needles of {length} cm");
+            continue;
+        }
         let blade = tree_blade(&spec.blade);
         let gap = |a: &DVec2, b: &DVec2| a.distance(*b);
         let needle = blade.outline.windows(2).map(|w| gap(&w[0], &w[1])).fold(0.0, f64::max);
