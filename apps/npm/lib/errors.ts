@@ -37,9 +37,16 @@ export function refusedBy(thrown: unknown): unknown {
   }
 }
 
+/** Lists and objects may hold anything, and have no text then. */
+function told(value: unknown): string {
+  if (typeof value === 'string') return JSON.stringify(value.slice(0, 80));
+  if (Array.isArray(value)) return `a list of ${value.length}`;
+  return typeof value === 'object' && value !== null ? 'an object' : String(value);
+}
+
 /** What is wrong with an argument, before it goes to the core. */
 export function wrong(field: string, value: unknown, range: string): BurgeonError {
-  const shown = typeof value === 'string' ? JSON.stringify(value) : String(value);
+  const shown = told(value);
   return new BurgeonError({
     code: 'field-range',
     fields: { field, value: shown, range },

@@ -1,4 +1,5 @@
 /** What both entries have beside the makers. */
+export { BLOW } from './blow.js';
 export { BurgeonError } from './errors.js';
 export type {
   BloomOptions,
@@ -18,5 +19,5 @@ export { type Picture, Plant, type PlantMesh } from './plant.js';
 export type { PartArrays, Tables } from './protocol.js';
 export { FLOWERS, PARTS, TREES } from './spec.js';
 export type { FlowerSpec, LeafSpec, SketchSpec, SkinSpec, TreeSpec } from './spec.js';
-export { BLOW, type Wind } from './wind.js';
+export type { Wind } from './wind.js';
 export type { ItemReport, LevelView, MaterialView, PartView, PlantView, TextureView } from './wire.js';

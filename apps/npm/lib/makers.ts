@@ -98,6 +98,10 @@ const COMMON = ['seed', 'wind', 'lods', 'budget', 'files', 'measures', 'signal',
 
 /** `more`: the options that not all makers have. */
 function common(options: Common & SkinFields & { readonly fields?: object }, more: readonly string[]): Asked {
+  if (typeof options !== 'object' || options === null || Array.isArray(options))
+    throw wrong('options', options, 'an object of options');
+  if (options.files !== undefined && !Array.isArray(options.files))
+    throw wrong('files', options.files, "a list of 'glb', 'mtg', 'opf'");
   const all = [...COMMON, ...more];
   const strange = Object.keys(options).find((name) => !all.includes(name));
   if (strange !== undefined) throw unknown(strange, all);
@@ -129,17 +133,22 @@ function seedOf(seed: number | bigint = 1): bigint {
   return whole;
 }
 
-/** A number that is no number has no JSON: it would be taken for one that was left out. */
+/** What has no JSON would be taken for something that was left out, or end in an error without a name. */
 function text(asked: object): string {
   return JSON.stringify(asked, (key, value: unknown) => {
     if (typeof value === 'number' && !Number.isFinite(value)) throw wrong(key, value, 'a finite number');
+    if (typeof value === 'bigint' || typeof value === 'symbol' || typeof value === 'function')
+      throw wrong(key, value, 'a number, a text, a list or an object');
     return value;
   });
 }
 
 /** One point after another, y upwards, and how many each stroke has. */
 function points(strokes: Strokes, yUp: boolean): { points: Float64Array; counts: Uint32Array } {
-  const flat = strokes.map((stroke, row) => {
+  if (!Array.isArray(strokes)) throw wrong('drawing', strokes, 'a file, or a list of strokes');
+  const flat = (strokes as Strokes).map((stroke, row) => {
+    if (!Array.isArray(stroke) && !(stroke instanceof Float32Array || stroke instanceof Float64Array))
+      throw wrong(`strokes[${row}]`, stroke, 'a list of points, or an array of numbers');
     const numbers = ArrayBuffer.isView(stroke) ? Array.from(stroke as Float64Array) : stroke.flat();
     if (numbers.length % 2 !== 0)
       throw wrong(`strokes[${row}]`, `${numbers.length} numbers`, 'pairs of x and y');

@@ -228,6 +228,75 @@ test('what is wrong is named: field, value and range', async () => {
   await assert.rejects(grow('oak', { signal: AbortSignal.abort() }), { name: 'AbortError' });
 });
 
+test('whatever is passed makes a plant or is named', async () => {
+  // Numbers that follow from a seed, so that what fails can be done again.
+  let state = 20;
+  const below = (n) => {
+    state = (Math.imul(state, 1_664_525) + 1_013_904_223) >>> 0;
+    return Math.floor((state / 2 ** 32) * n);
+  };
+  const one = (list) => list[below(list.length)];
+  const ODD = [
+    ...[undefined, null, true, 0, -1, 1, 0.5, 3, 1e9, -0, Number.NaN, Infinity, 2 ** 53, 7n, 2n ** 70n],
+    ...['', 'oak', 'ünïcode\0', 'a'.repeat(5000), Symbol.iterator, new Date(0), () => 1, new Map(), /x/],
+    ...[
+      new Uint8Array(0),
+      new Uint8Array([0x50, 0x4b, 3, 4]),
+      new Float32Array([1, Number.NaN]),
+      new ArrayBuffer(8),
+    ],
+  ];
+  const odd = (depth = 2) => {
+    if (depth === 0 || below(3) > 0) return one(ODD);
+    const some = Array.from({ length: below(4) }, () => odd(depth - 1));
+    return below(2) ? some : Object.fromEntries(some.map((x, i) => [one(NAMES) ?? String(i), x]));
+  };
+  const NAMES = [
+    ...[
+      'age',
+      'leaves',
+      'method',
+      'roots',
+      'envelope',
+      'kind',
+      'form',
+      'lobes',
+      'detail',
+      'day',
+      'seed',
+      'fields',
+    ],
+    ...['wind', 'lods', 'files', 'measures', 'budget', 'name', 'toml', '__proto__', 'constructor', 'points'],
+  ];
+  const fields = (base) => {
+    const some = Array.from({ length: below(3) }, () => [one(NAMES), odd()]);
+    return { ...base, ...Object.fromEntries(some) };
+  };
+  const calls = [
+    () => grow('hazel', { detail: 0.1, textures: false, fields: fields({ age: 2 }) }),
+    () => grow(one(['hazel', null, odd()]), fields({ detail: 0.1, textures: false, fields: { age: 2 } })),
+    () => sketch(odd(3), fields({ textures: false })),
+    () => leaf(odd(), fields({ fields: fields({}) })),
+    () => bloom(one(['rose', odd()]), fields({ day: odd() })),
+  ];
+  let [made, refused] = [0, 0];
+  for (let k = 0; k < 400; k += 1) {
+    const from = state;
+    try {
+      const plant = await one(calls)();
+      assert.ok(plant.report, `seed ${from}`);
+      made += 1;
+    } catch (error) {
+      assert.ok(error instanceof BurgeonError, `seed ${from}: ${error?.stack ?? String(error)}`);
+      assert.ok(error.message.length > 5, `seed ${from}`);
+      refused += 1;
+    }
+  }
+  assert.ok(made > 5 && refused > 100, `${made} made, ${refused} refused`);
+  // The core is whole nevertheless.
+  assert.ok((await grow('hazel', { detail: 0.1, textures: false, fields: { age: 2 } })).report);
+});
+
 test('schemas say what there is', async () => {
   const tree = await schema('tree');
   assert.equal(tree.properties.age.description.length > 5, true);

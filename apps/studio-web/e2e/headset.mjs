@@ -6,10 +6,10 @@ import { begin, changed, count, data, drop, settled, until } from './journeys.mj
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
-const WIDE = { viewport: { width: 700, height: 420 } };
+export const WIDE = { viewport: { width: 700, height: 420 } };
 
 /** Puts a headset onto the page before it loads. */
-async function wear(page, model) {
+export async function wear(page, model) {
   await page.addInitScript(IWER);
   await page.addInitScript((name) => {
     // What iwer does not describe: the same buttons under the names of Pico's controllers, and no floor.
@@ -30,16 +30,17 @@ async function wear(page, model) {
         supportedFeatures: quest.supportedFeatures.filter((f) => !f.endsWith('-floor')),
       },
     };
+    window.burgeonWatches = true;
     window.device = new globalThis.IWER.XRDevice(own[name] ?? globalThis.IWER[name]);
     window.device.installRuntime({ forceInstall: true });
     window.device.position.set(0, 1.6, 0);
   }, model);
 }
 
-const state = async (page) => JSON.parse((await data(page, 'vr')) || '{}');
+export const state = async (page) => JSON.parse((await data(page, 'vr')) || '{}');
 
 /** Puts a controller somewhere; `aim`: towards a place, else straight ahead. */
-const hand = (page, side, [x, y, z], aim) =>
+export const hand = (page, side, [x, y, z], aim) =>
   page.evaluate(
     ([s, p, to]) => {
       const { position, quaternion } = window.device.controllers[s];
@@ -54,7 +55,7 @@ const hand = (page, side, [x, y, z], aim) =>
     [side, [x, y, z], aim],
   );
 
-const press = (page, side, button, value) =>
+export const press = (page, side, button, value) =>
   page.evaluate(([s, b, v]) => window.device.controllers[s].updateButtonValue(b, v), [side, button, value]);
 
 const stick = (page, side, x, y) =>
@@ -90,7 +91,7 @@ async function shotOfBoard(page, shot, name, side = 'left') {
 }
 
 /** As long as some pictures take. */
-async function frames(page, count = 4) {
+export async function frames(page, count = 4) {
   const { frames: from = 0 } = await state(page);
   await page.waitForFunction(
     (n) => JSON.parse(document.body.dataset.vr || '{"frames":0}').frames >= n,
@@ -105,20 +106,24 @@ async function click(page, side, button) {
   await frames(page);
 }
 
-async function enter(page, url, model = 'metaQuest3') {
+export async function enter(page, url, model = 'metaQuest3', command = undefined) {
   await wear(page, model);
   await begin(page, url);
   await drop(page, 'bush.toml', BUSH);
   await until(page, 'triangles', ['above', 1000], 'a bush has grown');
   const digest = await settled(page);
-  await page.locator('#b-headset').click();
+  if (command) {
+    await page.keyboard.press('Control+k');
+    await page.locator('.palette input').fill('the room');
+    await page.locator(`#p-${command}`).click();
+  } else await page.locator('#b-headset').click();
   await page.waitForFunction(() => document.body.dataset.headset === 'on');
   await frames(page);
   return digest;
 }
 
 /** Points a controller at a branch that is not the trunk, from before the plant; `bearing`: one that bears others. */
-async function find(page, side, { bearing = false } = {}) {
+export async function find(page, side, { bearing = false } = {}) {
   for (let k = 0; k < 80; k += 1) {
     const at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
     await hand(page, side, at);
@@ -131,7 +136,7 @@ async function find(page, side, { bearing = false } = {}) {
 }
 
 /** Presses a key of the wrist, which the other hand holds before the eyes. */
-async function key(page, word, side = 'right', { last = false } = {}) {
+export async function key(page, word, side = 'right', { last = false } = {}) {
   const other = side === 'right' ? 'left' : 'right';
   await hand(page, other, [0, 1.25, -0.35]);
   await frames(page);
@@ -296,7 +301,7 @@ async function stand({ page, url }) {
 }
 
 /** What is carried, once it is elsewhere than before. */
-async function carries(page, before = '') {
+export async function carries(page, before = '') {
   await page.waitForFunction((was) => !['', was].includes(document.body.dataset.carried ?? ''), before);
   return data(page, 'carried');
 }
@@ -410,6 +415,7 @@ const wrist =
     const other = await changed(page, plain, 'another seed');
     await key(page, 'next');
     await changed(page, other, 'another species');
+    await key(page, 'scene');
     await key(page, 'copy');
     await until(page, 'plants', ['is', 2], 'a copy beside it');
     for (let k = 0; k < 3; k += 1) await click(page, 'right', 'b-button');
@@ -438,7 +444,7 @@ async function astray({ page, url }) {
 }
 
 /** Runs a hand over some places, with the trigger held; `last`: what is done before it lets go. */
-async function stroke(page, places, last = async () => {}, side = 'right', button = 'trigger') {
+export async function stroke(page, places, last = async () => {}, side = 'right', button = 'trigger') {
   await hand(page, side, places[0]);
   await frames(page);
   await press(page, side, button, 1);
@@ -453,7 +459,7 @@ async function stroke(page, places, last = async () => {}, side = 'right', butto
 }
 
 /** From a place, so many steps of the same length. */
-const way = ([x, y, z], [dx, dy, dz], count) =>
+export const way = ([x, y, z], [dx, dy, dz], count) =>
   Array.from({ length: count + 1 }, (_, k) => [x + dx * k, y + dy * k, z + dz * k]);
 
 /** A copy of a branch, both sides of a mirror, fewer leaves, a cut; and all of it back: the first plant. */
@@ -537,6 +543,33 @@ async function scene({ page, url, shot }) {
   await changed(page, around, 'it grows around the ball where that stands now');
   await click(page, 'right', 'b-button');
   await page.waitForFunction((d) => document.body.dataset.digest === d, around);
+  await key(page, 'clear');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  // A box is turned by the hand that holds it, and the stick makes it larger.
+  await key(page, 'box');
+  const corner = [0.05, 1.1, -0.8];
+  await stroke(page, way(corner, [0.02, 0.02, 0.01], 8));
+  const boxed = await changed(page, plain, 'it grows around a box');
+  const inside = corner.map((x, i) => x + 4 * [0.02, 0.02, 0.01][i]);
+  await hand(page, 'right', [inside[0], inside[1], inside[2] + 0.03]);
+  await frames(page);
+  await press(page, 'right', 'squeeze', 1);
+  await frames(page);
+  for (let k = 1; k <= 8; k += 1) {
+    await page.evaluate((angle) => {
+      const { quaternion } = window.device.controllers.right;
+      quaternion.set(0, 0, Math.sin(angle / 2), Math.cos(angle / 2));
+    }, k / 10);
+    await frames(page, 1);
+  }
+  await stick(page, 'right', 0, 1);
+  await page.waitForFunction(() => /1[1-9]\d %/.test(JSON.parse(document.body.dataset.vr).said));
+  await stick(page, 'right', 0, 0);
+  await shot('headset-box-turned');
+  await press(page, 'right', 'squeeze', 0);
+  await changed(page, boxed, 'it grows around the turned box');
+  await click(page, 'right', 'b-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, boxed);
   // Another plant, which is worked on; and back to the first.
   await key(page, 'plant.add');
   await until(page, 'plants', ['is', 2], 'a second plant');
@@ -747,124 +780,7 @@ const whole =
     await page.waitForFunction((d) => document.body.dataset.digest === d, digests.at(-1));
   };
 
-/** A whole oak is drawn for both eyes within 300,000 triangles and 100 calls; out of the headset it is whole again. */
-async function levels({ page, url, shot }) {
-  await wear(page, 'metaQuest3');
-  await begin(page, url);
-  await drop(
-    page,
-    'oak.toml',
-    readFileSync(new URL('../../../crates/studio/presets/oak.toml', import.meta.url), 'utf8'),
-  );
-  await until(page, 'triangles', ['above', 150_000], 'an oak has grown');
-  const plain = await settled(page);
-  // Two pictures, as a headset has them: what is counted is both.
-  await page.evaluate(() => {
-    window.device.stereoEnabled = true;
-  });
-  await page.locator('#b-headset').click();
-  await page.waitForFunction(() => document.body.dataset.headset === 'on');
-  await page.waitForFunction(() => {
-    const { cost, frames: n } = JSON.parse(document.body.dataset.vr || '{}');
-    return n > 3 && cost.triangles > 10_000 && cost.triangles <= 300_000;
-  });
-  await frames(page);
-  const { cost, entry } = await state(page);
-  console.log(
-    `        ${cost.triangles} triangles and ${cost.calls} calls for both eyes; session after ${entry.session} ms, scene ` +
-      `given after ${entry.ready} ms, first picture after ${entry.first} ms`,
-  );
-  assert.ok(cost.calls <= 100, `${cost.calls} calls`);
-  assert.equal(await data(page, 'digest'), plain, 'the plant is the same one');
-  await shot('headset-levels');
-  // A branch of what is shown is carried, and nothing is made again.
-  const at = await find(page, 'right');
-  await press(page, 'right', 'squeeze', 1);
-  await frames(page);
-  await hand(page, 'right', [at[0] + 0.05, at[1] + 0.02, at[2]]);
-  await carries(page);
-  await press(page, 'right', 'squeeze', 0);
-  await until(page, 'edits', ['is', 1], 'one edit');
-  await changed(page, plain, 'it was turned');
-}
-
-/** What 300 pictures leave behind on the heap, collected or not, by the file whose code asked for it. */
-async function heap(page, context, words) {
-  const cdp = await context.newCDPSession(page);
-  await cdp.send('HeapProfiler.enable');
-  await cdp.send('HeapProfiler.collectGarbage');
-  await cdp.send('HeapProfiler.startSampling', {
-    samplingInterval: 512,
-    includeObjectsCollectedByMajorGC: true,
-    includeObjectsCollectedByMinorGC: true,
-  });
-  const { frames: from } = await state(page);
-  await page.waitForFunction((n) => JSON.parse(document.body.dataset.vr).frames >= n, from + 300, {
-    timeout: 120_000,
-  });
-  const { frames: to } = await state(page);
-  const { profile } = await cdp.send('HeapProfiler.stopSampling');
-  await cdp.detach();
-  const files = new Map();
-  const makers = new Map();
-  const walk = ({ callFrame, selfSize, children }, under) => {
-    const { url, functionName, lineNumber, columnNumber } = callFrame;
-    // What the engine makes for a function counts for the file that called it.
-    const own = url.includes('/assets/')
-      ? url.replace(/.*\/assets\/(.*?)-[^-]*\.js/, '$1')
-      : url
-        ? ''
-        : under;
-    const file = own === '' ? 'emulator and test' : own;
-    files.set(file, (files.get(file) ?? 0) + selfSize);
-    const maker = `${file} ${functionName || '?'}:${lineNumber}:${columnNumber}`;
-    makers.set(maker, (makers.get(maker) ?? 0) + selfSize);
-    for (const child of children) walk(child, file);
-  };
-  walk(profile.head, '');
-  const sorted = (map, least) =>
-    [...map]
-      .map(([name, bytes]) => [name, Math.round(bytes / (to - from))])
-      .filter(([, bytes]) => bytes >= least)
-      .sort((a, b) => b[1] - a[1]);
-  console.log(
-    `        ${words}, bytes a picture: ${sorted(files, 1)
-      .map(([n, b]) => `${n} ${b}`)
-      .join(', ')}`,
-  );
-  if (process.env.MAKERS)
-    console.log(
-      sorted(makers, 20)
-        .slice(0, 40)
-        .map(([n, b]) => `          ${b} ${n}`)
-        .join('\n'),
-    );
-  return new Map(sorted(files, 0));
-}
-
-/** What the loop of pictures takes from the heap: with hands at rest, and with a branch in the hand. */
-async function loop({ page, context, url }) {
-  await enter(page, url);
-  await find(page, 'right');
-  await heap(page, context, 'hands at rest');
-  const at = await find(page, 'right');
-  await press(page, 'right', 'squeeze', 1);
-  await frames(page);
-  // Moved by the page itself, so that the test asks for nothing meanwhile.
-  await page.evaluate(([x, y, z]) => {
-    let k = 0;
-    window.moving = setInterval(() => {
-      k += 1;
-      window.device.controllers.right.position.set(x + 0.05 * Math.sin(k / 9), y + 0.05 * Math.cos(k / 7), z);
-    }, 11);
-  }, at);
-  await heap(page, context, 'a branch in the hand');
-  await page.evaluate(() => clearInterval(window.moving));
-  await press(page, 'right', 'squeeze', 0);
-  await until(page, 'edits', ['is', 1], 'one edit');
-}
-
-const SMALL = { viewport: { width: 420, height: 300 } };
+export const SMALL = { viewport: { width: 420, height: 300 } };
 
 /** What every run of the journeys does: in, by a known angle, out again; and what goes wrong with a controller. */
 export const headsetCore = [
@@ -878,7 +794,6 @@ export const headset = [
   ['headset: all tools (Quest 3, left)', whole('metaQuest3', 'left'), SMALL],
   ['headset: all tools (Pico 4 Ultra, right)', whole('pico4Ultra', 'right'), SMALL],
   ['headset: all tools (Pico 4 Ultra, left)', whole('pico4Ultra', 'left'), SMALL],
-  ['headset: levels of detail', levels, WIDE],
   ['headset: a shoot grows', grow, WIDE],
   ['headset: size, place, left hand, an early end', stand, WIDE],
   ['headset: a Pico, left-handed, a branch in the hand', pico, WIDE],
@@ -889,5 +804,4 @@ export const headset = [
   ['headset: copy, both sides, leaves, a cut, all back', both, WIDE],
   ['headset: plants, things in the way, a model', scene, WIDE],
   ['headset: lost in a stroke', lost, WIDE],
-  ['headset: memory of the loop', loop, SMALL],
 ];

@@ -6,6 +6,7 @@ import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { grove } from './grove.mjs';
 import { headset, headsetCore } from './headset.mjs';
+import { headsetCosts } from './headset-costs.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { materialJourneys } from './materials.mjs';
@@ -37,7 +38,7 @@ const all = [
   ...headsetCore,
 ];
 // Two pictures a frame: minutes without a graphics card, so the others only when they are asked for.
-if (only?.startsWith('headset')) all.push(...headset);
+if (only?.startsWith('headset')) all.push(...headset, ...headsetCosts);
 for (const [name, journey, options] of all) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({

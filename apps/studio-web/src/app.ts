@@ -32,7 +32,7 @@ import { download, note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Command, ExportFormat, GestureRecord, Obstacle } from './wire';
+import type { Command, ExportFormat, GestureRecord, Obstacle, SetDown } from './wire';
 import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
@@ -408,9 +408,9 @@ export class App implements Page {
         download(name, JSON.stringify(record), 'application/json');
         note(t('note.exported', { name }));
       },
-      shift: (row: number, by: [number, number, number]) => {
+      setDown: (row: number, how: SetDown) => {
         const { plant } = session;
-        if (plant?.tree) session.run({ tree: [plant.id, { 'move-obstacle': [row, by] }] });
+        if (plant?.tree) session.run({ tree: [plant.id, { 'set-down-obstacle': [row, how] }] });
       },
       select: (by: -1 | 0 | 1) => {
         const { state, plant } = session;

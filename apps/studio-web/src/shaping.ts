@@ -132,7 +132,10 @@ export class Shaping {
     private readonly view: PlantView,
     private readonly events: ShapingEvents,
   ) {
-    this.overlay = new Overlay((points) => view.project(points));
+    this.overlay = new Overlay(
+      (points) => view.project(points),
+      () => view.isAway,
+    );
     const canvas = view.element.querySelector('canvas')!;
     canvas.addEventListener('pointerdown', (e) => this.down(e, canvas));
     canvas.addEventListener('pointermove', (e) => this.moved(e));

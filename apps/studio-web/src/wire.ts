@@ -1662,6 +1662,18 @@ export type SceneView = {
   revision: number;
 };
 
+/** A thing is made larger and turned about a place, and then moved. */
+export type SetDown = {
+  /** What is larger and turned from; metres. */
+  about: [number, number, number];
+  /** Metres. */
+  by: [number, number, number];
+  /** So many times as large, 0.01 to 100. */
+  times: number;
+  /** A quaternion (x, y, z, w) of any length above 0. */
+  turn: [number, number, number, number];
+};
+
 /** What came of an input. */
 export type ShapeAnswer = {
   /** What is shown of the plant is out of date. */
@@ -2232,6 +2244,10 @@ export type TreeCommand =
   | /** Moves the obstacle of a row by so many metres, in the coordinates of the tree. */
   {
     'move-obstacle': [number, [number, number, number]];
+  }
+  | /** Sets the obstacle of a row down elsewhere, turned and larger or smaller, in the coordinates of the tree. */
+  {
+    'set-down-obstacle': [number, SetDown];
   }
   | /** Names the obstacle of a row. */
   {

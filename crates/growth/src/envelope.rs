@@ -311,10 +311,19 @@ impl Region {
     }
 
     /// Whether a point lies in the envelope (points on its surface may go either way).
+    #[inline]
     pub fn contains(&self, p: DVec3) -> bool {
         if !(p.cmpge(self.lo).all() && p.cmple(self.hi).all()) {
             return false;
         }
+        match (&*self.form, &self.habit) {
+            (Form::Ellipsoid(centre, radii), None) => ((p - *centre) / *radii).length_squared() <= 1.0,
+            _ => self.holds(p),
+        }
+    }
+
+    /// As [`contains`](Self::contains), for a point in the box around the envelope.
+    fn holds(&self, p: DVec3) -> bool {
         let p = self.habit.as_ref().map_or(p, |h| h.back(p));
         match &*self.form {
             Form::Ellipsoid(centre, radii) => ((p - *centre) / *radii).length_squared() <= 1.0,

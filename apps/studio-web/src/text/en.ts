@@ -699,6 +699,7 @@ export const en = {
   'vr.clear': 'Take the last away',
   'vr.place': 'Hold the trigger from its middle or corner outwards',
   'vr.place.tree': 'Only trees grow around things',
+  'vr.obstacle.size': '{percent} % of its size',
   'vr.place.none': 'Nothing stands in the way',
   'vr.export': 'Export …',
   'vr.record': 'Write down what hands do',

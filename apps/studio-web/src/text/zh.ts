@@ -686,6 +686,7 @@ export const zh: Record<TextKey, string> = {
   'vr.clear': '移除最后的障碍物',
   'vr.place': '按住扳机，从球心或一角向外拉',
   'vr.place.tree': '只有树木会避开障碍物生长',
+  'vr.obstacle.size': '原大小的 {percent}%',
   'vr.place.none': '没有障碍物',
   'vr.export': '导出 …',
   'vr.record': '记录手势',

@@ -12,17 +12,19 @@ export function pointerOf(
   pressure: number,
 ): ShapePointer {
   place.updateWorldMatrix(true, false);
-  const plantFromWorld = place.matrixWorld.clone().invert();
-  const way = (v: THREE.Vector3): [number, number, number] =>
-    v.clone().transformDirection(plantFromWorld).toArray();
+  fromWorld.copy(place.matrixWorld).invert();
   return {
-    origin: origin.clone().applyMatrix4(plantFromWorld).toArray(),
-    direction: way(direction),
-    forward: way(camera.getWorldDirection(new THREE.Vector3())),
-    up: way(new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion)),
+    origin: scratch.copy(origin).applyMatrix4(fromWorld).toArray(),
+    direction: scratch.copy(direction).transformDirection(fromWorld).toArray(),
+    forward: camera.getWorldDirection(scratch).transformDirection(fromWorld).toArray(),
+    up: scratch.set(0, 1, 0).applyQuaternion(camera.quaternion).transformDirection(fromWorld).toArray(),
     pressure,
   };
 }
+
+// A headset asks in every picture: nothing is made for it but the answer.
+const fromWorld = new THREE.Matrix4();
+const scratch = new THREE.Vector3();
 
 /** A share of the height of the screen, in metres of a plant. */
 export function reachOf(
@@ -30,7 +32,7 @@ export function reachOf(
   place: THREE.Object3D | undefined,
   share: number,
 ): Omit<ShapeReach, 'bearers'> {
-  const size = (place?.getWorldScale(new THREE.Vector3()).x ?? 1) || 1;
+  const size = (place?.getWorldScale(scratch).x ?? 1) || 1;
   if (camera instanceof THREE.OrthographicCamera)
     return { metres: (share * (camera.top - camera.bottom)) / size, per_metre: 0 };
   return { metres: 0, per_metre: 2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * share };

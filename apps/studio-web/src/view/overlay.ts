@@ -14,8 +14,11 @@ export class Overlay {
   private width = 2;
   private ring: { x: number; y: number; r: number } | undefined;
 
-  /** `project`: points of the plant on the screen. */
-  constructor(private readonly project: (points: Float32Array) => Line) {
+  /** `project`: points of the plant on the screen. `isUnseen`: the scene is in a headset. */
+  constructor(
+    private readonly project: (points: Float32Array) => Line,
+    private readonly isUnseen = (): boolean => false,
+  ) {
     this.element.className = 'overlay';
     this.element.setAttribute('aria-hidden', 'true');
   }
@@ -49,6 +52,7 @@ export class Overlay {
   }
 
   draw(): void {
+    if (this.isUnseen()) return;
     const { element } = this;
     const [w, h, ratio] = [element.clientWidth, element.clientHeight, Math.min(2, devicePixelRatio || 1)];
     if (element.width !== Math.round(w * ratio) || element.height !== Math.round(h * ratio))

@@ -94,6 +94,9 @@ const DARK: Mood = {
   ambient: 0.95,
 };
 
+/** Black over colours that are toned later is weaker than over those that are shown. */
+const black = (share: number, onScreen: boolean): number => (onScreen ? share : 1 - (1 - share) ** 2.2);
+const PLAIN = { blending: THREE.NormalBlending } as const;
 /** Blends colours and leaves the mark of what lies below. */
 const KEEP_MARK = {
   blending: THREE.CustomBlending,
@@ -131,6 +134,8 @@ export class Stage {
   private dark = false;
   private flat = false;
   private bare = false;
+  /** The name of the colour behind everything, once it was read. */
+  private paint: string | undefined;
   private fine = false;
   private metre = 1;
 
@@ -322,15 +327,16 @@ export class Stage {
   prepare(onScreen: boolean, aspect: number, plants: THREE.Object3D): void {
     this.touchGround(plants);
     this.shared.encoded.value = onScreen ? 1 : 0;
-    const { g } = this.baked?.horizon ?? { g: 1 };
+    const g = this.baked?.horizon.g ?? 1;
     this.ground.setToned(onScreen ? undefined : g * this.renderer.toneMappingExposure);
-    // Black over colours that are toned later is weaker than over those that are shown.
-    const black = (share: number): number => (onScreen ? share : 1 - (1 - share) ** 2.2);
-    this.shadow.material.opacity = black(this.shade);
+    this.shadow.material.opacity = black(this.shade, onScreen);
     // What is marked as not to be toned stays so under a shadow, unless the shadow is all that is there.
-    const looks = [this.shadow.material, ...(this.contact ? [this.contact.plane.material] : [])];
-    for (const look of looks) look.setValues(this.bare ? { blending: THREE.NormalBlending } : KEEP_MARK);
-    if (this.contact) this.contact.plane.material.opacity = black(0.5);
+    const blending = this.bare ? PLAIN : KEEP_MARK;
+    this.shadow.material.setValues(blending);
+    if (this.contact) {
+      this.contact.plane.material.setValues(blending);
+      this.contact.plane.material.opacity = black(0.5, onScreen);
+    }
     const { uniforms } = this.backdrop.material;
     // A sheet needs no drawing on the screen.
     const painted = this.isPainted;
@@ -339,8 +345,11 @@ export class Stage {
     const pictured = !sheet && this.setting.background === 'picture' && this.picture !== undefined;
     uniforms['pictured']!.value = pictured ? 1 : 0;
     uniforms['picture']!.value = this.picture ?? null;
+    // A colour that is named takes time to read.
+    const paint = sheet ? undefined : this.setting.colour;
     if (sheet) uniforms['paint']!.value.copy(this.sheet);
-    else uniforms['paint']!.value.set(this.setting.colour);
+    else if (paint !== this.paint) uniforms['paint']!.value.set(paint);
+    this.paint = paint;
     const image = this.picture?.image as { width: number; height: number } | undefined;
     if (!image) return;
     const own = image.width / Math.max(1, image.height);

@@ -496,6 +496,11 @@ export class PlantView {
     return { metre: this.scale, reach: (Math.max(0, size.x, size.z) * this.scale) / 2 };
   }
 
+  /** It gives its pictures to a headset. */
+  get isAway(): boolean {
+    return this.immersing;
+  }
+
   /** Triangles and draw calls of the last picture, for both eyes where there are two. */
   get cost(): { triangles: number; calls: number } {
     const { triangles, calls } = this.renderer.info.render;
@@ -504,15 +509,24 @@ export class PlantView {
 
   /** Metres of the chosen plant for each unit of the stage. */
   get metresPerUnit(): number {
-    return 1 / (this.chosen?.place.getWorldScale(new THREE.Vector3()).x || 1);
+    return 1 / (this.chosen?.place.getWorldScale(sized).x || 1);
   }
 
   /** The tip of a controller and where it points, both on the stage, in the coordinates of the chosen plant. */
   pointerInSpace(tip: THREE.Vector3, direction: THREE.Vector3, pressure: number): ShapePointer | undefined {
     const place = this.chosen?.place;
     if (!place) return undefined;
-    const at = pointerOf(new THREE.Ray(tip, direction), this.rig.far, place, pressure);
-    return { ...at, tip: at.origin };
+    aimed.origin.copy(tip);
+    aimed.direction.copy(direction);
+    const at = pointerOf(aimed, this.rig.far, place, pressure);
+    at.tip = at.origin;
+    return at;
+  }
+
+  /** How something that is turned in the scene is turned in the coordinates of the chosen plant; it is written to `turn`. */
+  turnOnPlant(turn: THREE.Quaternion): THREE.Quaternion {
+    const place = this.chosen?.place.getWorldQuaternion(stands);
+    return place ? turn.premultiply(place.invert()) : turn;
   }
 
   /** What the chosen plant grows around, where a point (in its coordinates) lies in it. */
@@ -838,3 +852,8 @@ export class PlantView {
     if (this.stage.current.quality === 'auto') this.setStage(this.stage.current);
   }
 }
+
+// What a headset asks for in every picture is worked out in these.
+const aimed = new THREE.Ray();
+const sized = new THREE.Vector3();
+const stands = new THREE.Quaternion();

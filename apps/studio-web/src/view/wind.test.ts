@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
-import { BLOW, blown, gustOf } from './wind';
+import { BLOW } from '../../../npm/lib/blow';
+import { blown, gustOf } from './wind';
 import * as THREE from 'three';
 
 const words = (text: string): string => text.replace(/\s+/g, ' ').trim();

@@ -1,5 +1,5 @@
 /** What the headset asks of the page. */
-import type { ExportFormat, GestureRecord, Obstacle } from '../wire';
+import type { ExportFormat, GestureRecord, Obstacle, SetDown } from '../wire';
 
 export type Mode = 'immersive-vr' | 'immersive-ar';
 
@@ -19,8 +19,8 @@ export interface HeadsetEvents {
   seen(): { plant: number | undefined; digest: string | undefined };
   /** Hands a record to the browser. */
   write(record: GestureRecord): void;
-  /** Moves an obstacle of the chosen plant, metres. */
-  shift(row: number, by: [number, number, number]): void;
+  /** Sets an obstacle of the chosen plant down elsewhere. */
+  setDown(row: number, how: SetDown): void;
   /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
   most(triangles: number): void;
   /** Works on the next plant, the one before, or (0) this one; which it is then. */

@@ -11,6 +11,7 @@ import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
 import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
 import { type Board, rowsOf } from './board';
+import { Carried } from './carried';
 import { Controller, type Part } from './controller';
 import type { HeadsetEvents, Mode } from './events';
 import { Labels, Readout } from './labels';
@@ -93,10 +94,8 @@ export class Headset {
   private readonly readout = new Readout();
   private readonly placing = new Placing();
   readonly recorder = new Recorder();
-  /** An obstacle in the hand: its row, where the hand took it, and what shows it. */
-  private carried:
-    | { row: number; from: ShapePointer; last: ShapePointer; thing: THREE.Object3D; stood: THREE.Vector3 }
-    | undefined;
+  /** An obstacle in the hand. */
+  private carried: Carried | undefined;
   private lostAt = 0;
   private readonly lesson = new Lesson(Number(setting('vr.lesson')) || 0, (done) =>
     setSetting('vr.lesson', String(done)),
@@ -372,7 +371,7 @@ export class Headset {
       this.finish();
       return;
     }
-    const at = hand.tracked ? this.pointer(hand) : undefined;
+    const at = hand.tracked && this.asks(hand) ? this.pointer(hand) : undefined;
     if (this.carried) {
       this.carry(hand, at);
       return;
@@ -414,6 +413,12 @@ export class Headset {
     if (shaping.word !== 'grow' || working.by === 'grip')
       shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
     else this.turnNumbers(hand, x, y);
+  }
+
+  /** Whether this picture needs to know where a hand is in the plant: with nothing in it, every third one does. */
+  private asks(hand: Controller): boolean {
+    if (this.working || this.carried || this.placing.isOn || this.frames % 3 === 0) return true;
+    return hand.holds('grip') || hand.holds('trigger');
   }
 
   /** While it grows: the stick turns two numbers, a click on it takes the next two, and the wrist has all. */
@@ -491,22 +496,30 @@ export class Headset {
     const taken = at.tip && this.view.obstacleAround(at.tip);
     if (!taken) return false;
     hand.pulse(0.7, 30);
-    const { row, thing } = taken;
-    this.carried = { row, thing, stood: thing.position.clone(), from: at, last: at };
+    this.carried = new Carried(taken.row, taken.thing, at.origin, this.turnOf(hand));
     return true;
   }
 
-  /** It goes with the hand until the grip is let go; it is not turned. */
+  /** How a hand is turned, in the coordinates of the plant. */
+  private turnOf(hand: Controller): THREE.Quaternion {
+    turn.setFromRotationMatrix(hand.grip).premultiply(this.world.rig.quaternion);
+    return this.view.turnOnPlant(turn);
+  }
+
+  /** It goes and turns with the hand until the grip is let go; the stick makes it larger or smaller. */
   private carry(hand: Controller, at: ShapePointer | undefined): void {
     const { carried } = this;
     if (!carried) return;
-    if (at && !hand.jumped) carried.last = at;
-    if (hand.holds('grip') && !hand.jumped) {
-      const { thing, stood, from: before, last } = carried;
-      thing.position.copy(stood).sub(from.fromArray(before.origin)).add(from.fromArray(last.origin));
+    if (!hand.holds('grip') || hand.jumped) {
+      this.layDown();
       return;
     }
-    this.layDown();
+    const y = hand.thumb[1];
+    if (Math.abs(y) > OUT) {
+      carried.size(BRUSH ** Math.sign(y));
+      this.wrist.say(t('vr.obstacle.size', { percent: Math.round(100 * carried.times) }));
+    }
+    if (at) carried.follow(at.origin, this.turnOf(hand));
   }
 
   /** What was carried stands where the hand was last. */
@@ -514,10 +527,9 @@ export class Headset {
     const { carried } = this;
     if (!carried) return;
     this.carried = undefined;
-    const { row, from: before, last, thing, stood } = carried;
-    const by = last.origin.map((x, i) => Math.round((x - before.origin[i]!) * 1000) / 1000);
-    if (by.some((x) => x !== 0)) this.events.shift(row, by as [number, number, number]);
-    else thing.position.copy(stood);
+    const how = carried.done();
+    if (how) this.events.setDown(carried.row, how);
+    else carried.putBack();
   }
 
   /** Both grips mean the scene. */
@@ -565,8 +577,9 @@ export class Headset {
     this.trace.geometry.setDrawRange(0, this.drawn);
   }
 
-  /** What tests and support see of it. */
+  /** What tests and support see of it, where they look: it takes memory in every picture. */
   private report(tool: Controller | undefined): void {
+    if (!(window as { burgeonWatches?: boolean }).burgeonWatches) return;
     const now = performance.now();
     if (now < this.reportAt) return;
     this.reportAt = now + REPORT_MS;
@@ -728,5 +741,6 @@ const head = new THREE.Vector3(0, 1.6, 0);
 const from = new THREE.Vector3();
 const way = new THREE.Vector3();
 const landing = new THREE.Vector3();
+const turn = new THREE.Quaternion();
 const matrix = new THREE.Matrix4();
 const scale = new THREE.Vector3();

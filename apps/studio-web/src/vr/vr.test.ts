@@ -3,6 +3,7 @@ import { describe, expect, it } from 'vitest';
 import type { Request } from '../protocol';
 import { obstacleAround } from '../view/obstacles';
 import type { HandEdit } from '../wire';
+import { Carried } from './carried';
 import { Controller, indexOf, Pinch, Track } from './controller';
 import { Lesson } from './lesson';
 import { obstacleOf } from './placing';
@@ -265,4 +266,42 @@ it('an obstacle is taken where the hand is in it', () => {
   const row = (at: [number, number, number]): number | undefined =>
     obstacleAround([wall, ball, box], at)?.row;
   expect([row([1.3, 0.2, 0]), row([1.4, 0.4, 0]), row([-0.4, 0.4, 0.4])]).toEqual([1, undefined, 2]);
+});
+
+describe('an obstacle in the hand', () => {
+  const turned = (angle: number): THREE.Quaternion =>
+    new THREE.Quaternion().setFromAxisAngle(v(1, 2, -0.5).normalize(), angle);
+  const thing = (): THREE.Object3D => {
+    const made = new THREE.Object3D();
+    made.position.set(0.3, 2, -1);
+    return made;
+  };
+
+  it('is seen where the core will set it down', () => {
+    const seen = thing();
+    const corner = v(0.4, -0.2, 0.7);
+    const before = corner.clone().add(seen.position);
+    const carried = new Carried(3, seen, [0.2, 1.9, -1.1], turned(0.4));
+    carried.follow([1.2, 2.5, -0.6], turned(1.3));
+    carried.size(1.5);
+    seen.updateMatrix();
+    const { about, turn, times, by } = carried.done()!;
+    const wanted = before
+      .sub(v(...about))
+      .applyQuaternion(new THREE.Quaternion(...turn))
+      .multiplyScalar(times)
+      .add(v(...about))
+      .add(v(...by));
+    expect(corner.applyMatrix4(seen.matrix).distanceTo(wanted)).toBeLessThan(1e-5);
+    expect(2 * Math.acos(turn[3])).toBeCloseTo(0.9, 4);
+  });
+
+  it('stays where it was if the hand only trembles', () => {
+    const seen = thing();
+    const carried = new Carried(0, seen, [0, 2, 0], turned(0));
+    carried.follow([0.0001, 2, 0], turned(0.001));
+    expect(carried.done()).toBeUndefined();
+    carried.putBack();
+    expect(seen.position.toArray()).toEqual([0.3, 2, -1]);
+  });
 });

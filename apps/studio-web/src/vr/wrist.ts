@@ -68,6 +68,9 @@ export class Wrist {
 
   set(rows: readonly (readonly Key[])[]): void {
     this.keys = layOut(rows);
+    const now = JSON.stringify(this.keys);
+    if (now === this.seen) return;
+    this.seen = now;
     const height = PIXELS.head + rows.length * PIXELS.row;
     if (this.canvas.height !== height || this.canvas.width !== PIXELS.width) {
       [this.canvas.width, this.canvas.height] = [PIXELS.width, height];
@@ -79,6 +82,7 @@ export class Wrist {
 
   /** A line above the keys. */
   say(text: string): void {
+    if (text === this.head) return;
     this.head = text;
     this.draw();
   }
@@ -140,9 +144,6 @@ export class Wrist {
   }
 
   private draw(): void {
-    const now = JSON.stringify([this.keys, this.head, this.under]);
-    if (now === this.seen) return;
-    this.seen = now;
     const pen = this.canvas.getContext('2d');
     if (!pen) return;
     const { width, height } = this.canvas;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bloom::{FlowerSpec, GrowthLaw};
 use glam::DVec3;
-use growth::TreeSpec;
+use growth::{SetDown, TreeSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -36,6 +36,8 @@ pub enum TreeCommand {
     SetObstacle(usize, NamedObstacle),
     /// Moves the obstacle of a row by so many metres, in the coordinates of the tree.
     MoveObstacle(usize, #[schemars(with = "[f64; 3]")] DVec3),
+    /// Sets the obstacle of a row down elsewhere, turned and larger or smaller, in the coordinates of the tree.
+    SetDownObstacle(usize, SetDown),
     /// Names the obstacle of a row.
     RenameObstacle(usize, String),
     /// Takes the obstacle of a row away.
@@ -57,7 +59,7 @@ impl TreeCommand {
             Self::SetSpec(..) => "species",
             Self::SetField(..) => "tree",
             Self::AddObstacle(_) | Self::SetObstacle(..) | Self::RemoveObstacle(_) => "obstacle",
-            Self::MoveObstacle(..) => "move-obstacle",
+            Self::MoveObstacle(..) | Self::SetDownObstacle(..) => "move-obstacle",
             Self::RenameObstacle(..) => "rename",
             Self::SetSkin(_) => "skin",
             Self::SetLeaf(_) => "leaf-of",
@@ -95,6 +97,14 @@ impl TreeCommand {
                     return Err(CommandError::OutOfRange(SettingFault::Place));
                 }
                 obstacle.shape = Arc::new(obstacle.shape.moved(by));
+            }
+            Self::SetDownObstacle(row, how) => {
+                let obstacle = tree.obstacles.get_mut(row).ok_or(gone)?;
+                let strange = || CommandError::OutOfRange(SettingFault::Place);
+                let shape = obstacle.shape.placed(&how.sound().ok_or_else(strange)?);
+                // Larger or smaller again and again, it would leave what a spec may say.
+                growth::Obstacles::new(core::slice::from_ref(&shape), 0.0).ok().ok_or_else(strange)?;
+                obstacle.shape = Arc::new(shape);
             }
             Self::RenameObstacle(row, name) => {
                 tree.obstacles.get_mut(row).ok_or(gone)?.name = shortened(&name)

@@ -7,7 +7,7 @@
 
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::GuidedSpec;
 use super::room::{Guide, Room};
@@ -26,6 +26,8 @@ const TILE: u32 = 6;
 /// nearly empty.
 const MOST_TILES: u64 = 1 << 25;
 const MORE_TILES: u64 = 65_536;
+/// A grid of at most so many cells for each marker is not numbered anew: its cells are the rows.
+const FEW_CELLS: u64 = 4;
 /// Which markers of others stand in a cone is asked of so many of its own, or of every second: more tell hardly more.
 const PROBES: usize = 64;
 const OF_EACH: usize = 2;
@@ -102,6 +104,8 @@ pub(super) struct Grid {
     tiles: [u64; 2],
     /// Of all, where their cells are numbered in 32 bits.
     all: Option<usize>,
+    /// What is met is kept for all cells of the grid, not for those alone in which markers lie.
+    is_full: bool,
 }
 
 /// The markers of one bud.
@@ -149,7 +153,7 @@ pub(super) struct Sums {
 /// Markers in a cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Held {
-    count: f32,
+    count: u32,
     weight: f32,
 }
 
@@ -226,12 +230,15 @@ impl Cone {
         let count = |cells: f64| ((cells as u64).saturating_add(u64::from(reach)) >> 2) + 2;
         let [x, y, z] = ((hi - from) * per_m).to_array().map(count);
         let all = x.checked_mul(y).and_then(|n| n.checked_mul(z)).filter(|n| *n <= most);
-        Grid { from, per_m, reach, tiles: [x, y], all: all.and_then(|n| usize::try_from(n).ok()) }
+        let few = buds.saturating_mul(self.probes as u64).saturating_mul(FEW_CELLS);
+        let is_full = all.is_some_and(|n| n << TILE <= few);
+        Grid { from, per_m, reach, tiles: [x, y], all: all.and_then(|n| usize::try_from(n).ok()), is_full }
     }
 
     /// The markers of buds, but for those that find no room.
     pub(super) fn markers(&self, stands: impl Iterator<Item = Stand>, grid: &Grid, room: &Room) -> Batch {
         let (mut batch, mut near) = (Batch::default(), Vec::new());
+        let mut kept: Columns<Vec<f32>> = Columns::default();
         let buds = stands.size_hint().0;
         batch.of.reserve(buds);
         if grid.all.is_some() {
@@ -250,6 +257,7 @@ impl Cone {
                 batch.add(x, y, z, &turned, grid);
             } else {
                 let of_cell = [stand.heading, side, across].map(|v| v * self.cell);
+                kept.iter_mut().for_each(Vec::clear);
                 let first = u32::try_from(first).unwrap_or(0);
                 for (((&x, &y), &z), which) in x.iter().zip(y).zip(z).zip(first..) {
                     let [h, s, a] = of_cell;
@@ -264,8 +272,12 @@ impl Cone {
                     if room.is_guided() {
                         batch.guides.extend(guide);
                     }
-                    batch.add(&[x], &[y], &[z], &turned, grid);
+                    for (column, n) in kept.iter_mut().zip([x, y, z]) {
+                        column.push(n);
+                    }
                 }
+                let [x, y, z] = &kept;
+                batch.add(x, y, z, &turned, grid);
             }
             let end = batch.rows.len().max(batch.cells.len());
             batch.of.push(Of { first, side, across, end, is_whole });
@@ -289,12 +301,18 @@ impl Cone {
         // A probe stands for so many markers.
         let each = self.markers as f64 / self.probes as f64;
         let Scratch { tiles, held, own } = scratch;
-        tiles.begin(grid, batches);
-        for batch in &mut *batches {
-            tiles.number(batch);
-        }
+        let cells = match grid.all.filter(|_| grid.is_full) {
+            Some(all) => all << TILE,
+            None => {
+                tiles.begin(grid, batches);
+                for batch in &mut *batches {
+                    tiles.number(batch);
+                }
+                tiles.cells()
+            }
+        };
         held.clear();
-        held.resize(tiles.cells(), Held::default());
+        held.resize(cells, Held::default());
         for batch in &*batches {
             self.each(batch, own, |of, own, _| {
                 let mut sum = if of.is_whole {
@@ -303,7 +321,7 @@ impl Cone {
                     let whole = pool.whole[to] - pool.whole[from];
                     Sums { whole, pull: pool.pull[to] - pool.pull[from], ..Sums::default() }
                 } else {
-                    let (whole, pull) = (own.whole() * each, own.dot(0, own.weight) * each);
+                    let (whole, pull) = (own.whole() * each, own.dot(0, own.weight, |w| w) * each);
                     Sums { whole, pull, ..Sums::default() }
                 };
                 sum.own = own.rows.len() as f64 * each;
@@ -366,28 +384,44 @@ impl Own<'_> {
         self.weight.iter().map(|w| f64::from(*w)).sum()
     }
 
-    /// The sum of the ways from a marker on, each times a number.
-    fn dot(&self, from: usize, times: &[f32]) -> DVec3 {
-        let sum = self.way.map(|way| lanes(&way[from..from + times.len()], times));
-        Vec3::from_array(sum).as_dvec3()
+    /// The sum of the ways from a marker on, each times a number: in four lanes, whatever the machine.
+    #[inline]
+    fn dot<T: Copy>(&self, from: usize, of: &[T], mut number: impl FnMut(T) -> f32) -> DVec3 {
+        let [x, y, z] = self.way.map(|way| way[from..from + of.len()].as_chunks::<4>());
+        let (of, of_end) = of.as_chunks::<4>();
+        let mut sum = [Vec4::ZERO; 3];
+        for (((x, y), z), of) in x.0.iter().zip(y.0).zip(z.0).zip(of) {
+            let number = Vec4::from_array(of.map(&mut number));
+            for (sum, way) in sum.iter_mut().zip([x, y, z]) {
+                *sum += Vec4::from_array(*way) * number;
+            }
+        }
+        let mut sum = sum.map(|s| s.to_array());
+        for (lane, of) in of_end.iter().enumerate() {
+            let number = number(*of);
+            for (sum, way) in sum.iter_mut().zip([x.1, y.1, z.1]) {
+                sum[lane] += way[lane] * number;
+            }
+        }
+        Vec3::from_array(sum.map(|s| (s[0] + s[1]) + (s[2] + s[3]))).as_dvec3()
     }
 
     /// How many of older buds its markers meet in their cells, and how they push it, less what its own would add to what
     /// [`see`](Self::see) says; then its own are held, too.
     fn meet(&self, held: &mut [Held]) -> (f64, DVec3) {
         let (mut older, mut push) = (0.0, DVec3::ZERO);
-        let (mut count, mut weight) = ([0.0; TOGETHER], [0.0; TOGETHER]);
         for (k, rows) in self.rows.chunks(TOGETHER).enumerate() {
-            for ((row, c), w) in rows.iter().zip(&mut count).zip(&mut weight) {
-                let there = held[*row as usize];
-                (*c, *w) = (there.count, there.weight);
-            }
-            older += f64::from(lane_sum(&count[..rows.len()]));
-            push += self.dot(k * TOGETHER, &weight[..rows.len()]);
+            let mut count = 0;
+            push += self.dot(k * TOGETHER, rows, |row| {
+                let there = held[row as usize];
+                count += there.count;
+                there.weight
+            });
+            older += f64::from(count);
         }
         for (row, w) in self.rows.iter().zip(self.weight) {
             let there = &mut held[*row as usize];
-            there.count += 1.0;
+            there.count += 1;
             there.weight += w;
         }
         (older, push - self.see(held))
@@ -395,50 +429,14 @@ impl Own<'_> {
 
     /// How all that its markers meet pushes it.
     fn see(&self, held: &[Held]) -> DVec3 {
-        let mut push = DVec3::ZERO;
-        let mut weight = [0.0; TOGETHER];
-        for (k, rows) in self.rows.chunks(TOGETHER).enumerate() {
-            for (row, w) in rows.iter().zip(&mut weight) {
-                *w = held[*row as usize].weight;
-            }
-            push += self.dot(k * TOGETHER, &weight[..rows.len()]);
-        }
-        push
+        let rows = self.rows.chunks(TOGETHER).enumerate();
+        rows.map(|(k, rows)| self.dot(k * TOGETHER, rows, |row| held[row as usize].weight)).sum()
     }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the nearest")]
 const fn short(x: f64) -> f32 {
     x as f32
-}
-
-/// The sum of products, in four lanes.
-fn lanes(a: &[f32], b: &[f32]) -> f32 {
-    let ((a, a_end), (b, b_end)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut sum = [0.0; 4];
-    for (a, b) in a.iter().zip(b) {
-        for ((s, a), b) in sum.iter_mut().zip(a).zip(b) {
-            *s += a * b;
-        }
-    }
-    for ((s, a), b) in sum.iter_mut().zip(a_end).zip(b_end) {
-        *s += a * b;
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
-}
-
-fn lane_sum(a: &[f32]) -> f32 {
-    let (a, end) = a.as_chunks::<4>();
-    let mut sum = [0.0; 4];
-    for a in a {
-        for (s, a) in sum.iter_mut().zip(a) {
-            *s += a;
-        }
-    }
-    for (s, a) in sum.iter_mut().zip(end) {
-        *s += a;
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
 }
 
 /// A bud's frame in a grid, in cells.
@@ -477,12 +475,15 @@ impl Batch {
         }
         #[expect(clippy::cast_possible_truncation, reason = "a grid of few tiles")]
         let ([cx, cy, cz], [nx, ny]) = (turned.cell.map(|n| n as u32), grid.tiles.map(|n| n as u32));
-        self.rows.extend(places.map(|[x, y, z]| {
+        // Written to rows that are there, as this runs four abreast; one by one, each would be asked whether there is room.
+        let from = self.rows.len();
+        self.rows.resize(from + x.len(), 0);
+        for (row, [x, y, z]) in self.rows[from..].iter_mut().zip(places) {
             let (x, y, z) = (cx.wrapping_add(x), cy.wrapping_add(y), cz.wrapping_add(z));
             let inner = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
             let tile = (z >> 2).wrapping_mul(ny).wrapping_add(y >> 2).wrapping_mul(nx).wrapping_add(x >> 2);
-            tile << TILE | inner
-        }));
+            *row = tile << TILE | inner;
+        }
     }
 }
 

@@ -92,12 +92,6 @@ pub fn guide_from(
     Growing::from_wood(skeleton, buds, obstacles, spec, seed, run)?.through(run, report)
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Life {
-    Alive,
-    Dead,
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Bud {
     joint: u32,
@@ -109,7 +103,7 @@ struct Bud {
     terminal: bool,
     wakes: u32,
     key: Seed,
-    life: Life,
+    lives: bool,
 }
 
 /// What a bud saw in a round.
@@ -120,25 +114,13 @@ struct Look {
     dies: bool,
 }
 
-/// Free space that comes down to each joint, and vigour that goes up from it; memory of one round, taken again by the next.
-#[derive(Clone, Debug, Default)]
+/// What passes a joint: free space on its way down, then vigour on its way up.
+#[derive(Clone, Copy, Debug, Default)]
 struct Flow {
-    /// All that is gathered, and that of the main axis.
-    gathered: Vec<f64>,
-    main: Vec<f64>,
-    /// What reaches the main axis beyond each joint, and what each unit of free space at its side gets.
-    ahead: Vec<f64>,
-    beside: Vec<f64>,
-}
-
-impl Flow {
-    /// Nothing yet, at so many joints.
-    fn begin(&mut self, joints: usize) {
-        for column in [&mut self.gathered, &mut self.main, &mut self.ahead, &mut self.beside] {
-            column.clear();
-            column.resize(joints, 0.0);
-        }
-    }
+    /// All that is gathered; then what reaches the main axis beyond the joint.
+    all: f64,
+    /// That of the main axis; then what each unit of free space at its side gets.
+    main: f64,
 }
 
 /// Buds of one job of a parallel map.
@@ -183,11 +165,11 @@ pub struct Growing {
     is_main: Vec<bool>,
     /// Joints that were there before.
     given: usize,
+    /// Those that live, the oldest first.
     buds: Vec<Bud>,
-    /// Those of them that live, in their order.
-    living: Vec<u32>,
     scratch: Scratch,
-    flow: Flow,
+    /// Of each joint; memory of one round, taken again by the next.
+    flow: Vec<Flow>,
     room: Room,
     /// As it is asked at first.
     asked: GuidedSpec,
@@ -295,16 +277,15 @@ impl Growing {
                 terminal: !continued[b.joint.index()],
                 wakes: b.wakes,
                 key: seed.child(place_key(place)).child(i),
-                life: Life::Alive,
+                lives: true,
             }
         });
         let buds: Vec<Bud> = buds.collect();
         Self {
             is_main,
             given,
-            living: (0_u32..).zip(&buds).map(|(b, _)| b).collect(),
             scratch: Scratch::default(),
-            flow: Flow::default(),
+            flow: Vec::new(),
             buds,
             skeleton,
             room,
@@ -455,7 +436,7 @@ impl Growing {
 
     /// Buds that may grow on.
     pub const fn living(&self) -> usize {
-        self.living.len()
+        self.buds.len()
     }
 
     /// At how many markers buds have looked so far: what growth costs.
@@ -483,10 +464,10 @@ impl Growing {
 
     /// One round; whether any bud is left that may still grow.
     fn grow(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
-        let wakes = |b: &u32| self.buds[*b as usize].wakes <= round;
-        let awake: Vec<u32> = self.living.iter().copied().filter(wakes).collect();
+        let awake = (0_u32..).zip(&self.buds).filter(|(_, bud)| bud.wakes <= round);
+        let awake: Vec<u32> = awake.map(|(b, _)| b).collect();
         if awake.is_empty() {
-            return Ok(!self.living.is_empty());
+            return Ok(!self.buds.is_empty());
         }
         let all = u64::from(self.spec.markers) * awake.len() as u64;
         run.budget.check(Counted::Points, all, TOO_MANY)?;
@@ -512,15 +493,14 @@ impl Growing {
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {
             if look.dies {
-                self.buds[b as usize].life = Life::Dead;
+                self.buds[b as usize].lives = false;
                 self.died += 1;
             } else if self.skeleton.len() < self.spec.max_joints as usize {
                 self.shoot(b as usize, look.direction, v, round + 1);
             }
         }
-        let buds = &self.buds;
-        self.living.retain(|b| buds[*b as usize].life == Life::Alive);
-        Ok(!self.living.is_empty())
+        self.buds.retain(|bud| bud.lives);
+        Ok(!self.buds.is_empty())
     }
 
     /// Direction and free space of a bud.
@@ -545,41 +525,47 @@ impl Growing {
     /// Vigour of the awake buds: `alpha` times the free space of each tree, shared at its forks (Palubicki 2009, 4.2).
     fn share(&mut self, awake: &[u32], looks: &[Look]) -> Vec<f64> {
         let n = self.skeleton.len();
-        self.flow.begin(n);
-        let Flow { gathered, main, ahead, beside } = &mut self.flow;
+        let flow = &mut self.flow;
+        flow.clear();
+        flow.resize(n, Flow::default());
         for (&b, look) in awake.iter().zip(looks).filter(|(_, l)| !l.dies) {
             let bud = &self.buds[b as usize];
-            gathered[bud.joint as usize] += look.free;
+            let here = &mut flow[bud.joint as usize];
+            here.all += look.free;
             if bud.terminal {
-                main[bud.joint as usize] += look.free;
+                here.main += look.free;
             }
         }
-        for j in (0..n).rev() {
-            if let Some(p) = self.skeleton.parent[j] {
-                gathered[p.index()] += gathered[j];
-                if self.is_main[j] {
-                    main[p.index()] += gathered[j];
-                }
+        let joints = || self.skeleton.parent.iter().zip(&self.is_main).enumerate();
+        for (j, (parent, is_main)) in joints().rev() {
+            let Some(p) = parent else { continue };
+            let all = flow[j].all;
+            let below = &mut flow[p.index()];
+            below.all += all;
+            if *is_main {
+                below.main += all;
             }
         }
         let lambda = self.spec.lambda;
-        for j in 0..n {
-            let vigour = match self.skeleton.parent[j] {
-                None => self.spec.alpha * gathered[j],
-                Some(p) if self.is_main[j] => ahead[p.index()],
-                Some(p) => beside[p.index()] * gathered[j],
+        for (j, (parent, is_main)) in joints() {
+            let here = flow[j];
+            let vigour = match parent.map(|p| flow[p.index()]) {
+                None => self.spec.alpha * here.all,
+                Some(below) if *is_main => below.all,
+                Some(below) => below.main * here.all,
             };
-            let side = (gathered[j] - main[j]).max(0.0);
-            let (m, l) = (lambda * main[j], (1.0 - lambda) * side);
+            let side = (here.all - here.main).max(0.0);
+            let (m, l) = (lambda * here.main, (1.0 - lambda) * side);
+            flow[j] = Flow::default();
             if m + l > 0.0 {
-                ahead[j] = vigour * m / (m + l);
-                beside[j] = if side > 0.0 { vigour * (l / (m + l)) / side } else { 0.0 };
+                flow[j].all = vigour * m / (m + l);
+                flow[j].main = if side > 0.0 { vigour * (l / (m + l)) / side } else { 0.0 };
             }
         }
         let of = |(&b, look): (&u32, &Look)| {
             let bud = &self.buds[b as usize];
-            let j = bud.joint as usize;
-            if bud.terminal { ahead[j] } else { beside[j] * look.free }
+            let here = flow[bud.joint as usize];
+            if bud.terminal { here.all } else { here.main * look.free }
         };
         awake.iter().zip(looks).map(of).collect()
     }
@@ -604,7 +590,7 @@ impl Growing {
             let place = to.map(|to| at + to * length);
             let Some((to, place)) = to.zip(place).filter(|(_, p)| self.room.at(*p, &mut near).is_some())
             else {
-                self.buds[b].life = Life::Dead;
+                self.buds[b].lives = false;
                 return;
             };
             let joint = self.skeleton.push(place, JointId::new(from), birth);
@@ -636,7 +622,6 @@ impl Growing {
             let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * stream.normal();
             let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
             let heading = (tip.heading * ct + (tip.side * ca + across * sa) * st).normalize_or(tip.heading);
-            self.living.extend(u32::try_from(self.buds.len()));
             self.buds.push(Bud {
                 joint: tip.joint,
                 heading,
@@ -645,7 +630,7 @@ impl Growing {
                 terminal: false,
                 wakes: birth,
                 key: key.child(k),
-                life: Life::Alive,
+                lives: true,
             });
         }
     }
@@ -658,7 +643,7 @@ impl Growing {
             return self.skeleton.clone();
         }
         let (mut size, mut alive) = (vec![1_usize; n], vec![false; n]);
-        for b in self.buds.iter().filter(|b| b.life == Life::Alive && b.terminal) {
+        for b in self.buds.iter().filter(|b| b.terminal) {
             alive[b.joint as usize] = true;
         }
         let mut stays = vec![true; n];

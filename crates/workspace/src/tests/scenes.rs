@@ -345,3 +345,29 @@ fn copies_are_scattered_at_their_spacing_as_one_step() {
     s.act(&Action::Scatter(wanted)).unwrap();
     assert_eq!(s.document().plants().len(), 200, "as many as a scene holds");
 }
+
+#[test]
+fn an_obstacle_is_turned_as_one_step() {
+    let mut s = Workspace::default();
+    s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+    s.ask(
+        r#"{"tree":[1,{"add-obstacle":{"name":"box","shape":{"shape":"box","min":[0,2,0],"max":[1,3,1]}}}]}"#,
+    )
+    .unwrap();
+    let before = scene(&mut s);
+    let shape = |s: &Workspace| json(&s.state())["plants"][0]["tree"]["obstacles"][0]["shape"].clone();
+    let place =
+        |s: &mut Workspace, how: &str| s.ask(&format!(r#"{{"tree":[1,{{"set-down-obstacle":[{how}]}}]}}"#));
+    place(&mut s, r#"0,{"times":2,"by":[0,-1,0]}"#).unwrap();
+    assert_eq!((&shape(&s)["shape"], &shape(&s)["max"]), (&json(&"box"), &json(&[2.0, 5.0, 2.0])));
+    place(&mut s, r#"0,{"turn":[0,0.4,0,1],"about":[1,4,1]}"#).unwrap();
+    assert_eq!(shape(&s)["shape"], "mesh");
+    assert_ne!(scene(&mut s)[0].1, before[0].1, "the tree grows otherwise");
+    for refused in [r#"1,{}"#, r#"0,{"times":0}"#, r#"0,{"turn":[0,0,0,0]}"#] {
+        assert!(place(&mut s, refused).is_err(), "{refused}");
+    }
+    for _ in 0..2 {
+        assert_eq!(s.undo(), Some("move-obstacle"));
+    }
+    assert_eq!(scene(&mut s), before);
+}
