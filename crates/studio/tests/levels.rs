@@ -4,7 +4,7 @@ use burgeon::glam::DVec3;
 use burgeon::mesh::{AlphaMode, MaterialKind, Model, Texture};
 use burgeon::render::{Background, Camera, PictureSpec, View, shot};
 use burgeon::skin::{Foliage, SkinSpec};
-use burgeon::{PRESETS, Preset, Run, Seed, TreeOptions, TreeSpec, make_tree};
+use burgeon::{PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
 
 /// The area of what is of these kinds, one side, without what is cut out, square metres.
 fn area(model: &Model, is: impl Fn(MaterialKind) -> bool) -> f64 {
@@ -151,8 +151,6 @@ fn cards_and_shoots_keep_the_foliage_too() {
 fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
     let mut faults = Vec::new();
     let spec = Preset::find(key).expect("there").spec().expect("sound");
-    // Three fifths of its life, and half of its leaves and more: levels are asked for the same, in half of the time.
-    let spec = TreeSpec { age: spec.years.map(|years| years * 3 / 5), ..spec };
     let made = make_tree(&spec, Seed::new(1), options, &Run::plain()).expect("a tree");
     let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.lods).collect();
     let foliage = area(levels[0], leaf);
