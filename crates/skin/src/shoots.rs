@@ -11,6 +11,10 @@ use crate::blade::BladeChart;
 use crate::needles::{Cut, Needles};
 use crate::sleeve::{drop_flat, narrow2};
 
+/// So much of the wood of a card counts as covered: thin twigs are lost in a texture (64 pixels of an oak show hardly any of
+/// them), the stalks of palm leaves are not.
+const WOOD_SEEN: f64 = 0.5;
+
 /// How leaves are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Foliage {
@@ -74,7 +78,7 @@ pub(crate) struct Tile {
     pub(crate) wood: Vec<[DVec2; 2]>,
     /// Middle of the leaves.
     middle: DVec2,
-    /// What leaves cover, square metres: wood is no foliage, and is lost in small textures.
+    /// What leaves and what is seen of the wood cover, square metres.
     covered: f64,
 }
 
@@ -335,7 +339,9 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
     let middle = leaves.iter().map(|l| l.at + l.along * (0.5 * leaf.length() * l.scale)).sum::<DVec2>()
         / leaves.len() as f64;
     let mut tile = Tile { card, leaves, wood, middle, covered: 0.0 };
-    tile.covered = covered(&tile.card, |p| tile.seen(cut, p).is_some());
+    let leaves = covered(&tile.card, |p| tile.seen(cut, p).is_some());
+    let all = covered(&tile.card, |p| tile.seen(cut, p).is_some() || tile.on_wood(p));
+    tile.covered = leaves + WOOD_SEEN * (all - leaves);
     (tile.covered > 0.0).then_some(tile)
 }
 

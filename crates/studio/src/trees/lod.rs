@@ -30,7 +30,7 @@ fn leaf_halvings(plant: &Plant, level: u32) -> u32 {
     let longest = leaves().map(reach).filter(|r| r.is_finite()).fold(0.0, f64::max);
     let fits = |n: &u32| longest * f64::from(1_u32 << n).sqrt() <= LONGEST * size;
     // Once less at most, and where most triangles are wood: a level has half of those of the one before.
-    let woody = 4 * plant.axes.len() > leaves().count();
+    let woody = plant.axes.len() > leaves().count();
     let least = if level > 2 && most == level && woody { most - 1 } else { most };
     (least..=most).rev().find(fits).unwrap_or(least)
 }
