@@ -148,7 +148,9 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
         let mut c = prepare(&burgeon, &opening);
         digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
         for preset in &presets {
-            let mut c = prepare(&burgeon, &["grow", preset, "--detail", DETAIL]);
+            // Needles are painted on cards where there are textures: the counts are those of what is drawn without.
+            let mut c = prepare(&burgeon, &["grow", preset, "--detail", DETAIL, "--no-textures", "-o"]);
+            c.arg(&glb);
             digest_of(format!("tree {preset}"), &mut c)?;
         }
         all.push(digests);
