@@ -83,9 +83,14 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
     if fans.iter().flatten().count() + draft.blades.len() < 2 {
         return;
     }
-    for (line, fan) in std::mem::take(&mut draft.lines).into_iter().zip(fans) {
+    into_blades(draft, fans);
+}
+
+/// Makes blades of lines; each is given whether its last point is its root, or nothing where it stays a line.
+fn into_blades(draft: &mut Draft<'_>, roots: Vec<Option<bool>>) {
+    for (line, root) in std::mem::take(&mut draft.lines).into_iter().zip(roots) {
         let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
-        let blade = fan.zip(stroke).and_then(|(last, k)| {
+        let blade = root.zip(stroke).and_then(|(last, k)| {
             let points = oriented(&line.points, last);
             Sheetlet::lens(&points, k, LENS * polyline_length(&points))
         });
@@ -121,22 +126,9 @@ pub(crate) fn rays(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         let Some(&usual) = reach.get(reach.len() / 2).filter(|_| reach.len() >= FEWEST_RAYS) else {
             continue;
         };
-        for (line, ray) in std::mem::take(&mut draft.lines).into_iter().zip(found) {
-            let stroke =
-                line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
-            // The stem goes on where petals end.
-            let petal = ray.filter(|r| r.1 < LONG_RAY * usual).zip(stroke).and_then(|((last, _), k)| {
-                let points = oriented(&line.points, last);
-                Sheetlet::lens(&points, k, LENS * polyline_length(&points))
-            });
-            match petal {
-                Some(petal) => {
-                    draft.set_organ(line.source, OrganWord::Leaf);
-                    draft.blades.push(petal);
-                }
-                None => draft.lines.push(line),
-            }
-        }
+        // The stem goes on where petals end.
+        let petal = |ray: Option<(bool, f64)>| ray.filter(|r| r.1 < LONG_RAY * usual).map(|r| r.0);
+        into_blades(draft, found.into_iter().map(petal).collect());
     }
 }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use base::turn::direction;
 use base::{Draw, Report, Run, Seed, Stream, ops};
 use glam::DVec2;
 use ink::{Drawing, InkSample, Stroke, StrokeClass};
@@ -42,11 +43,6 @@ const WAYS: [(&str, Again); 15] = [
     ("each end 1 % shorter", |_, l| lines(l, shorter)),
     ("one stroke drawn twice", retraced),
 ];
-
-fn direction(angle: f64) -> DVec2 {
-    let (s, c) = ops::sin_cos(angle);
-    DVec2::new(c, s)
-}
 
 fn points(lines: &mut Lines, to: impl Fn(DVec2) -> DVec2) {
     lines.iter_mut().flat_map(|l| &mut l.points).for_each(|p| *p = to(*p));
@@ -88,8 +84,12 @@ fn shaken(r: &mut Stream, line: &mut [DVec2]) {
     }
 }
 
+fn length(line: &[DVec2]) -> f64 {
+    line.windows(2).map(|w| w[0].distance(w[1])).sum()
+}
+
 fn shorter(line: &[DVec2]) -> Vec<DVec2> {
-    let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let length = length(line);
     let (mut gone, mut kept) = (0.0, Vec::new());
     for w in line.windows(2) {
         let d = w[0].distance(w[1]);
@@ -105,8 +105,7 @@ fn shorter(line: &[DVec2]) -> Vec<DVec2> {
 
 /// The longest stroke again, beside itself, at the end.
 fn retraced(_: &mut Stream, lines: &mut Lines) {
-    let length = |l: &Line| l.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
-    let longest = lines.iter().max_by(|a, b| length(a).total_cmp(&length(b))).cloned();
+    let longest = lines.iter().max_by(|a, b| length(&a.points).total_cmp(&length(&b.points))).cloned();
     lines.extend(longest.map(|l| Line {
         place: usize::MAX,
         points: l.points.into_iter().map(|p| p + DVec2::splat(0.004)).collect(),

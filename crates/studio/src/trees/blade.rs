@@ -234,8 +234,7 @@ fn spray(spec: &BladeSpec) -> Blade {
             let p =
                 geom::point_at(axis, geom::polyline_length(axis) * f64::from(k) / 12.0).unwrap_or(axis[0]);
             for turn in [-0.9, -0.4, 0.0, 0.4, 0.9] {
-                let (s, c) = ops::sin_cos(turn);
-                let tip = p + DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s) * needle;
+                let tip = p + base::turn::direction(-turn).rotate(way) * needle;
                 let bin = ops::whole(tip.y.clamp(0.0, 0.999) * BINS as f64) as usize;
                 wide[bin] = wide[bin].max(tip.x.abs());
             }
@@ -250,10 +249,7 @@ fn spray(spec: &BladeSpec) -> Blade {
 
 /// A side shoot: it leaves `way` by an angle and turns towards it.
 fn bent(from: DVec2, way: DVec2, angle: f64, length: f64) -> [DVec2; 3] {
-    let turned = |by: f64| {
-        let (s, c) = ops::sin_cos(by);
-        DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s)
-    };
+    let turned = |by: f64| base::turn::direction(-by).rotate(way);
     let middle = from + turned(angle) * (0.5 * length);
     [from, middle, middle + turned(0.7 * angle) * (0.5 * length)]
 }
