@@ -363,6 +363,23 @@ async function firstRun({ page, url, shot }) {
   await page.reload();
   await page.waitForFunction(() => document.body.dataset.ready === 'true');
   assert.equal(await page.locator('.tour').count(), 0, 'it comes once');
+  const again = async () => {
+    await page.evaluate(() => localStorage.removeItem('burgeon.tour'));
+    await page.reload();
+    await page.locator('.tour').waitFor();
+  };
+  await again();
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('.tour').count(), 0, 'Escape ends it wherever the keyboard is');
+  await again();
+  const [card, sheet] = [
+    await page.locator('.tour').boundingBox(),
+    await page.locator('.sheet').boundingBox(),
+  ];
+  const [x, y] = [card.x + card.width / 2 - sheet.x, card.y + card.height / 3 - sheet.y];
+  await draw(page, line(x, y, x + 10, y - 200));
+  await until(page, 'strokes', ['is', 1], 'a stroke that begins on the card');
 }
 
 /** A pen with pressure; a palm that rests on the glass meanwhile draws nothing. */

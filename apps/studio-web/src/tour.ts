@@ -1,4 +1,7 @@
-/** The first run: four steps, beside what they speak of. Nothing is blocked meanwhile. */
+/**
+ * The first run: four steps, beside what they speak of. Nothing is blocked meanwhile: a stroke that begins on the card is
+ * drawn on the sheet below, and Escape ends the tour wherever the keyboard is.
+ */
 import { setSetting, setting } from './store';
 import { t, type TextKey } from './text';
 import { el } from './ui';
@@ -18,6 +21,10 @@ const STEPS: readonly Step[] = [
 
 let card: HTMLElement | undefined;
 
+function leave(e: KeyboardEvent): void {
+  if (e.key === 'Escape') show(STEPS.length);
+}
+
 export function firstRun(): void {
   if (setting('tour') !== 'done') tour();
 }
@@ -29,6 +36,7 @@ export function tour(): void {
 export function endTour(): void {
   card?.remove();
   card = undefined;
+  removeEventListener('keydown', leave);
   document.querySelector('.toured')?.classList.remove('toured');
 }
 
@@ -59,9 +67,7 @@ function show(i: number): void {
     el('p', {}, t(step.text)),
     el('div', { class: 'row' }, ...(last ? [] : [skip]), el('span', { class: 'space' }), next),
   );
-  card.addEventListener('keydown', (e) => {
-    if (e.key === 'Escape') show(STEPS.length);
-  });
+  addEventListener('keydown', leave);
   document.body.append(card);
   anchor.classList.add('toured');
   place(card, anchor.getBoundingClientRect());
