@@ -24,7 +24,14 @@ fn blade() -> (Shape, TriMesh) {
     mesh.compute_normals();
     let (outline, midrib) = (outline.to_vec(), vec![DVec2::ZERO, DVec2::new(0.0, 0.2)]);
     (
-        Shape::Blade(Blade { outline, midrib, veins: vec![], lift: Lift::Flat, relief: Relief::default() }),
+        Shape::Blade(Blade {
+            outline,
+            midrib,
+            veins: vec![],
+            needles: None,
+            lift: Lift::Flat,
+            relief: Relief::default(),
+        }),
         mesh,
     )
 }

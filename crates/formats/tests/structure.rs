@@ -23,6 +23,7 @@ fn blade() -> Shape {
         outline: [(0.0, 0.0), (0.05, 0.1), (0.0, 0.2), (-0.05, 0.1)].map(|(x, y)| DVec2::new(x, y)).to_vec(),
         midrib: vec![DVec2::ZERO, DVec2::new(0.0, 0.2)],
         veins: vec![],
+        needles: None,
         lift: Lift::Flat,
         relief: Relief::default(),
     })

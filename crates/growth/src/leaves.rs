@@ -113,7 +113,7 @@ impl FoliageSpec {
         outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
         let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
         let relief = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
-        Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+        Blade { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
     }
 
     fn check(&self) -> Result<Phyllotaxis, GrowthError> {

@@ -3,6 +3,8 @@
 use base::{Digest, Digestible};
 use glam::DVec2;
 
+use crate::Needles;
+
 /// A leaf or petal in its own frame: x across, y from root to tip, z towards the upper side.
 ///
 /// The outline is a simple polygon, counter-clockwise, without a repeated first point, in metres at scale 1.
@@ -15,6 +17,8 @@ pub struct Blade {
     pub midrib: Vec<DVec2>,
     /// Further veins that the user drew, each at least 2 points.
     pub veins: Vec<Vec<DVec2>>,
+    /// Of a whole shoot in needles or scales, whose veins are its axes: too fine for outlines.
+    pub needles: Option<Needles>,
     /// The surface on which the blade lies before it is bent.
     pub lift: Lift,
     /// How it is bent.
@@ -78,6 +82,9 @@ impl Digestible for Blade {
             Lift::Tilt { slope } => {
                 d.add(&2_u8).add(&slope);
             }
+        }
+        if let Some(needles) = self.needles {
+            needles.digest(d);
         }
         let r = self.relief;
         d.add(&r.bend_a).add(&r.bend_b).add(&r.hollow).add(&r.fold).add(&r.wave).add(&r.keep_length);

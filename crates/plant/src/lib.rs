@@ -17,6 +17,7 @@ mod pipe;
 mod relief;
 mod rim;
 mod sheet;
+mod shoot;
 mod topology;
 mod validate;
 
@@ -31,5 +32,6 @@ pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;
 pub use rim::Netted;
 pub use sheet::{Chart, RimPoint, Sheet, SplineBlade, Vein, VeinShade, Venation};
+pub use shoot::Needles;
 pub use topology::{Axis, AxisKind, Nodes, Plant};
 pub use validate::Fault;

@@ -28,6 +28,7 @@ struct Row {
 /// let blade = Blade {
 ///     midrib: vec![DVec2::ZERO, DVec2::Y],
 ///     veins: vec![],
+///     needles: None,
 ///     lift: Lift::Flat,
 ///     relief: Relief { hollow: 0.2, ..Relief::default() },
 ///     outline,
@@ -71,6 +72,7 @@ impl Blade {
     ///     outline: vec![DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)],
     ///     midrib: vec![DVec2::ZERO, DVec2::Y],
     ///     veins: vec![],
+    ///     needles: None,
     ///     lift: Lift::Flat,
     ///     relief: Relief { bend_a: 0.1, bend_b: 0.2, ..Relief::default() },
     /// };
@@ -384,7 +386,14 @@ mod tests {
         };
         let mut outline: Vec<DVec2> = side(1.0).collect();
         outline.extend(side(-1.0).rev().skip(1).take(19));
-        Blade { outline, midrib: vec![DVec2::ZERO, DVec2::new(0.0, 2.0)], veins: vec![], lift, relief }
+        Blade {
+            outline,
+            midrib: vec![DVec2::ZERO, DVec2::new(0.0, 2.0)],
+            veins: vec![],
+            needles: None,
+            lift,
+            relief,
+        }
     }
 
     #[test]
@@ -456,7 +465,14 @@ mod tests {
                 let relief =
                     Relief { bend_a: 0.2, bend_b: 0.5, hollow: 0.2, fold: 1.0, wave: 0.1, keep_length };
                 let midrib = vec![outline[0], outline[1]];
-                let b = Blade { outline: outline.clone(), midrib, veins: vec![], lift: Lift::Flat, relief };
+                let b = Blade {
+                    outline: outline.clone(),
+                    midrib,
+                    veins: vec![],
+                    needles: None,
+                    lift: Lift::Flat,
+                    relief,
+                };
                 assert!(b.surface().points(&b.outline).iter().all(|p| p.is_finite()), "{outline:?}");
             }
         }

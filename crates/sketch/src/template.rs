@@ -4,7 +4,7 @@
 
 use base::ops::{PI, cos, powf, sin};
 use glam::DVec2;
-use plant::{Blade, Lift, Relief};
+use plant::{Blade, Needles, Relief};
 
 /// A botanical form of blade, drawn by formula.
 ///
@@ -48,6 +48,8 @@ impl LeafForm {
     /// The blade: root at the origin, tip at (0, 1), counter-clockwise, flat, 12 to 34 points.
     pub fn blade(self) -> Blade {
         let right = match self {
+            // Needles of 2.6 cm on a shoot of 35, as a spruce's.
+            Self::Spray => return Blade::shoot(Needles::of_length(0.075), 3, 1.0),
             // Half widths over length from herbarium-like proportions: 0.27 is a pear leaf, 0.09 a willow's.
             Self::Ovate => beta(0.27, 0.62, 1.25, 9),
             Self::Elliptic => beta(0.23, 0.72, 0.85, 9),
@@ -55,19 +57,12 @@ impl LeafForm {
             Self::Leaflet => beta(0.055, 0.4, 0.8, 7),
             Self::Cordate => cordate(),
             Self::Lobed => lobed(),
-            Self::Spray => spray(),
         };
-        let mut outline = vec![DVec2::ZERO];
-        outline.extend_from_slice(&right);
-        outline.push(DVec2::Y);
-        outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
         let relief = match self {
-            Self::Spray => Relief { bend_b: 0.05, ..Relief::default() },
             Self::Leaflet => Relief { bend_b: 0.3, fold: 0.35, ..Relief::default() },
             _ => Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() },
         };
-        let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
-        Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+        Blade::mirrored(&right, relief)
     }
 }
 
@@ -112,19 +107,6 @@ fn lobed() -> Vec<DVec2> {
             DVec2::new((hull * lobe).max(0.012), v)
         })
         .collect()
-}
-
-/// Needles as slender teeth, leaning forward at 50 degrees.
-fn spray() -> Vec<DVec2> {
-    let mut right = Vec::with_capacity(15);
-    for i in 0..7 {
-        let v = 0.03 + 0.122 * f64::from(i);
-        let reach = 0.24 * (1.0 - 0.45 * v * v);
-        right.push(DVec2::new(0.022, v));
-        right.push(DVec2::new(0.022 + 0.77 * reach, v + 0.64 * reach));
-    }
-    right.push(DVec2::new(0.022, 0.9));
-    right
 }
 
 #[cfg(test)]

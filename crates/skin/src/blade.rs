@@ -87,6 +87,7 @@ const STEPS: u32 = 32;
 ///     outline: vec![DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)],
 ///     midrib: vec![DVec2::ZERO, DVec2::Y],
 ///     veins: vec![],
+///     needles: None,
 ///     lift: Lift::Flat,
 ///     relief: Relief::default(),
 /// };
@@ -160,7 +161,7 @@ mod tests {
         let mut outline = half.clone();
         outline.extend(half[1..16].iter().rev().map(|p| DVec2::new(-p.x, p.y)));
         let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::new(0.0, 1.0)];
-        Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+        Blade { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
     }
 
     #[test]

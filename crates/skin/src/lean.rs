@@ -154,6 +154,7 @@ mod tests {
             outline,
             midrib,
             veins: vec![],
+            needles: None,
             lift: Lift::Flat,
             relief: Relief { fold: 0.3, ..Relief::default() },
         }

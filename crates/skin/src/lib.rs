@@ -14,7 +14,7 @@
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
-//! | `needles` | [`Needles`]: shoots in needles, painted on cards |
+//! | `needles` | shoots in needles, painted on cards |
 //! | `shoots` | [`Foliage`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
@@ -56,7 +56,6 @@ pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use natural::{BarkKind, Venation};
-pub use needles::Needles;
 pub use organs::KeptShapes;
 pub use pictures::Pictures;
 pub use shoots::{Foliage, Shoots};

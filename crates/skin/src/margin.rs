@@ -67,7 +67,14 @@ mod tests {
         let mut outline = half.clone();
         outline.extend(half[1..12].iter().rev().map(|p| DVec2::new(-p.x, p.y)));
         let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::Y];
-        let blade = Blade { outline, midrib, veins: vec![], lift: Lift::Flat, relief: Relief::default() };
+        let blade = Blade {
+            outline,
+            midrib,
+            veins: vec![],
+            needles: None,
+            lift: Lift::Flat,
+            relief: Relief::default(),
+        };
         let mesh = crate::blade_mesh(&blade, 200.0);
         let inner = from_margin(&Shape::Blade(blade), &mesh);
         for (p, inner) in mesh.positions.iter().zip(&inner) {

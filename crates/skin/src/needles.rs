@@ -4,20 +4,7 @@
 
 use base::{Draw, Seed, ops};
 use glam::DVec2;
-use plant::Blade;
-
-/// The needles of a shoot. Lengths are shares of the blade's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Needles {
-    /// Of a needle.
-    pub length: f64,
-    /// Of a needle where it is widest.
-    pub width: f64,
-    /// From a needle to the next on one side of an axis.
-    pub spacing: f64,
-    /// Between a needle and its axis, radians.
-    pub angle: f64,
-}
+use plant::{Blade, Needles};
 
 /// What is seen at a place of a shoot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,10 +70,10 @@ impl Line {
 
 impl NeedleMap {
     /// Cost: linear in the needles.
-    pub(crate) fn new(blade: &Blade, needles: &Needles) -> Self {
+    fn new(blade: &Blade, needles: &Needles) -> Self {
         let mut lines = Vec::new();
         for (row, axis) in core::iter::once(&blade.midrib).chain(&blade.veins).enumerate() {
-            needles.on(axis, row, blade.length(), &mut lines);
+            lay(needles, axis, row, blade.length(), &mut lines);
         }
         // What lies lower is behind: wood, then needles from the sides, then those in front.
         let corners = || lines.iter().flat_map(|l| [l.from, l.to]);
@@ -122,48 +109,46 @@ impl NeedleMap {
     }
 }
 
-impl Needles {
-    /// The needles of one axis, and its wood.
-    fn on(&self, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<Line>) {
-        // That of the blade ends where its last needles begin.
-        let mut axis = axis.to_vec();
-        if row == 0 {
-            shorten(&mut axis, 0.9 * self.length * unit);
-        }
-        let axis = &axis[..];
-        let whole: f64 = axis.windows(2).map(|w| w[0].distance(w[1])).sum();
-        let half = 0.5 * self.width * unit;
-        let spacing = (self.spacing * unit).max(whole / 400.0);
-        if !(whole > 0.0 && spacing > 0.0) {
-            return;
-        }
-        out.extend(axis.windows(2).map(|w| Line {
-            from: w[0],
-            to: w[1],
-            half: half * AXIS,
-            shade: 0.5,
-            wood: true,
-        }));
-        // From the sides, and in two rows that lie more forward and hide the wood.
-        for (layer, share, lean) in [(0_u64, 1.0, 1.0), (1, 0.82, 0.55), (2, 0.6, 0.25)] {
-            let seed = Seed::new(row as u64).child(layer);
-            let mut walked = 0.35 * spacing;
-            let mut k = 0_u32;
-            while walked < whole {
-                let (from, way) = point(axis, walked);
-                let chance = |n: u64| seed.child(8 * u64::from(k) + n).stream(Draw::Curl).uniform();
-                let side = if (u64::from(k) + layer).is_multiple_of(2) { 1.0 } else { -1.0 };
-                // Towards the tip needles are shorter and close up.
-                let close =
-                    ops::smoothstep(1.0 - 1.2 * self.length * unit / whole.max(1e-9), 1.0, walked / whole);
-                let turn = side * self.angle * lean * (0.85 + 0.3 * chance(1)) * (1.0 - 0.6 * close);
-                let (s, c) = ops::sin_cos(turn);
-                let to = DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s);
-                let length = self.length * unit * share * (0.85 + 0.25 * chance(2)) * (1.0 - 0.35 * close);
-                out.push(Line { from, to: from + to * length, half, shade: chance(3), wood: false });
-                walked += 0.5 * spacing * (0.85 + 0.3 * chance(4));
-                k += 1;
-            }
+/// The needles of one axis, and its wood.
+fn lay(needles: &Needles, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<Line>) {
+    // That of the blade ends where its last needles begin.
+    let mut axis = axis.to_vec();
+    if row == 0 {
+        shorten(&mut axis, 0.9 * needles.length * unit);
+    }
+    let axis = &axis[..];
+    let whole: f64 = axis.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let half = 0.5 * needles.width * unit;
+    let spacing = (needles.spacing * unit).max(whole / 400.0);
+    if !(whole > 0.0 && spacing > 0.0) {
+        return;
+    }
+    out.extend(axis.windows(2).map(|w| Line {
+        from: w[0],
+        to: w[1],
+        half: half * AXIS,
+        shade: 0.5,
+        wood: true,
+    }));
+    // From the sides, and in two rows that lie more forward and hide the wood.
+    for (layer, share, lean) in [(0_u64, 1.0, 1.0), (1, 0.82, 0.55), (2, 0.6, 0.25)] {
+        let seed = Seed::new(row as u64).child(layer);
+        let mut walked = 0.35 * spacing;
+        let mut k = 0_u32;
+        while walked < whole {
+            let (from, way) = point(axis, walked);
+            let chance = |n: u64| seed.child(8 * u64::from(k) + n).stream(Draw::Curl).uniform();
+            let side = if (u64::from(k) + layer).is_multiple_of(2) { 1.0 } else { -1.0 };
+            // Towards the tip needles are shorter and close up.
+            let close =
+                ops::smoothstep(1.0 - 1.2 * needles.length * unit / whole.max(1e-9), 1.0, walked / whole);
+            let turn = side * needles.angle * lean * (0.85 + 0.3 * chance(1)) * (1.0 - 0.6 * close);
+            let (s, c) = ops::sin_cos(turn);
+            let to = DVec2::new(way.x * c + way.y * s, way.y * c - way.x * s);
+            let length = needles.length * unit * share * (0.85 + 0.25 * chance(2)) * (1.0 - 0.35 * close);
+            out.push(Line { from, to: from + to * length, half, shade: chance(3), wood: false });
+            walked += 0.5 * spacing * (0.85 + 0.3 * chance(4));
+            k += 1;
         }
     }
 }
@@ -202,8 +187,9 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    pub(crate) fn new(blade: &Blade, needles: Option<&Needles>) -> Self {
-        Self { outline: geom::Inside::of(&blade.outline), needles: needles.map(|n| NeedleMap::new(blade, n)) }
+    pub(crate) fn new(blade: &Blade) -> Self {
+        let needles = blade.needles.as_ref().map(|n| NeedleMap::new(blade, n));
+        Self { outline: geom::Inside::of(&blade.outline), needles }
     }
 
     pub(crate) fn has(&self, p: DVec2) -> bool {
@@ -231,9 +217,20 @@ mod tests {
                 .to_vec(),
             midrib: vec![DVec2::ZERO, DVec2::Y],
             veins: vec![vec![DVec2::new(0.0, 0.3), DVec2::new(0.2, 0.6)]],
+            needles: None,
             lift: Lift::Flat,
             relief: Relief::default(),
         }
+    }
+
+    /// `sketch` counts the shoots of a drawn conifer by what each covers.
+    #[test]
+    fn a_spruces_shoot_covers_a_fifth_of_the_square_of_its_length() {
+        let cut = Cut::new(&Blade::shoot(Needles::of_length(0.075), 3, 1.0));
+        let places = (-100..100).flat_map(|i| (0..200).map(move |j| (f64::from(i), f64::from(j))));
+        let covered = places.filter(|&(x, y)| cut.has(DVec2::new(x + 0.5, y + 0.5) / 200.0)).count();
+        let share = covered as f64 / 40_000.0;
+        assert!((0.17..0.24).contains(&share), "{share}");
     }
 
     #[test]

@@ -379,8 +379,8 @@ impl KeptShapes {
 
 /// What the plant as a whole decides for its organs.
 struct Ground<'a> {
-    /// Whose leaves are cards.
-    cards: Option<&'a SkinSpec>,
+    /// Says which leaves are cards.
+    spec: &'a SkinSpec,
     petals: PetalColor,
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
@@ -399,7 +399,7 @@ impl<'a> Ground<'a> {
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
         Self {
-            cards: spec.cards().then_some(spec),
+            spec,
             petals: PetalColor::of(plant, spec),
             fine_strands: strands <= 40,
             leaf: spec.leaf,
@@ -412,22 +412,23 @@ impl<'a> Ground<'a> {
     fn share(&self, wish: Wish, (row, shape): (usize, &Shape)) -> f64 {
         match (wish, self.tile(row), shape) {
             (Wish::Card(_), Some((_, tile)), _) => tile.share(),
-            (Wish::Card(_), None, Shape::Blade(blade)) => {
-                leaf_share(blade, self.cards.and_then(|s| s.needles.as_deref()))
-            }
+            (Wish::Card(_), None, Shape::Blade(blade)) => leaf_share(blade),
             _ => 1.0,
         }
     }
 
     fn tile(&self, row: usize) -> Option<(usize, &Tile)> {
-        self.cards?.shoots.as_ref()?.tile(row)
+        self.spec.shoots.as_ref()?.tile(row)
     }
 
     fn wish(&self, (row, shape): (usize, &Shape), used: Use, budget: &Budget) -> Wish {
         let scale = used.scale;
-        if let (Some(spec), Shape::Blade(_), true) = (self.cards, shape, used.leaf) {
-            let cell = self.tile(row).map_or(0, |(k, _)| k + 1);
-            return Wish::Card(part(cell, spec.cells()));
+        if let (Shape::Blade(blade), true) = (shape, used.leaf) {
+            let needled = blade.needles.is_some();
+            if self.spec.cards(needled) {
+                let cell = self.tile(row).map_or(0, |(k, _)| k + 1);
+                return Wish::Card(part(cell, self.spec.cells(needled)));
+            }
         }
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
@@ -482,6 +483,7 @@ impl<'a> Ground<'a> {
             OrganKind::Stamen | OrganKind::Anther | OrganKind::Pistil => Slot::Stamen(coat),
             OrganKind::Thorn => Slot::Thorn,
             OrganKind::Pedicel => Slot::Stem,
+            _ if matches!(shape, Shape::Blade(b) if b.needles.is_some()) => Slot::Needles(coat),
             _ => Slot::Leaf(coat),
         }
     }
@@ -494,7 +496,7 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let strength = spec.variation.clamp(0.0, 1.0);
     // Leaves of one plant differ more than its petals do.
     let (light, warm) = match slot {
-        Slot::Leaf(_) | Slot::Worn(Wearer::Leaf, _) => (0.26 * light, 0.24 * (warm - 0.5)),
+        Slot::Leaf(_) | Slot::Needles(_) | Slot::Worn(Wearer::Leaf, _) => (0.26 * light, 0.24 * (warm - 0.5)),
         _ => (0.12 * light, 0.08 * (warm - 0.5)),
     };
     let [light, warm] = [light, warm].map(|x| x * strength);
@@ -539,7 +541,7 @@ mod tests {
         let outline =
             [(0.0, 0.0), (0.3, 0.5), (0.0, 1.0), (-0.3, 0.5)].map(|(x, y)| DVec2::new(x, y) * length);
         let (veins, lift, relief) = (Vec::new(), Lift::Flat, Relief::default());
-        Shape::Blade(Blade { outline: outline.to_vec(), midrib, veins, lift, relief })
+        Shape::Blade(Blade { outline: outline.to_vec(), midrib, veins, needles: None, lift, relief })
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub(crate) enum Slot {
     Stem,
     Root,
     Leaf(Coat),
+    /// Leaves that are shoots in needles.
+    Needles(Coat),
     /// Measured leaves of one form, which may have a texture of its own.
     Form(u32, Coat),
     /// Veins of measured leaves.
@@ -82,7 +84,7 @@ impl Slot {
             Self::YoungBark => MaterialKind::YoungBark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
-            Self::Leaf(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
+            Self::Leaf(_) | Self::Needles(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
             Self::Petal(..) | Self::Sepal(_) => MaterialKind::Petal,
             Self::Disc(_) => MaterialKind::Disc,
             Self::Fruit(_) => MaterialKind::Fruit,
@@ -107,6 +109,8 @@ impl Slot {
             Self::Root => ("roots", "root".into()),
             Self::Leaf(Coat::Drawn) => ("leaves-drawn", "leaf-drawn".into()),
             Self::Leaf(_) => ("leaves", "leaf".into()),
+            Self::Needles(Coat::Drawn) => ("needles-drawn", "needles-drawn".into()),
+            Self::Needles(_) => ("needles", "needles".into()),
             Self::Petal(Coat::Natural, color) => ("petals", format!("petal-{}", color.word())),
             Self::Petal(Coat::Tinted | Coat::Own, _) => ("petals", "petal".into()),
             Self::Petal(Coat::Drawn, _) => ("petals-drawn", "petal-drawn".into()),
@@ -141,7 +145,7 @@ impl Slot {
         Some(match self {
             Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) | Self::Traced(_) => return None,
             Self::Stamen(coat) if coat != Coat::Natural => return None,
-            Self::Bark | Self::YoungBark | Self::Leaf(_) | Self::Petal(..) => return None,
+            Self::Bark | Self::YoungBark | Self::Leaf(_) | Self::Needles(_) | Self::Petal(..) => return None,
             // Florets of a disc are organs of their own.
             Self::Disc(Coat::Own | Coat::Tinted) => return None,
             Self::Stem => Motif::Stem,
@@ -159,25 +163,25 @@ impl Slot {
     /// Its colour with relief; none for what has none. `old`: the plant has old bark, so that young bark is of twigs.
     fn surface(self, spec: &SkinSpec, plant: &Plant, old: bool, executor: &dyn Executor) -> Option<Surface> {
         let size = spec.texture_size.clamp(64, 4096);
-        let leaves = |inks: &LeafInks| {
-            let own = || {
-                plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).find_map(|o| blade(plant, o.shape))
-            };
-            if spec.cards() {
-                let shown = spec.shoots.as_ref().map(|s| s.leaf.clone()).or_else(|| own().cloned());
+        let leaves = |inks: &LeafInks, needled: bool| {
+            let venation = if needled { Some(Venation::Needle) } else { spec.venation };
+            let mut leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+            let own = leaves.find_map(|o| blade(plant, o.shape).filter(|b| b.needles.is_some() == needled));
+            if spec.cards(needled) {
+                let shoots = spec.shoots(needled);
+                let shown = shoots.map(|s| &s.leaf).or(own).cloned();
                 let what = Leafage {
-                    venation: spec.venation.unwrap_or(Venation::Pinnate),
-                    needles: spec.needles.as_deref().copied(),
+                    venation: venation.unwrap_or(Venation::Pinnate),
                     leaf: &shown.unwrap_or_else(any_blade),
-                    shoots: spec.shoots.as_deref(),
+                    shoots,
                     inks,
                     wood: spec.bark.unwrap_or_default().of(true).1.srgb(),
                 };
                 return atlas(&what, size, executor);
             }
-            match spec.venation {
+            match venation {
                 Some(venation) => {
-                    leaf(venation, &own().cloned().unwrap_or_else(any_blade), inks, size, executor)
+                    leaf(venation, &own.cloned().unwrap_or_else(any_blade), inks, size, executor)
                 }
                 None => leaf(Venation::Pinnate, &any_blade(), inks, size, executor),
             }
@@ -188,8 +192,10 @@ impl Slot {
                 let (kind, colour) = spec.bark.unwrap_or_default().of(twig);
                 bark(kind, colour.srgb(), if twig { size / 2 } else { size }, executor)
             }
-            Self::Leaf(Coat::Natural) => leaves(&GREEN),
-            Self::Leaf(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN),
+            Self::Leaf(Coat::Natural) => leaves(&GREEN, false),
+            Self::Leaf(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN, false),
+            Self::Needles(Coat::Natural) => leaves(&GREEN, true),
+            Self::Needles(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN, true),
             Self::Petal(Coat::Natural, color) => petals(&petal_inks(color), size / 2, executor),
             Self::Petal(Coat::Tinted | Coat::Drawn, _) => petals(&PALE_PETAL, size / 2, executor),
             _ => return None,
@@ -203,7 +209,9 @@ impl Slot {
             Self::YoungBark => [0.13, 0.095, 0.055],
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
-            Self::Leaf(Coat::Natural) | Self::Form(_, Coat::Natural) => [0.051, 0.149, 0.018],
+            Self::Leaf(Coat::Natural) | Self::Needles(Coat::Natural) | Self::Form(_, Coat::Natural) => {
+                [0.051, 0.149, 0.018]
+            }
             Self::Petal(Coat::Natural, color) => color.linear(),
             Self::Disc(Coat::Natural) => [0.55, 0.25, 0.02],
             Self::Fruit(Coat::Natural) => [0.56, 0.06, 0.02],
@@ -212,6 +220,7 @@ impl Slot {
             Self::Thorn => [0.28, 0.16, 0.08],
             Self::Veins => [0.44, 0.52, 0.18],
             Self::Leaf(_)
+            | Self::Needles(_)
             | Self::Form(..)
             | Self::Petal(..)
             | Self::Sepal(_)
@@ -279,7 +288,12 @@ impl Slot {
             (m.texture, m.maps, m.base_color) = (Some(color), maps, [1.0; 3]);
             // Of the rest the map decides.
             m.roughness = if m.double_sided { LEAF_ROUGHNESS } else { 1.0 };
-            if spec.cards() && matches!(self, Self::Leaf(_)) {
+            let cards = match self {
+                Self::Leaf(_) => spec.cards(false),
+                Self::Needles(_) => spec.cards(true),
+                _ => false,
+            };
+            if cards {
                 m.alpha = AlphaMode::Mask;
             }
         }

@@ -8,7 +8,7 @@ use mesh::TriMesh;
 use plant::{Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
 
 use crate::blade::BladeChart;
-use crate::needles::{Cut, Needles};
+use crate::needles::Cut;
 use crate::sleeve::{drop_flat, narrow2};
 
 /// So much of the wood of a card counts as covered: thin twigs are lost in a texture (64 pixels of an oak show hardly any of
@@ -117,9 +117,9 @@ impl Shoots {
     /// no such form.
     ///
     /// Cost: n log n in leaves, and some 10 ms for measuring what shoots cover.
-    pub fn of(plant: &Plant, needles: Option<&Needles>) -> Option<Self> {
+    pub fn of(plant: &Plant) -> Option<Self> {
         let (shape, leaf) = leaf_shape(plant)?;
-        let cut = Cut::new(&leaf, needles);
+        let cut = Cut::new(&leaf);
         let leaves = leaves_of(plant, shape);
         let mut clusters = clusters(plant, &leaf, leaves, LEAVES);
         if clusters.len() < 2 * DENSE.len() {
@@ -335,7 +335,8 @@ fn tile(plant: &Plant, leaf: &Blade, cut: &Cut, members: &[usize]) -> Option<Til
     }
     let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5 * high), DVec2::new(0.0, high)];
     let relief = Relief { fold: FOLD, ..Relief::default() };
-    let card = Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief };
+    let needles = leaf.needles;
+    let card = Blade { outline, midrib, veins: Vec::new(), needles, lift: Lift::Flat, relief };
     let middle = leaves.iter().map(|l| l.at + l.along * (0.5 * leaf.length() * l.scale)).sum::<DVec2>()
         / leaves.len() as f64;
     let mut tile = Tile { card, leaves, wood, middle, covered: 0.0 };
@@ -398,7 +399,7 @@ pub(crate) fn card_mesh(blade: &Blade, part: [f64; 4]) -> TriMesh {
 }
 
 /// Of a card of a blade, what is leaf, 0 to 1.
-pub(crate) fn leaf_share(blade: &Blade, needles: Option<&Needles>) -> f64 {
+pub(crate) fn leaf_share(blade: &Blade) -> f64 {
     let flat = Blade { relief: Relief::default(), lift: Lift::Flat, ..blade.clone() };
     let mesh = card_mesh(&flat, [0.0, 0.0, 1.0, 1.0]);
     let area = |t: &[u32; 3]| {
@@ -406,12 +407,11 @@ pub(crate) fn leaf_share(blade: &Blade, needles: Option<&Needles>) -> f64 {
         0.5 * (b - a).cross(c - a).length()
     };
     let card: f64 = mesh.triangles.iter().map(area).sum();
-    let leaf = match needles {
-        Some(needles) => {
-            let cut = Cut::new(blade, Some(needles));
-            covered(blade, |p| cut.has(p))
-        }
-        None => geom::signed_area(&blade.outline).abs(),
+    let leaf = if blade.needles.is_some() {
+        let cut = Cut::new(blade);
+        covered(blade, |p| cut.has(p))
+    } else {
+        geom::signed_area(&blade.outline).abs()
     };
     (leaf / card.max(f64::MIN_POSITIVE)).min(1.0)
 }

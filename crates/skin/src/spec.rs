@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use spec::Colour;
 
 use crate::natural::{BarkKind, Venation};
-use crate::needles::Needles;
 use crate::shoots::{Foliage, Shoots};
 use crate::{Wearer, Worn};
 
@@ -65,13 +64,9 @@ pub struct SkinSpec {
     #[serde(skip)]
     pub crowd: Option<[usize; 2]>,
     /// How leaves of a flat form are drawn; by their outlines where there are no textures, and where they wear a material.
-    /// Chosen for an export, not saved.
+    /// Shoots in needles are cards in any case where there are textures. Chosen for an export, not saved.
     #[serde(skip)]
     pub foliage: Foliage,
-    /// The needles of leaves that are whole shoots of them: too fine for outlines, so that they are cards in any case where
-    /// there are textures. Saved with the tree, not here. Default none.
-    #[serde(skip)]
-    pub needles: Option<Arc<Needles>>,
     /// Shoots that cards of leaves may be of. Not saved. Default none.
     #[serde(skip)]
     pub shoots: Option<Arc<Shoots>>,
@@ -101,7 +96,6 @@ impl Default for SkinSpec {
             steady_m: None,
             crowd: None,
             foliage: Foliage::default(),
-            needles: None,
             shoots: None,
             worn: Worn::default(),
             seed: Seed::default(),
@@ -110,15 +104,20 @@ impl Default for SkinSpec {
 }
 
 impl SkinSpec {
-    /// Whether leaves are cards.
-    pub fn cards(&self) -> bool {
-        let wanted = self.foliage == Foliage::Cards || self.needles.is_some();
+    /// Whether leaves are cards, those that are shoots in needles or the others.
+    pub(crate) fn cards(&self, needled: bool) -> bool {
+        let wanted = self.foliage == Foliage::Cards || needled;
         wanted && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
     }
 
-    /// The part of the atlas with the leaf, and how many cells that has.
-    pub(crate) fn cells(&self) -> usize {
-        1 + self.shoots.as_ref().map_or(0, |s| s.tiles.len())
+    /// The painted shoots that an atlas shows beside its leaf, of leaves that are shoots in needles or of others.
+    pub(crate) fn shoots(&self, needled: bool) -> Option<&Shoots> {
+        self.shoots.as_deref().filter(|s| s.leaf.needles.is_some() == needled)
+    }
+
+    /// Cells of that atlas.
+    pub(crate) fn cells(&self, needled: bool) -> usize {
+        1 + self.shoots(needled).map_or(0, |s| s.tiles.len())
     }
 }
 

@@ -216,6 +216,26 @@ fn crown_leaves_are_coarse_but_fold() {
 }
 
 #[test]
+fn shoots_in_needles_are_cut_out_of_cards_beside_leaves_that_are_not() {
+    let mut p = scenes::leafy(60);
+    let shoot =
+        p.add_shape(plant::Shape::Blade(plant::Blade::shoot(plant::Needles::of_length(0.08), 3, 1.0)));
+    for organ in p.organs.iter_mut().skip(40) {
+        organ.shape = shoot;
+    }
+    let model = skinned(&p);
+    assert_eq!(part(&model, "needles").triangles.len(), 20 * 4, "a card each");
+    assert!(part(&model, "leaves").triangles.len() > 40 * 4, "leaves keep their outlines");
+    for (name, alpha) in [("needles", mesh::AlphaMode::Mask), ("leaf", mesh::AlphaMode::Opaque)] {
+        let m = model.materials.iter().find(|m| m.name == name).expect("a material of its own");
+        assert_eq!(m.alpha, alpha, "{name}");
+    }
+    let plain = SkinSpec { textures: false, ..SkinSpec::default() };
+    let plain = skin(&p, &plain, &Run::plain()).expect("nobody cancels");
+    assert!(plain.materials.iter().all(|m| m.alpha == mesh::AlphaMode::Opaque), "nothing to cut out");
+}
+
+#[test]
 fn drawn_colours_and_bodies_find_their_parts() {
     let p = scenes::still_life();
     let model = skinned(&p);

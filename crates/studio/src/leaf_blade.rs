@@ -25,6 +25,7 @@ pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade
         outline: scaled(outline),
         midrib: scaled(midrib),
         veins: flat.side_veins().into_iter().map(scaled).collect(),
+        needles: None,
         lift: plant::Lift::Flat,
         relief,
     }

@@ -128,6 +128,7 @@ impl LeafTemplate {
             outline: thinned(outline),
             midrib: vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::Y],
             veins: vec![],
+            needles: None,
             lift: Lift::Flat,
             relief: flat.relief(),
         };

@@ -28,7 +28,14 @@ fn square(p: &mut Plant, edge: f64, lift: Lift) -> ShapeId {
     let h = edge / 2.0;
     let outline = [(-h, 0.0), (h, 0.0), (h, edge), (-h, edge)].map(|(x, y)| DVec2::new(x, y)).to_vec();
     let midrib = vec![DVec2::ZERO, DVec2::new(0.0, edge)];
-    p.add_shape(Shape::Blade(Blade { outline, midrib, veins: vec![], lift, relief: Relief::default() }))
+    p.add_shape(Shape::Blade(Blade {
+        outline,
+        midrib,
+        veins: vec![],
+        needles: None,
+        lift,
+        relief: Relief::default(),
+    }))
 }
 
 fn leaf(p: &mut Plant, bearer: NodeId, shape: ShapeId, along: DVec3, scale: f64) {

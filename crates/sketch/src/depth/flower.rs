@@ -278,7 +278,14 @@ impl Organs<'_, '_> {
             wave: 0.012 * curl.uniform(),
             keep_length: false,
         };
-        let blade = Blade { outline: local.outline, midrib: local.midrib, veins: local.veins, lift, relief };
+        let blade = Blade {
+            outline: local.outline,
+            midrib: local.midrib,
+            veins: local.veins,
+            needles: None,
+            lift,
+            relief,
+        };
         self.color = petal.color;
         self.push(OrganKind::Petal, Shape::Blade(blade), frame, key, petal.source);
     }

@@ -102,6 +102,7 @@ pub(crate) fn leaf_shape(
         outline: local.outline.clone(),
         midrib: local.midrib.clone(),
         veins: local.veins.clone(),
+        needles: None,
         lift,
         relief,
     };

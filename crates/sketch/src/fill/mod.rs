@@ -42,6 +42,9 @@ pub(crate) const MOST_GROWN: usize = 200_000;
 /// ones.
 const NATURAL_LEAF: f64 = 0.12;
 const NATURAL_SPRAY: f64 = 0.35;
+/// What a leaf, and a spray with sky between its needles, covers over the square of its length.
+const LEAF_COVER: f64 = 0.5;
+const SPRAY_COVER: f64 = 0.2;
 /// Area of a crown's leaves over that of its shadow, the mean of its three projections: a narrow crown has light from the
 /// side. Broad-leaved trees have 3 to 6.
 const LEAF_AREA_INDEX: f64 = 5.0;
@@ -322,11 +325,12 @@ impl Look<'_> {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
-        let (natural, coarse) = if conifer { (NATURAL_SPRAY, 8.5) } else { (NATURAL_LEAF, 11.0) };
+        let (natural, coarse, mut cover) =
+            if conifer { (NATURAL_SPRAY, 8.5, SPRAY_COVER) } else { (NATURAL_LEAF, 11.0, LEAF_COVER) };
         let mut length = natural.min(diameter / coarse);
         let mut shapes = self.drawn.to_vec();
         if let Some(natural) = self.natural {
-            length = natural.clamp(diameter / 40.0, diameter / 6.0);
+            (length, cover) = (natural.clamp(diameter / 40.0, diameter / 6.0), LEAF_COVER);
         } else if conifer {
             shapes.push(self.form(plant, LeafForm::Spray));
         } else {
@@ -335,11 +339,10 @@ impl Look<'_> {
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
-        // Half the square of its length is a leaf's area.
         let shadow = (base::ops::PI * volume.half_width * volume.half_width + 2.0 * volume.area) / 3.0;
         let area = LEAF_AREA_INDEX * shadow;
-        length = length.max((area / (0.5 * MOST_CROWN as f64)).sqrt());
-        let leaves = leaves::leaves_for(area, length, 0.5 * self.spec.density);
+        length = length.max((area / (cover * MOST_CROWN as f64)).sqrt());
+        let leaves = leaves::leaves_for(area, length, 0.25 / cover * self.spec.density);
         let middle = 0.5 * (volume.low() + volume.high());
         let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
         let foliage = Foliage {

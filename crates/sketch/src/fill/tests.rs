@@ -191,6 +191,19 @@ fn crowns_of_all_forms_become_leafy_trees() {
 }
 
 #[test]
+fn a_conifers_crown_bears_shoots_in_needles_and_no_other_does() {
+    for name in CROWNS {
+        let plant = tree(name, &SketchSpec::default()).plant;
+        let needled = |o: &&plant::Organ| match &plant.shapes[o.shape.index()] {
+            plant::Shape::Blade(blade) => blade.needles.is_some(),
+            _ => false,
+        };
+        let (shoots, all) = (plant.organs.iter().filter(needled).count(), plant.organs.len());
+        assert_eq!(shoots, if name == "cone" { all } else { 0 }, "{name}: {shoots} of {all}");
+    }
+}
+
+#[test]
 fn a_crown_drawn_in_one_line_with_its_trunk_has_no_leaves_on_the_trunk() {
     let outline: Vec<DVec2> = [
         (0.45, 0.0),

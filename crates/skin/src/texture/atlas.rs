@@ -13,15 +13,13 @@ use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, byte, mix, shade};
 use crate::BladeChart;
 use crate::natural::Venation;
-use crate::needles::{Cut, Needles, SeenNeedle};
+use crate::needles::{Cut, SeenNeedle};
 use crate::shoots::{Shoots, Tile, chart_place, columns};
 
 /// What an atlas shows.
 pub(crate) struct Leafage<'a> {
     pub(crate) venation: Venation,
     pub(crate) leaf: &'a Blade,
-    /// Of leaves that are shoots in needles.
-    pub(crate) needles: Option<Needles>,
     pub(crate) shoots: Option<&'a Shoots>,
     pub(crate) inks: &'a LeafInks,
     /// sRGB, of the wood of shoots.
@@ -35,7 +33,7 @@ pub(crate) fn atlas(what: &Leafage<'_>, size: u32, executor: &dyn Executor) -> S
     content.add("atlas").add(&(what.venation as u32)).add(&size);
     content.add(&what.leaf.outline).add(&what.leaf.midrib).add(&what.leaf.veins);
     content.add(&what.inks.dark).add(&what.inks.light).add(&what.inks.vein).add(&what.wood);
-    if let Some(needles) = what.needles {
+    if let Some(needles) = what.leaf.needles {
         for x in [needles.length, needles.width, needles.spacing, needles.angle] {
             content.add(&x);
         }
@@ -45,7 +43,7 @@ pub(crate) fn atlas(what: &Leafage<'_>, size: u32, executor: &dyn Executor) -> S
     }
     Surface::kept(content, || {
         let plan = Plan::new(what.venation, what.leaf, executor);
-        let cut = Cut::new(what.leaf, what.needles.as_ref());
+        let cut = Cut::new(what.leaf);
         let tiles = what.shoots.map_or(&[][..], |s| &s.tiles);
         let cells: Vec<Surface> = core::iter::once(None)
             .chain(tiles.iter().map(Some))

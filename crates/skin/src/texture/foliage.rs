@@ -67,6 +67,7 @@ pub(crate) fn any_blade() -> Blade {
         outline,
         midrib: vec![DVec2::ZERO, DVec2::Y],
         veins: Vec::new(),
+        needles: None,
         lift: plant::Lift::Flat,
         relief: plant::Relief::default(),
     }

@@ -39,7 +39,14 @@ pub(crate) fn outline(length: f64, width: f64, belly: f64, tip: f64) -> Vec<DVec
 
 pub(crate) fn blade(length: f64, width: f64, belly: f64, tip: f64, relief: Relief) -> Blade {
     let midrib = (0..=8).map(|k| DVec2::new(0.0, length * f64::from(k) / 8.0)).collect();
-    Blade { outline: outline(length, width, belly, tip), midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+    Blade {
+        outline: outline(length, width, belly, tip),
+        midrib,
+        veins: Vec::new(),
+        needles: None,
+        lift: Lift::Flat,
+        relief,
+    }
 }
 
 pub(crate) fn organ(

@@ -5,9 +5,8 @@
 use base::ops::{self, PI};
 use glam::DVec2;
 use growth::{BladeForm, BladeSpec};
-use plant::{Blade, Lift, Relief};
+use plant::{Blade, Needles, Relief};
 use sketch::LeafForm;
-use skin::Needles;
 
 /// The blade that a spec asks for, of length 1.
 pub fn tree_blade(spec: &BladeSpec) -> Blade {
@@ -36,7 +35,7 @@ fn width(spec: &BladeSpec) -> f64 {
 }
 
 fn form_blade(spec: &BladeSpec) -> Blade {
-    let own = |right: Vec<DVec2>, relief: Relief| mirrored(&right, relief);
+    let own = |right: Vec<DVec2>, relief: Relief| Blade::mirrored(&right, relief);
     let soft = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
     match spec.form {
         BladeForm::Ovate => LeafForm::Ovate.blade(),
@@ -45,7 +44,10 @@ fn form_blade(spec: &BladeSpec) -> Blade {
         BladeForm::Cordate => LeafForm::Cordate.blade(),
         BladeForm::Lobed => own(lobed(), soft),
         BladeForm::Leaflet => LeafForm::Leaflet.blade(),
-        BladeForm::Spray => spray(spec),
+        BladeForm::Spray => {
+            let needles = Needles::of_length(spec.needle.unwrap_or(f64::NAN));
+            Blade::shoot(needles, spec.shoots.unwrap_or(3), width(spec))
+        }
         BladeForm::Obovate => {
             let right = (1..=8).map(|i| {
                 let v = f64::from(i) / 9.0;
@@ -74,16 +76,6 @@ fn form_blade(spec: &BladeSpec) -> Blade {
         BladeForm::Brush => own(brush(), Relief { fold: 0.5, bend_b: -0.06, ..Relief::default() }),
         BladeForm::Tuft => own(tuft(), Relief { fold: 0.35, bend_b: 0.05, ..Relief::default() }),
     }
-}
-
-/// A blade from its right margin, root and tip left out.
-fn mirrored(right: &[DVec2], relief: Relief) -> Blade {
-    let mut outline = vec![DVec2::ZERO];
-    outline.extend_from_slice(right);
-    outline.push(DVec2::Y);
-    outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
-    let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
-    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
 }
 
 /// Four round lobes a side between narrow notches, the third the largest, on a wedge that widens upwards from small ears
@@ -185,73 +177,6 @@ fn curve(points: &[DVec2]) -> Vec<DVec2> {
     }
     out.extend(points.last());
     out
-}
-
-/// The needles of a spray.
-pub(super) fn needles(spec: &BladeSpec) -> Option<Needles> {
-    if spec.form != BladeForm::Spray || spec.file.is_some() {
-        return None;
-    }
-    let length = spec.needle.filter(|x| x.is_finite()).unwrap_or(0.1).clamp(0.01, 0.6);
-    // Scales lie close and overlap; needles stand off.
-    Some(if length < SCALES {
-        Needles { length, width: 0.4 * length, spacing: 0.5 * length, angle: 0.5 }
-    } else {
-        let width = (0.075 * length).clamp(0.005, 0.02);
-        Needles { length, width, spacing: 2.2 * width, angle: 0.95 }
-    })
-}
-
-/// Below this share of the spray's length needles are scales.
-const SCALES: f64 = 0.045;
-
-/// A shoot with its side shoots, each of which has some of its own where they are many: its veins are their axes, its outline
-/// holds their needles.
-fn spray(spec: &BladeSpec) -> Blade {
-    let needle = needles(spec).map_or(0.1, |n| n.length);
-    let shoots = spec.shoots.unwrap_or(3).min(12);
-    let mut axes = vec![vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::Y * (1.0 - 0.9 * needle)]];
-    for k in 0..2 * shoots {
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-        let v = 0.1 + 0.72 * (f64::from(k) + 0.5) / f64::from(2 * shoots);
-        let length =
-            width(spec) * (0.5 * (1.0 - v) + 0.04) * (0.9 + 0.2 * ops::sin(2.4 * f64::from(k)).abs());
-        let axis = bent(DVec2::new(0.0, v), DVec2::Y, side * 0.9, length);
-        let (from, way) = (axis[0].lerp(axis[2], 0.5), (axis[2] - axis[0]).normalize_or_zero());
-        axes.push(axis.to_vec());
-        for n in 0..shoots / 4 {
-            let back = if n % 2 == 0 { side } else { -side };
-            let share = 0.35 * f64::from(n) / f64::from(shoots / 4);
-            axes.push(bent(from.lerp(axis[2], share), way, back * 0.7, 0.4 * length).to_vec());
-        }
-    }
-    // How far its needles reach to the side, by height.
-    const BINS: usize = 14;
-    let mut wide = [0.012_f64; BINS];
-    for axis in &axes {
-        let way = (axis[axis.len() - 1] - axis[0]).normalize_or_zero();
-        for k in 0..=12 {
-            let p =
-                geom::point_at(axis, geom::polyline_length(axis) * f64::from(k) / 12.0).unwrap_or(axis[0]);
-            for turn in [-0.9, -0.4, 0.0, 0.4, 0.9] {
-                let tip = p + base::turn::direction(-turn).rotate(way) * needle;
-                let bin = ops::whole(tip.y.clamp(0.0, 0.999) * BINS as f64) as usize;
-                wide[bin] = wide[bin].max(tip.x.abs());
-            }
-        }
-    }
-    let right = wide.iter().zip(0_u32..).map(|(x, k)| DVec2::new(*x, (f64::from(k) + 0.5) / BINS as f64));
-    let mut blade =
-        mirrored(&right.collect::<Vec<_>>(), Relief { bend_b: 0.08, fold: 0.25, ..Relief::default() });
-    blade.veins = axes.split_off(1);
-    blade
-}
-
-/// A side shoot: it leaves `way` by an angle and turns towards it.
-fn bent(from: DVec2, way: DVec2, angle: f64, length: f64) -> [DVec2; 3] {
-    let turned = |by: f64| base::turn::direction(-by).rotate(way);
-    let middle = from + turned(angle) * (0.5 * length);
-    [from, middle, middle + turned(0.7 * angle) * (0.5 * length)]
 }
 
 /// Five leaflets a side.

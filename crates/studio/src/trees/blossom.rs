@@ -134,7 +134,7 @@ fn petal(length_m: f64, count: u32) -> Blade {
     outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
     let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5 * length_m), DVec2::new(0.0, length_m)];
     let relief = Relief { bend_b: -0.12, hollow: 0.08, ..Relief::default() };
-    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+    Blade { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
 }
 
 /// A stalk that widens towards the flower.
@@ -152,7 +152,7 @@ fn disc(radius_m: f64) -> Blade {
     let outline: Vec<DVec2> = (0..6).map(corner).collect();
     let midrib = vec![outline[0], DVec2::ZERO, outline[3]];
     let relief = Relief { hollow: -0.3, ..Relief::default() };
-    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+    Blade { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
 }
 
 #[cfg(test)]

@@ -2,8 +2,6 @@
 //!
 //! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
 
-use std::sync::Arc;
-
 use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
 use growth::{BladeForm, BlossomSpec, Grown, Look, Method, TreeSpec};
@@ -13,9 +11,7 @@ use skin::{Foliage, Layout, Pictures, SkinSpec};
 
 use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
-use super::{
-    Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, needles, scale_to_height, tree_blade,
-};
+use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
@@ -357,8 +353,7 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
     // It has a texture of its own, too, which no atlas shows.
     let foliage = if options.leaf.is_some() { Foliage::Outlines } else { options.skin.foliage };
-    let needles = if options.leaf.is_some() { None } else { needles(&spec.blade).map(Arc::new) };
-    dressed(SkinSpec { seed, foliage, needles, ..options.skin.clone() }, &spec.look, form)
+    dressed(SkinSpec { seed, foliage, ..options.skin.clone() }, &spec.look, form)
 }
 
 pub(super) fn skinned(

@@ -78,9 +78,8 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
     let level = level.min(6);
-    let shoots = (skin.foliage == Foliage::ByLevel && level > 0)
-        .then(|| Shoots::of(plant, skin.needles.as_deref()).map(Arc::new))
-        .flatten();
+    let shoots =
+        (skin.foliage == Foliage::ByLevel && level > 0).then(|| Shoots::of(plant).map(Arc::new)).flatten();
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()

@@ -35,7 +35,6 @@ use spec::SpecFault;
 use crate::report::{GrowthReport, ItemReport};
 use crate::template::LeafTemplate;
 
-use blade::needles;
 pub use blade::tree_blade;
 pub use compare::{
     GUIDED_METHODS, OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, guided_methods, scale_to_height, tree_size,
