@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Strokes = Union[str, os.PathLike[str], Iterable[np.ndarray]]
 
-__all__ = ["bloom", "grow", "leaf", "open", "presets", "schema", "sketch"]
+__all__ = ["bloom", "grow", "leaf", "open", "presets", "scan", "schema", "sketch"]
 
 
 class SpecText(NamedTuple):
@@ -67,6 +67,9 @@ def grow(
     detail: "Optional[float]" = None,
     sides: "Optional[int]" = None,
     textures: "Optional[bool]" = None,
+    texture_size: "Optional[int]" = None,
+    foliage: "Optional[str]" = None,
+    leaf: "Optional[Plant]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     **fields: Any,
@@ -78,12 +81,15 @@ def grow(
     ``schema("tree")``, docs/trees.md.
 
     ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: of an ordinary branch, 3 to 24; ``textures``: False for
-    plain colours; ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
+    plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves by their ``outlines``, as ``cards`` of
+    which they are cut out, or ``by-level`` of detail; ``leaf``: one of ``leaf()`` that it bears in the place of its own;
+    ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
     Ctrl-C stops it. Raises SpecError, BudgetError.
     """
     base, own = _base(spec)
-    skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
-    return Plant(_burgeon.grow(base, _asked(seed, budget, {**own, **fields}, skin)))
+    skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
+    asked = _asked(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
+    return Plant(_burgeon.grow(base, asked, None if leaf is None else leaf._raw))
 
 
 def bloom(
@@ -106,7 +112,7 @@ def bloom(
     return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
 
 
-CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las")
+CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las", ".laz")
 """Files of points."""
 
 
@@ -171,18 +177,63 @@ def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[
 
     if fields:
         raise ValueError(f"{next(iter(fields))} is of measured leaves; a leaf of a scan has no fields")
-    rows: "List[List[float]]" = []
-    if file is None:
-        array = np.asarray(points)
-        if array.dtype.kind not in "fiu":
-            raise TypeError(f"a scan is numbers, not {array.dtype}")
-        if array.ndim != 2 or array.shape[1] != 3:
-            raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
-        array = array.astype(np.float64)
-        if not np.isfinite(array).all():
-            raise ValueError("a scan must be finite numbers")
-        rows = array.tolist()
+    rows: "List[List[float]]" = _points(points).tolist() if file is None else []
     return Plant(_burgeon.leaf_of_scan(name, file, rows, float(budget)))
+
+
+def _points(points: Any) -> "np.ndarray":
+    """Points of a scan as (n, 3) float64."""
+    import numpy as np
+
+    array = np.asarray(points)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"a scan is numbers, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
+    array = np.ascontiguousarray(array, np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError("a scan must be finite numbers")
+    return array
+
+
+def scan(
+    cloud: "Union[str, os.PathLike[str], np.ndarray]",
+    *,
+    leaves: Spec = None,
+    at: "Optional[Tuple[float, float]]" = None,
+    cell: "Optional[float]" = None,
+    gap: "Optional[float]" = None,
+    unit: str = "m",
+    up: str = "z",
+    seed: int = 1,
+    name: str = "scan",
+    detail: "Optional[float]" = None,
+    sides: "Optional[int]" = None,
+    textures: "Optional[bool]" = None,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+) -> Plant:
+    """The tree of a laser scan (``burgeon scan``): stem and branches with their radii.
+
+    ``cloud``: a file (``.laz``, ``.las``, ``.ply``, ``.xyz``, ``.txt``, ``.pcd``, ``.obj``) or an array (points, 3), in
+    ``unit`` (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: what ``grow`` takes, a species
+    whose leaves it gets (default: bare); ``at``: where the stem stands, in the two coordinates that are not up (default: the
+    largest thing on the ground); ``cell``: edge of the cubes that the cloud is seen in, metres, 0.001 to 1; ``gap``: widest
+    gap that is bridged, metres, 0 to 5. ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
+    """
+    how: "Dict[str, Any]" = {"file": None, "points": b"", "unit": unit, "up": up, "at": at, "cell": cell, "gap": gap}
+    if isinstance(cloud, (str, os.PathLike)):
+        import builtins
+
+        path = os.fspath(cloud)
+        name, extension = os.path.splitext(os.path.basename(path))
+        with builtins.open(path, "rb") as file:
+            how["file"] = (file.read(), extension[1:].lower())
+    else:
+        how["points"] = _points(cloud).tobytes()
+    base, own = (None, {}) if leaves is None else _base(leaves)
+    skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
+    return Plant(_burgeon.tree_of_scan(name, how, base, _asked(seed, budget, own, skin)))
 
 
 def sketch(
@@ -246,15 +297,17 @@ def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
     return lines
 
 
-def open(path: "str | os.PathLike[str]", *, wind: bool = False, budget: float = 1.0) -> "List[Plant]":
-    """The plants of a project of the Studio (``.burgeon``) that are not hidden, each as it was made there.
+def open(project: "str | os.PathLike[str] | bytes", *, wind: bool = False, budget: float = 1.0) -> "List[Plant]":
+    """The plants of a project of the Studio (``.burgeon``, or its bytes) that are not hidden, each as it was made there.
 
     ``plant.place`` says where each stands; ``wind``: with columns for wind.
     """
     import builtins
 
-    with builtins.open(path, "rb") as file:
-        return [Plant(raw) for raw in _burgeon.open_project(file.read(), budget, wind)]
+    if not isinstance(project, bytes):
+        with builtins.open(project, "rb") as file:
+            project = file.read()
+    return [Plant(raw) for raw in _burgeon.open_project(project, float(budget), wind)]
 
 
 def schema(maker: str) -> "Dict[str, Any]":

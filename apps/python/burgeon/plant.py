@@ -221,9 +221,16 @@ class Plant:
 
     @property
     def place(self) -> "Tuple[Tuple[float, float, float], float, float]":
-        """Where it stands in the project that it was opened from: position in metres, turn about +y in degrees, scale."""
+        """Where it stands in the project that it was opened from, or stood in its scan: position in metres, turn about +y in
+        degrees, scale."""
         position, yaw, scale = self._raw.place
         return (position[0], position[1], position[2]), yaw, scale
+
+    @property
+    def found(self) -> "Optional[Dict[str, Any]]":
+        """Of a scanned tree, what became of the points: ``points``, ``ground``, ``noise``, ``wood``, ``leaves``, ..."""
+        found = self._raw.found
+        return None if found is None else json.loads(found)
 
     @property
     def front(self) -> "Optional[Tuple[float, Tuple[float, float]]]":
@@ -341,6 +348,28 @@ class Plant:
         """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
         return Plant(self._raw.at(day))
 
+    def again(
+        self,
+        *,
+        seed: "Optional[int]" = None,
+        day: "Optional[float]" = None,
+        detail: "Optional[float]" = None,
+        sides: "Optional[int]" = None,
+        textures: "Optional[bool]" = None,
+        wind: "Optional[bool]" = None,
+        **fields: Any,
+    ) -> "Plant":
+        """The plant of other settings; what is not given stays, and so do edits by hand, materials, obstacles and place.
+
+        ``fields``: of its maker, as ``schema(plant.maker)`` has them: ``tree.again(age=12, leaves={"leaf_keep": 0.5})``. Also of
+        the plants of a project (``open``). ``detail``, ``sides``, ``textures``: of trees and drawings; ``day``: of flowers.
+        """
+        from .makers import _asked
+
+        skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
+        asked = _asked(1 if seed is None else seed, 1.0, fields, skin)
+        return Plant(self._raw.again(asked, seed is not None, day))
+
     @property
     def days(self) -> "Optional[Tuple[float, float]]":
         """Days from bud to full bloom, and from there to wilted; None for what has no days."""
@@ -368,17 +397,40 @@ class Plant:
             return bytes(self._raw.project())
         return self.model.to_bytes(extension, unit, up or "y")
 
-    def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "Optional[str]" = None) -> None:
+    def save(
+        self,
+        path: "str | os.PathLike[str]",
+        unit: str = "m",
+        up: "Optional[str]" = None,
+        *,
+        lods: int = 0,
+        one_file: bool = False,
+        instances: bool = False,
+        impostor: "Optional[int]" = None,
+        pack: "Optional[str]" = None,
+        sway: bool = False,
+    ) -> None:
         """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``), its
-        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all."""
+        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
+
+        Of models: ``lods`` coarser copies, 0 to 6, beside it (``x-lod1.glb``, ...); ``impostor``: one more, views from all sides
+        in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of leaf
+        once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
+        """
         folder, name = os.path.split(os.fspath(path))
-        extension = os.path.splitext(name)[1][1:].lower()
+        stem, dotted = os.path.splitext(name)
+        extension = dotted[1:].lower()
         if name.lower().endswith(".qsm.csv"):
             extension = "qsm"
+        form = {"lods": lods, "one_file": one_file, "instances": instances, "impostor": impostor, "pack": pack, "sway": sway}
         if extension in ("mtg", "opf", "qsm", "burgeon"):
+            asked = [word for word, value in form.items() if value not in (0, False, None)]
+            if asked:
+                raise ValueError(f"{asked[0]} is of models, not of .{extension} files")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
-            self.model.save(path, unit, up or "y")
+            files = self._raw.files(extension, stem, {"unit": unit, "up": up or "y", **form})
+            write_whole(folder, [(name, files[0][1]), *files[1:]])
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
         """A picture: see ``Model.render``."""
