@@ -173,8 +173,6 @@ def leaf(
 
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
     """The leaf of a cloud of points."""
-    import numpy as np
-
     if fields:
         raise ValueError(f"{next(iter(fields))} is of measured leaves; a leaf of a scan has no fields")
     rows: "List[List[float]]" = _points(points).tolist() if file is None else []
@@ -297,17 +295,23 @@ def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
     return lines
 
 
-def open(project: "str | os.PathLike[str] | bytes", *, wind: bool = False, budget: float = 1.0) -> "List[Plant]":
+def open(
+    project: "str | os.PathLike[str] | bytes",
+    *,
+    only: "Optional[int]" = None,
+    wind: bool = False,
+    budget: float = 1.0,
+) -> "List[Plant]":
     """The plants of a project of the Studio (``.burgeon``, or its bytes) that are not hidden, each as it was made there.
 
-    ``plant.place`` says where each stands; ``wind``: with columns for wind.
+    ``plant.place`` says where each stands; ``only``: one of them, by its row; ``wind``: with columns for wind.
     """
     import builtins
 
     if not isinstance(project, bytes):
         with builtins.open(project, "rb") as file:
             project = file.read()
-    return [Plant(raw) for raw in _burgeon.open_project(project, float(budget), wind)]
+    return [Plant(raw) for raw in _burgeon.open_project(project, float(budget), wind, only)]
 
 
 def schema(maker: str) -> "Dict[str, Any]":

@@ -376,6 +376,17 @@ class Plant:
         days = self._raw.days
         return None if days is None else tuple(days)
 
+    @property
+    def day(self) -> "Optional[float]":
+        """The day of a flower, or of a drawing whose flowers open; None for what has none."""
+        return self._raw.day
+
+    @property
+    def detail(self) -> "Optional[float]":
+        """Fineness of the meshes of a tree or drawing, 0.1 to 8; None for others."""
+        surface = self._raw.surface
+        return None if surface is None else surface[0]
+
     def mtg(self, up: str = "z", unit: str = "m") -> Any:
         """Its structure as ``openalea.mtg.MTG`` if that is installed, else as the text of an ``.mtg`` file.
 
@@ -414,8 +425,8 @@ class Plant:
         cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
 
         Of models: ``lods`` coarser copies, 0 to 6, beside it (``x-lod1.glb``, ...); ``impostor``: one more, views from all sides
-        in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of leaf
-        once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
+        in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of
+        leaf once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
         """
         folder, name = os.path.split(os.fspath(path))
         stem, dotted = os.path.splitext(name)

@@ -280,6 +280,16 @@ impl RawPlant {
         Some((skin.detail, skin.sides))
     }
 
+    /// Of a flower, and of a drawing whose flowers open, the day.
+    #[getter]
+    fn day(&self) -> Option<f64> {
+        match self.0.maker()? {
+            Maker::Flower(f) => Some(f.day),
+            Maker::Sketch(s) => s.day,
+            _ => None,
+        }
+    }
+
     /// Where it stands in its document: x, y, z, turn about +Y in degrees, scale.
     #[getter]
     fn place(&self) -> ([f64; 3], f64, f64) {
