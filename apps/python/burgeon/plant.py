@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
+from ._given import flag, number, whole, word
 from .model import Cloud, Masks, Model, array, look, seen
 
 if TYPE_CHECKING:
@@ -284,6 +285,7 @@ class Plant:
 
     def level(self, level: int) -> Model:
         """Coarser meshes for far away, 1 to 6: about half of the triangles with each level."""
+        level = whole("level", level, 0, 6)
         return self.model if level == 0 else Model(self._raw.level(level))
 
     def labels(self) -> "List[np.ndarray]":
@@ -330,7 +332,7 @@ class Plant:
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
         """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
-        return json.loads(self._raw.branches(order))
+        return json.loads(self._raw.branches(whole("order", order, 0, 1000)))
 
     def shape(self, edits: "str | os.PathLike[str] | Dict[str, Any] | Iterable[Dict[str, Any]]") -> "Plant":
         """The plant after edits by hand: an edits file (``burgeon shape --template``), its content, or its list.
@@ -342,11 +344,13 @@ class Plant:
                 edits = json.load(file)
         if isinstance(edits, dict):
             edits = edits.get("edits", [edits])
+        if not isinstance(edits, (list, tuple)):
+            raise TypeError(f"edits must be a file, its content or a list of edits, not {edits!r}")
         return Plant(self._raw.shape(list(edits)))
 
     def at(self, day: float) -> "Plant":
         """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
-        return Plant(self._raw.at(day))
+        return Plant(self._raw.at(number("day", day, 0, 100, "d")))
 
     def again(
         self,
@@ -368,6 +372,7 @@ class Plant:
 
         skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
         asked = _asked(1 if seed is None else seed, 1.0, fields, skin)
+        day = None if day is None else number("day", day, 0, 100, "d")
         return Plant(self._raw.again(asked, seed is not None, day))
 
     @property
@@ -433,14 +438,21 @@ class Plant:
         extension = dotted[1:].lower()
         if name.lower().endswith(".qsm.csv"):
             extension = "qsm"
-        form = {"lods": lods, "one_file": one_file, "instances": instances, "impostor": impostor, "pack": pack, "sway": sway}
+        form = {
+            "lods": whole("lods", lods, 0, 6),
+            "one_file": flag("one_file", one_file),
+            "instances": flag("instances", instances),
+            "impostor": None if impostor is None else whole("impostor", impostor, 128, 4096),
+            "pack": None if pack is None else word("pack", pack),
+            "sway": flag("sway", sway),
+        }
         if extension in ("mtg", "opf", "qsm", "burgeon"):
             asked = [word for word, value in form.items() if value not in (0, False, None)]
             if asked:
                 raise ValueError(f"{asked[0]} is of models, not of .{extension} files")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
-            files = self._raw.files(extension, stem, {"unit": unit, "up": up or "y", **form})
+            files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
             write_whole(folder, [(name, files[0][1]), *files[1:]])
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
