@@ -190,7 +190,7 @@ class BURGEON_OT_wind(Refusing):
 
 
 class BURGEON_OT_import(Refusing):
-    """Import the plants of a project of the Studio"""
+    """Import the plants of a project of the Studio, with their settings"""
 
     bl_idname, bl_label = "burgeon.import_project", "Burgeon (.burgeon)"
 
@@ -202,19 +202,19 @@ class BURGEON_OT_import(Refusing):
         return {"RUNNING_MODAL"}
 
     def do(self, context):
-        found = bg.open(self.filepath, wind=True)
+        with open(self.filepath, "rb") as file:
+            data = file.read()
+        found = bg.open(data, wind=True)
         if not found:
             raise ValueError(f"{self.filepath}: no plants, or all are hidden")
-        name = os.path.splitext(os.path.basename(self.filepath))[0]
-        collection = bpy.data.collections.new(name)
+        name = os.path.basename(self.filepath)
+        collection = bpy.data.collections.new(os.path.splitext(name)[0])
         context.scene.collection.children.link(collection)
-        for plant in found:
-            mesh = bpy.data.meshes.new(plant.name)
-            meshes.fill(mesh, plant.model)
-            object_ = bpy.data.objects.new(plant.name, mesh)
-            (x, y, z), yaw, scale = plant.place
-            object_.location, object_.rotation_euler, object_.scale = (x, -z, y), (0.0, 0.0, math.radians(yaw)), (scale,) * 3
-            collection.objects.link(object_)
+        project = plants.keep_project(name, data)
+        for row, made in enumerate(found):
+            plant = plants.adopt(made, project, row, collection)
+            (x, y, z), yaw, scale = made.place
+            plant.location, plant.rotation_euler, plant.scale = (x, -z, y), (0.0, 0.0, math.radians(yaw)), (scale,) * 3
 
 
 class BURGEON_OT_add_forest(Refusing):

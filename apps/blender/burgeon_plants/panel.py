@@ -36,11 +36,12 @@ def draw_plant(layout, plant):
     own = plant.burgeon
     head = layout.column()
     head.use_property_split = True
-    head.label(text=f"{plant.name}: {own.species or own.maker}")
+    head.label(text=f"{plant.name}: {own.species or own.maker}{' of a project' if own.whole else ''}")
     if own.fault:
         for line in own.fault.splitlines():
             head.label(text=line, icon="ERROR")
-    for name in ("seed", "detail", "live"):
+    # Flowers and leaves have no fineness.
+    for name in ("seed", "detail", "live") if own.maker in ("tree", "sketch") else ("seed", "live"):
         head.prop(own, name)
     if own.maker == "flower":
         head.prop(own, "day")

@@ -1,8 +1,11 @@
 """An object -> its plant, made anew when one of its properties changes."""
 
+import base64
+import hashlib
 import json
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
 
 import burgeon as bg
@@ -32,6 +35,60 @@ def add(context, name, maker, species="", seed=1, detail=1.0, strokes="", fields
     return plant
 
 
+def keep_project(name, data):
+    """A project of the Studio as a text of this file, for the plants that are imported from it."""
+    text = bpy.data.texts.new(name)
+    text.write(base64.b64encode(data).decode())
+    return text
+
+
+def adopt(made, project, row, collection):
+    """Adds a plant of a project: an object with a mesh, its place, and the settings that it has there."""
+    plant = bpy.data.objects.new(made.name, bpy.data.meshes.new(made.name))
+    own = plant.burgeon
+    settings.filling = True
+    own.maker, own.project, own.row, own.whole = made.maker, project, row, str(made.seed)
+    own.seed = min(made.seed, settings.MOST_WHOLE)
+    own.detail, own.day = made.detail or 1.0, made.day or 0.0
+    settings.filling = False
+    settings.fill(own, made.spec)
+    meshes.fill(plant.data, made.model)
+    own.made = settings.key(own)
+    collection.objects.link(plant)
+    return plant
+
+
+KEPT = 64
+"""So many plants of projects are kept as they were saved: a change of settings makes only what it touches."""
+kept = {}
+
+
+def saved(own):
+    """The plant of a project, as it was saved."""
+    if own.project is None:
+        raise ValueError("the text with the project that it was imported from is no longer in this file")
+    text = own.project.as_string()
+    key = hashlib.sha256(text.encode()).digest(), own.row
+    if key not in kept:
+        while len(kept) >= KEPT:
+            kept.pop(next(iter(kept)))
+        (kept[key],) = bg.open(base64.b64decode(text), only=own.row, wind=True)
+    return kept[key]
+
+
+def again(own, fields):
+    """What a plant of a project is with the settings that it has now: edits by hand and materials stay."""
+    was = saved(own)
+    how = {}
+    if own.seed != min(was.seed, settings.MOST_WHOLE):
+        how["seed"] = own.seed
+    if was.detail is not None and np.float32(was.detail) != np.float32(own.detail):
+        how["detail"] = own.detail
+    if own.maker == "flower" and np.float32(was.day) != np.float32(own.day):
+        how["day"] = own.day
+    return was.again(**how, **fields)
+
+
 def grown(maker, species, seed, detail, day, strokes, fields):
     """What ``burgeon`` makes of settings."""
     how = {"seed": seed, "wind": True}
@@ -48,6 +105,8 @@ def make(plant):
     """What ``burgeon`` makes of an object's settings."""
     own = plant.burgeon
     fields = settings.asked(own)
+    if own.whole:
+        return again(own, fields)
     day = own.day if own.maker == "flower" else None
     return grown(own.maker, own.species, own.seed, own.detail, day, own.strokes, fields)
 
@@ -142,3 +201,4 @@ def unregister():
     if bpy.app.timers.is_registered(catch_up):
         bpy.app.timers.unregister(catch_up)
     waiting.clear()
+    kept.clear()

@@ -197,6 +197,9 @@ class BURGEON_plant(bpy.types.PropertyGroup):
     live: BoolProperty(name="Live", description="Make it anew a moment after each change", default=True, update=_touched)
     base: StringProperty(description="What it is asked for, as JSON, before the properties change it")
     strokes: StringProperty(description="Of a drawing: its strokes, as JSON")
+    project: PointerProperty(type=bpy.types.Text, description="The project that it was imported from")
+    row: IntProperty(description="Which of the plants of its project it is")
+    whole: StringProperty(description="Of an imported plant: its seed, which may be larger than Blender's numbers")
     opens: StringProperty(description="Of a flower: shapes, first and last frame of its keyframes, as JSON")
     made: StringProperty(description="What the mesh was made from")
     fault: StringProperty(description="Why it could not be made")
@@ -269,8 +272,8 @@ def asked(plant):
 
 def key(plant):
     """All that a plant is made from."""
-    own = [getattr(plant, name) for name in ("maker", "species", "seed", "detail", "day", "strokes", "opens")]
-    return json.dumps([own, asked(plant)], sort_keys=True)
+    names = ("maker", "species", "seed", "detail", "day", "strokes", "opens", "row", "whole")
+    return json.dumps([[getattr(plant, name) for name in names], asked(plant)], sort_keys=True)
 
 
 CLASSES = (*GROUPS.values(), BURGEON_plant)

@@ -332,6 +332,64 @@ def test_projects_are_imported_where_their_plants_stand():
             assert one.rotation_euler.z == pytest.approx(np.radians(yaw)) and one.scale.x == pytest.approx(scale)
 
 
+@pytest.mark.parametrize("version", [3, 5])
+def test_plants_of_projects_have_their_settings(version):
+    path = ROOT / f"fixtures/projects/version-{version}.burgeon"
+    bpy.ops.burgeon.import_project(filepath=str(path))
+    there = bg.open(path, wind=True)
+    for plant in there:
+        one = bpy.data.objects[plant.name]
+        assert plants.is_plant(one) and not plants.is_stale(one) and one.burgeon.maker == plant.maker
+        assert settings.asked(one.burgeon) == plant.spec
+        assert {topic for topic, _ in panel.topics(one.burgeon)}
+        one.burgeon.seed = 77
+    assert plants.catch_up() is None
+    for plant in there:
+        one = bpy.data.objects[plant.name]
+        assert one.burgeon.fault == "" and same(one, plant.again(seed=77))
+        one.burgeon.seed = min(plant.seed, settings.MOST_WHOLE)
+    plants.catch_up()
+    assert all(same(bpy.data.objects[plant.name], plant) for plant in there)
+    lily = next((p for p in there if p.maker == "flower"), None)
+    if lily:
+        one = bpy.data.objects[lily.name]
+        one.burgeon.day, one.burgeon.flower.stalk_m = 1.5, 0.5
+        plants.catch_up()
+        assert same(one, lily.again(day=1.5, stalk_m=0.5))
+        bpy.context.view_layer.objects.active = one
+        assert bpy.ops.burgeon.open_over_time(shapes=3, first=1, last=41) == {"FINISHED"}
+        bpy.context.scene.frame_set(1)
+        assert np.allclose(evaluated(one), meshes.points_of(lily.again(day=0.0, stalk_m=0.5).model), atol=1e-5)
+
+
+def test_plants_of_projects_keep_what_was_done_by_hand(tmp_path):
+    tree = bg.grow("hazel", seed=2**40 + 5, age=4, detail=0.3)
+    cut = tree.shape([{"op": "prune", "axis": {"path": tree.branches(1)[1]["path"]}, "at": 0.3}])
+    cut.save(tmp_path / "cut.burgeon")
+    bpy.ops.burgeon.import_project(filepath=str(tmp_path / "cut.burgeon"))
+    (one,) = bpy.data.collections["cut"].objects
+    assert same(one, cut.again(wind=True)) and one.burgeon.tree.age == 4
+    one.burgeon.tree.leaves__leaf_keep = 0.5
+    one.burgeon.detail = 0.2
+    plants.catch_up()
+    wanted = cut.again(wind=True, detail=0.2, **settings.asked(one.burgeon))
+    assert one.burgeon.fault == "" and same(one, wanted) and wanted.report["edits"][0]["done"] and wanted.seed == 2**40 + 5
+    # It is in the file: the project may go from the disk.
+    (tmp_path / "cut.burgeon").unlink()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "x.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "x.blend"))
+    plants.kept.clear()
+    one = next(o for o in bpy.data.objects if plants.is_plant(o))
+    one.burgeon.seed = 3
+    plants.catch_up()
+    assert same(one, wanted.again(seed=3))
+    bpy.data.texts.remove(one.burgeon.project)
+    plants.kept.clear()
+    one.burgeon.seed = 4
+    plants.catch_up()
+    assert "no longer in this file" in one.burgeon.fault and same(one, wanted.again(seed=3))
+
+
 def test_fifty_plants_in_one_scene():
     for seed in range(50):
         assert bpy.ops.burgeon.add_tree(species="grass", seed=seed, detail=0.1) == {"FINISHED"}

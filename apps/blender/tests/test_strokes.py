@@ -53,6 +53,9 @@ def annotate(drawing):
             pixels = line * 300 + (region.width / 2, 100)
             common = {"name": "", "location": (0, 0, 0), "mouse_event": (0, 0), "pressure": 1.0, "size": 1.0}
             common.update(x_tilt=0.0, y_tilt=0.0)
+            if "pen_flip" in bpy.types.OperatorStrokeElement.bl_rna.properties:
+                # Of Blender 4.2.
+                common["pen_flip"] = False
             samples = [{**common, "mouse": tuple(p), "time": k / 60, "is_start": k == 0} for k, p in enumerate(pixels.tolist())]
             assert bpy.ops.gpencil.annotate(mode="DRAW", stroke=samples, wait_for_input=False) == {"FINISHED"}
     scene = bpy.context.scene

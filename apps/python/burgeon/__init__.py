@@ -5,7 +5,7 @@
 >>> oak.nodes.position.shape[1], oak.measures()["height_m"] > 0
 (3, True)
 
-``grow``, ``sketch``, ``leaf`` and ``bloom`` make a ``Plant``; its tables are NumPy arrays, ``plant.model`` its meshes,
+``grow``, ``sketch``, ``leaf``, ``bloom`` and ``scan`` make a ``Plant``; its tables are NumPy arrays, ``plant.model`` its meshes,
 ``plant.cloud()`` its points as a scanner sees them. ``burgeon.dataset`` makes thousands. Lengths are metres, +y is up;
 the same spec and seed give the same bits on every machine and as the command line.
 """
@@ -16,7 +16,7 @@ from ._burgeon import VERSION as __version__
 from ._burgeon import set_threads
 from .errors import BudgetError, BurgeonError, SpecError
 from .law import Law
-from .makers import bloom, grow, leaf, open, presets, schema, sketch
+from .makers import bloom, grow, leaf, open, presets, scan, schema, sketch
 from .model import Cloud, Masks, Model, Part
 from .plant import PARTS, Axes, Nodes, Organs, Plant
 
@@ -44,6 +44,7 @@ __all__ = [
     "leaf",
     "open",
     "presets",
+    "scan",
     "schema",
     "set_threads",
     "sketch",

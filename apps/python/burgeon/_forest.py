@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 
 from . import _burgeon
 from ._files import write_whole
+from ._given import keys, number, table, whole
 from .makers import SpecText, grow
 from .model import Cloud, Model, seen
 from .plant import Plant
@@ -59,12 +60,20 @@ class Forest:
         import numpy as np
 
         self.plants = list(plants)
-        columns = {
-            "position": np.array(places["position"], np.float64),
-            "yaw_deg": np.array(places["yaw_deg"], np.float64),
-            "scale": np.array(places["scale"], np.float64),
-            "plant": np.array(places["plant"], np.int64),
-        }
+        if not all(isinstance(plant, Plant) for plant in self.plants):
+            raise TypeError("plants must be a list of plants")
+        kinds = {"position": np.float64, "yaw_deg": np.float64, "scale": np.float64, "plant": np.int64}
+        given = table("places", places)
+        keys("places", given, kinds)
+        columns = {}
+        for name, kind in kinds.items():
+            if name not in given:
+                raise ValueError(f"places has no {name!r}")
+            column = np.asarray(given[name])
+            # No texts, truths, times or complex numbers; rows of plants are whole.
+            if column.dtype.kind not in ("iu" if name == "plant" else "iuf") and column.size:
+                raise TypeError(f"places[{name!r}] must be {'whole ' if name == 'plant' else ''}numbers, not {column.dtype}")
+            columns[name] = column.astype(kind)
         count = len(columns["plant"])
         for name, column in columns.items():
             shape = (count, 3) if name == "position" else (count,)
@@ -182,12 +191,15 @@ def forest(
 
     Its trees grow alone. Trees that compete for space and light are one plant: ``grow("oak", roots=[...])``.
     """
-    if isinstance(area, (int, float)):
-        area = (float(area), float(area))
-    if isinstance(kinds, bool) or not isinstance(kinds, int) or not 1 <= kinds <= 100:
-        raise ValueError(f"kinds must be a whole number, 1 to 100, not {kinds!r}")
+    sides = area if isinstance(area, (tuple, list)) else (area, area)
+    if len(sides) != 2:
+        raise ValueError(f"area must be metres along x and z, not {area!r}")
+    area = (number("area[0]", sides[0], 0.1, 1000, "m"), number("area[1]", sides[1], 0.1, 1000, "m"))
+    kinds = whole("kinds", kinds, 1, 100)
+    seed = whole("seed", seed, 0, 2**64 - 1)
+    spacing, vary = number("spacing", spacing, 0.05, 100, "m"), number("vary", vary, 0, 0.9)
     mixed = _shares(species)
-    found = _burgeon.places((float(area[0]), float(area[1])), float(spacing), float(vary), seed)
+    found = _burgeon.places(area, spacing, vary, seed)
     if not found:
         raise ValueError(f"no tree has room: spacing is {spacing}, area {area}")
     total = sum(share for _, share in mixed)

@@ -20,6 +20,7 @@ import tarfile
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import write_whole
+from ._given import keys, table
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
@@ -139,10 +140,16 @@ def _recipe(
     for name, value, least, most in (("n", n, 1, 10**9), ("shard", shard, 1, 10**6), ("seed", seed, 0, 2**64 - 1)):
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
             raise ValueError(f"{name} must be a whole number, {least} to {most}, not {value!r}")
-    if maker not in MAKERS:
+    if not isinstance(maker, str) or maker not in MAKERS:
         raise ValueError(f"maker must be one of {', '.join(MAKERS)}, not {maker!r}")
     if isinstance(formats, str):
         formats = (formats,)
+    if not isinstance(formats, (list, tuple)):
+        raise TypeError(f"formats must be words, not {formats!r}")
+    fields, vary = table("fields", fields), table("vary", vary)
+    cloud, picture = table("cloud", cloud), table("picture", picture)
+    keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
+    keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
     known = ("glb", "cloud", "laz") if maker == "forest" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
@@ -151,7 +158,9 @@ def _recipe(
         # A cluster's machines need not have the file.
         spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}
     ranges = {}
-    for name, range_ in (vary or {}).items():
+    for name, range_ in vary.items():
+        if not isinstance(range_, (tuple, list)):
+            raise TypeError(f"vary: {name} must be (least, most) or a list of choices, not {range_!r}")
         range_ = list(range_) if isinstance(range_, tuple) else {"choice": list(range_)}
         if isinstance(range_, list) and (len(range_) != 2 or not range_[0] <= range_[1]):
             raise ValueError(f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}")
@@ -166,10 +175,10 @@ def _recipe(
         "n": n,
         "seed": seed,
         "formats": sorted(set(formats), key=FORMATS.index),
-        "fields": dict(fields or {}),
+        "fields": fields,
         "vary": ranges,
-        "cloud": dict(cloud or {}),
-        "picture": dict(picture or {}),
+        "cloud": cloud,
+        "picture": picture,
         "shard": shard,
     }
     # As it comes back from a file: tuples are lists.

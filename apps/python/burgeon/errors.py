@@ -59,12 +59,17 @@ def _again(message: str, code: str, fields: "dict[str, str]") -> SpecError:
 
 def _meant(message: str) -> str:
     """Of a word that is not known, which of those that are known is meant."""
-    if "unknown field" not in message and "unknown variant" not in message:
-        return ""
-    import difflib
     import re
 
-    words = re.findall(r"`([^`]+)`", message)
+    preset = re.match(r'there is no (?:preset|flower) "([^"]*)"; there are (.*)', message)
+    if preset:
+        words = [preset[1], *preset[2].split(", ")]
+    elif "unknown field" in message or "unknown variant" in message:
+        words = re.findall(r"`([^`]+)`", message)
+    else:
+        return ""
+    import difflib
+
     if len(words) < 2:
         return ""
 

@@ -7,6 +7,8 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _burgeon
+from ._given import number, whole, word
+from ._given import path as path_of
 from .law import Law
 from .plant import Plant
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
     Strokes = Union[str, os.PathLike[str], Iterable[np.ndarray]]
 
-__all__ = ["bloom", "grow", "leaf", "open", "presets", "schema", "sketch"]
+__all__ = ["bloom", "grow", "leaf", "open", "presets", "scan", "schema", "sketch"]
 
 
 class SpecText(NamedTuple):
@@ -36,7 +38,7 @@ def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
         return {"preset": None, "toml": None}, dict(spec)
     if isinstance(spec, SpecText):
         return {"preset": None, "toml": (spec.toml, spec.file)}, {}
-    path = os.fspath(spec)
+    path = path_of("spec", spec)
     if isinstance(spec, str) and not path.endswith(".toml"):
         return {"preset": path, "toml": None}, {}
     return {"preset": None, "toml": (_text(path), path)}, {}
@@ -54,7 +56,7 @@ def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping
         raise ValueError(f"seed must be a whole number, 0 to 2^64 - 1, not {seed!r}")
     return {
         "seed": int(seed),
-        "budget": float(budget),
+        "budget": number("budget", budget, 1, 1000),
         "fields": dict(fields),
         "skin": {name: value for name, value in skin.items() if value is not None},
     }
@@ -67,6 +69,9 @@ def grow(
     detail: "Optional[float]" = None,
     sides: "Optional[int]" = None,
     textures: "Optional[bool]" = None,
+    texture_size: "Optional[int]" = None,
+    foliage: "Optional[str]" = None,
+    leaf: "Optional[Plant]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     **fields: Any,
@@ -78,12 +83,17 @@ def grow(
     ``schema("tree")``, docs/trees.md.
 
     ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: of an ordinary branch, 3 to 24; ``textures``: False for
-    plain colours; ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
+    plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves by their ``outlines``, as ``cards`` of
+    which they are cut out, or ``by-level`` of detail; ``leaf``: one of ``leaf()`` that it bears in the place of its own;
+    ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
     Ctrl-C stops it. Raises SpecError, BudgetError.
     """
     base, own = _base(spec)
-    skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
-    return Plant(_burgeon.grow(base, _asked(seed, budget, {**own, **fields}, skin)))
+    skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
+    asked = _asked(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
+    if not isinstance(leaf, (Plant, type(None))):
+        raise TypeError(f"leaf must be a plant of leaf(), not {leaf!r}")
+    return Plant(_burgeon.grow(base, asked, None if leaf is None else leaf._raw))
 
 
 def bloom(
@@ -103,10 +113,13 @@ def bloom(
     """
     base, own = _base(spec)
     asked = _asked(seed, budget, {**own, **fields}, {"wind": wind})
+    if not isinstance(law, (Law, type(None))):
+        raise TypeError(f"law must be a Law, not {law!r}")
+    day = None if day is None else number("day", day, 0, 100, "d")
     return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
 
 
-CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las")
+CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las", ".laz")
 """Files of points."""
 
 
@@ -134,12 +147,17 @@ def leaf(
     file, toml, own = None, None, {}
     if hasattr(spec, "ndim") or isinstance(spec, list):
         return _scanned("scan", None, spec, budget, fields)
-    numbers = {"veins": veins, "length_m": length, "depth": depth, "side_veins": side_veins}
+    numbers = {
+        "veins": None if veins is None else whole("veins", veins, 3, 31),
+        "length_m": None if length is None else number("length", length, 0.001, 10, "m"),
+        "depth": None if depth is None else number("depth", depth, 0, 0.9),
+        "side_veins": None if side_veins is None else whole("side_veins", side_veins, 0, 12),
+    }
     if venation is not None:
         if spec is not None and not isinstance(spec, Mapping):
             raise ValueError("venation makes a leaf of numbers: leave the file out")
         asked = _asked(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
-        return Plant(_burgeon.leaf_of_veins({"venation": venation, "file": None, **numbers}, asked))
+        return Plant(_burgeon.leaf_of_veins({"venation": word("venation", venation), "file": None, **numbers}, asked))
     given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
     if given:
         raise ValueError(f"{given[0].replace('_m', '')} is of leaves with venation='palmate' or 'parallel'")
@@ -148,7 +166,7 @@ def leaf(
     elif isinstance(spec, SpecText):
         toml = spec.toml
     elif spec is not None:
-        path = os.fspath(spec)
+        path = path_of("spec", spec)
         if path.endswith(".toml"):
             toml = _text(path)
         elif os.path.splitext(path)[1].lower() in CLOUDS:
@@ -156,7 +174,7 @@ def leaf(
 
             name, extension = os.path.splitext(os.path.basename(path))
             with builtins.open(path, "rb") as scan:
-                return _scanned(name, (scan.read(), extension[1:].lower(), unit), None, budget, fields)
+                return _scanned(name, (scan.read(), extension[1:].lower(), word("unit", unit)), None, budget, fields)
         else:
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
             if _burgeon.is_rays(file[1]):
@@ -167,22 +185,71 @@ def leaf(
 
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
     """The leaf of a cloud of points."""
-    import numpy as np
-
     if fields:
         raise ValueError(f"{next(iter(fields))} is of measured leaves; a leaf of a scan has no fields")
-    rows: "List[List[float]]" = []
-    if file is None:
-        array = np.asarray(points)
-        if array.dtype.kind not in "fiu":
-            raise TypeError(f"a scan is numbers, not {array.dtype}")
-        if array.ndim != 2 or array.shape[1] != 3:
-            raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
-        array = array.astype(np.float64)
-        if not np.isfinite(array).all():
-            raise ValueError("a scan must be finite numbers")
-        rows = array.tolist()
-    return Plant(_burgeon.leaf_of_scan(name, file, rows, float(budget)))
+    rows: "List[List[float]]" = _points(points).tolist() if file is None else []
+    return Plant(_burgeon.leaf_of_scan(name, file, rows, number("budget", budget, 1, 1000)))
+
+
+def _points(points: Any) -> "np.ndarray":
+    """Points of a scan as (n, 3) float64."""
+    import numpy as np
+
+    array = np.asarray(points)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"a scan is numbers, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
+    array = np.ascontiguousarray(array, np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError("a scan must be finite numbers")
+    return array
+
+
+def scan(
+    cloud: "Union[str, os.PathLike[str], np.ndarray]",
+    *,
+    leaves: Spec = None,
+    at: "Optional[Tuple[float, float]]" = None,
+    cell: "Optional[float]" = None,
+    gap: "Optional[float]" = None,
+    unit: str = "m",
+    up: str = "z",
+    seed: int = 1,
+    name: str = "scan",
+    detail: "Optional[float]" = None,
+    sides: "Optional[int]" = None,
+    textures: "Optional[bool]" = None,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+) -> Plant:
+    """The tree of a laser scan (``burgeon scan``): stem and branches with their radii.
+
+    ``cloud``: a file (``.laz``, ``.las``, ``.ply``, ``.xyz``, ``.txt``, ``.pcd``, ``.obj``) or an array (points, 3), in
+    ``unit`` (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: what ``grow`` takes, a species
+    whose leaves it gets (default: bare); ``at``: where the stem stands, in the two coordinates that are not up (default: the
+    largest thing on the ground); ``cell``: edge of the cubes that the cloud is seen in, metres, 0.001 to 1; ``gap``: widest
+    gap that is bridged, metres, 0 to 5. ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
+    """
+    if at is not None:
+        if isinstance(at, (str, bytes)) or not hasattr(at, "__len__") or len(at) != 2:
+            raise TypeError(f"at must be two coordinates, not {at!r}")
+        at = (number("at[0]", at[0], -1e8, 1e8), number("at[1]", at[1], -1e8, 1e8))
+    how: "Dict[str, Any]" = {"file": None, "points": b"", "unit": word("unit", unit), "up": word("up", up), "at": at}
+    how["cell"] = None if cell is None else number("cell", cell, 0.001, 1, "m")
+    how["gap"] = None if gap is None else number("gap", gap, 0, 5, "m")
+    if isinstance(cloud, (str, os.PathLike)):
+        import builtins
+
+        path = os.fspath(cloud)
+        name, extension = os.path.splitext(os.path.basename(path))
+        with builtins.open(path, "rb") as file:
+            how["file"] = (file.read(), extension[1:].lower())
+    else:
+        how["points"] = _points(cloud).tobytes()
+    base, own = (None, {}) if leaves is None else _base(leaves)
+    skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
+    return Plant(_burgeon.tree_of_scan(word("name", name), how, base, _asked(seed, budget, own, skin)))
 
 
 def sketch(
@@ -223,13 +290,17 @@ def sketch(
             ink: "Dict[str, Any]" = {"file": (file.read(), extension[1:]), "lines": []}
     else:
         ink = {"file": None, "lines": _lines(strokes, y_up)}
-    return Plant(_burgeon.sketch(name, ink, asked, list((classes or {}).items()), day))
+    told = [(whole("classes: a stroke", row, 0, 10**6), word(f"classes[{row}]", kind)) for row, kind in (classes or {}).items()]
+    day = None if day is None else number("day", day, 0, 100, "d")
+    return Plant(_burgeon.sketch(word("name", name), ink, asked, told, day))
 
 
 def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
     import numpy as np
 
     lines = []
+    if not hasattr(strokes, "__iter__"):
+        raise TypeError(f"strokes must be a file, or arrays of shape (points, 2), not {strokes!r}")
     for k, stroke in enumerate(strokes):
         points = np.asarray(stroke)
         if points.dtype.kind not in "fiu":
@@ -246,15 +317,24 @@ def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
     return lines
 
 
-def open(path: "str | os.PathLike[str]", *, wind: bool = False, budget: float = 1.0) -> "List[Plant]":
-    """The plants of a project of the Studio (``.burgeon``) that are not hidden, each as it was made there.
+def open(
+    project: "str | os.PathLike[str] | bytes",
+    *,
+    only: "Optional[int]" = None,
+    wind: bool = False,
+    budget: float = 1.0,
+) -> "List[Plant]":
+    """The plants of a project of the Studio (``.burgeon``, or its bytes) that are not hidden, each as it was made there.
 
-    ``plant.place`` says where each stands; ``wind``: with columns for wind.
+    ``plant.place`` says where each stands; ``only``: one of them, by its row; ``wind``: with columns for wind.
     """
     import builtins
 
-    with builtins.open(path, "rb") as file:
-        return [Plant(raw) for raw in _burgeon.open_project(file.read(), budget, wind)]
+    only = None if only is None else whole("only", only, 0, 10**6)
+    if not isinstance(project, bytes):
+        with builtins.open(path_of("project", project), "rb") as file:
+            project = file.read()
+    return [Plant(raw) for raw in _burgeon.open_project(project, number("budget", budget, 1, 1000), bool(wind), only)]
 
 
 def schema(maker: str) -> "Dict[str, Any]":
@@ -262,7 +342,7 @@ def schema(maker: str) -> "Dict[str, Any]":
 
     ``maker``: ``tree``, ``flower``, ``leaf``, ``sketch`` or ``skin``.
     """
-    return json.loads(_burgeon.schema(maker))
+    return json.loads(_burgeon.schema(word("maker", maker)))
 
 
 def presets() -> "Tuple[List[str], List[str]]":

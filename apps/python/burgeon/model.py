@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequenc
 
 from . import _burgeon
 from ._files import write_whole
+from ._given import flag, keys, number, whole, word
 
 if TYPE_CHECKING:
     import numpy as np
@@ -147,15 +148,27 @@ class Cloud(NamedTuple):
 
 def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
     """The columns of the cloud of a plant or of a forest."""
-    scan = {"points": points, "stations": stations, "elevation": elevation, "noise": noise}
-    columns = of._raw.survey({**scan, "seed": of.seed if seed is None else seed})
+    scan = {
+        "points": whole("points", points, 1, 5_000_000),
+        "stations": whole("stations", stations, 1, 64),
+        "elevation": number("elevation", elevation, -80, 80, "deg"),
+        "noise": number("noise", noise, 0, 1, "m"),
+        "seed": of.seed if seed is None else whole("seed", seed, 0, 2**64 - 1),
+    }
+    columns = of._raw.survey(scan)
     return {name: array(column) for name, column in columns.items()}
 
 
 Look = Dict[str, Any]
 
 
-def look(
+def look(size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Look:
+    """How a picture is taken."""
+    keys("a picture", how, ("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
+    return _look(size, **how)
+
+
+def _look(
     size: "Tuple[int, int] | int" = (1024, 768),
     view: str = "three-quarter",
     azimuth: float = 31.5,
@@ -165,16 +178,18 @@ def look(
     supersample: int = 4,
     seed: int = 1,
 ) -> Look:
-    width, height = (size, size) if isinstance(size, int) else size
+    sides = (size, size) if hasattr(size, "__index__") else size
+    if isinstance(sides, (str, bytes)) or not hasattr(sides, "__len__") or len(sides) != 2:
+        raise TypeError(f"size must be a whole number of pixels or two, 1 to 8192, not {size!r}")
     return {
-        "size": (width, height),
-        "view": view,
-        "azimuth": azimuth,
-        "elevation": elevation,
-        "background": background,
-        "shadow": shadow,
-        "supersample": supersample,
-        "seed": seed,
+        "size": tuple(whole("size", side, 1, 8192) for side in sides),
+        "view": word("view", view),
+        "azimuth": number("azimuth", azimuth),
+        "elevation": number("elevation", elevation, -85, 85, "deg"),
+        "background": word("background", background),
+        "shadow": flag("shadow", shadow),
+        "supersample": whole("supersample", supersample, 1, 6),
+        "seed": whole("seed", seed, 0, 2**64 - 1),
     }
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
+from ._given import flag, number, whole, word
 from .model import Cloud, Masks, Model, array, look, seen
 
 if TYPE_CHECKING:
@@ -221,9 +222,16 @@ class Plant:
 
     @property
     def place(self) -> "Tuple[Tuple[float, float, float], float, float]":
-        """Where it stands in the project that it was opened from: position in metres, turn about +y in degrees, scale."""
+        """Where it stands in the project that it was opened from, or stood in its scan: position in metres, turn about +y in
+        degrees, scale."""
         position, yaw, scale = self._raw.place
         return (position[0], position[1], position[2]), yaw, scale
+
+    @property
+    def found(self) -> "Optional[Dict[str, Any]]":
+        """Of a scanned tree, what became of the points: ``points``, ``ground``, ``noise``, ``wood``, ``leaves``, ..."""
+        found = self._raw.found
+        return None if found is None else json.loads(found)
 
     @property
     def front(self) -> "Optional[Tuple[float, Tuple[float, float]]]":
@@ -277,6 +285,7 @@ class Plant:
 
     def level(self, level: int) -> Model:
         """Coarser meshes for far away, 1 to 6: about half of the triangles with each level."""
+        level = whole("level", level, 0, 6)
         return self.model if level == 0 else Model(self._raw.level(level))
 
     def labels(self) -> "List[np.ndarray]":
@@ -323,7 +332,7 @@ class Plant:
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
         """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
-        return json.loads(self._raw.branches(order))
+        return json.loads(self._raw.branches(whole("order", order, 0, 1000)))
 
     def shape(self, edits: "str | os.PathLike[str] | Dict[str, Any] | Iterable[Dict[str, Any]]") -> "Plant":
         """The plant after edits by hand: an edits file (``burgeon shape --template``), its content, or its list.
@@ -335,17 +344,53 @@ class Plant:
                 edits = json.load(file)
         if isinstance(edits, dict):
             edits = edits.get("edits", [edits])
+        if not isinstance(edits, (list, tuple)):
+            raise TypeError(f"edits must be a file, its content or a list of edits, not {edits!r}")
         return Plant(self._raw.shape(list(edits)))
 
     def at(self, day: float) -> "Plant":
         """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
-        return Plant(self._raw.at(day))
+        return Plant(self._raw.at(number("day", day, 0, 100, "d")))
+
+    def again(
+        self,
+        *,
+        seed: "Optional[int]" = None,
+        day: "Optional[float]" = None,
+        detail: "Optional[float]" = None,
+        sides: "Optional[int]" = None,
+        textures: "Optional[bool]" = None,
+        wind: "Optional[bool]" = None,
+        **fields: Any,
+    ) -> "Plant":
+        """The plant of other settings; what is not given stays, and so do edits by hand, materials, obstacles and place.
+
+        ``fields``: of its maker, as ``schema(plant.maker)`` has them: ``tree.again(age=12, leaves={"leaf_keep": 0.5})``. Also of
+        the plants of a project (``open``). ``detail``, ``sides``, ``textures``: of trees and drawings; ``day``: of flowers.
+        """
+        from .makers import _asked
+
+        skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
+        asked = _asked(1 if seed is None else seed, 1.0, fields, skin)
+        day = None if day is None else number("day", day, 0, 100, "d")
+        return Plant(self._raw.again(asked, seed is not None, day))
 
     @property
     def days(self) -> "Optional[Tuple[float, float]]":
         """Days from bud to full bloom, and from there to wilted; None for what has no days."""
         days = self._raw.days
         return None if days is None else tuple(days)
+
+    @property
+    def day(self) -> "Optional[float]":
+        """The day of a flower, or of a drawing whose flowers open; None for what has none."""
+        return self._raw.day
+
+    @property
+    def detail(self) -> "Optional[float]":
+        """Fineness of the meshes of a tree or drawing, 0.1 to 8; None for others."""
+        surface = self._raw.surface
+        return None if surface is None else surface[0]
 
     def mtg(self, up: str = "z", unit: str = "m") -> Any:
         """Its structure as ``openalea.mtg.MTG`` if that is installed, else as the text of an ``.mtg`` file.
@@ -368,17 +413,47 @@ class Plant:
             return bytes(self._raw.project())
         return self.model.to_bytes(extension, unit, up or "y")
 
-    def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "Optional[str]" = None) -> None:
+    def save(
+        self,
+        path: "str | os.PathLike[str]",
+        unit: str = "m",
+        up: "Optional[str]" = None,
+        *,
+        lods: int = 0,
+        one_file: bool = False,
+        instances: bool = False,
+        impostor: "Optional[int]" = None,
+        pack: "Optional[str]" = None,
+        sway: bool = False,
+    ) -> None:
         """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``), its
-        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all."""
+        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
+
+        Of models: ``lods`` coarser copies, 0 to 6, beside it (``x-lod1.glb``, ...); ``impostor``: one more, views from all sides
+        in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of
+        leaf once; ``pack``: ``quantized`` or ``meshopt``; ``sway``: joints with an animation (docs/exports.md).
+        """
         folder, name = os.path.split(os.fspath(path))
-        extension = os.path.splitext(name)[1][1:].lower()
+        stem, dotted = os.path.splitext(name)
+        extension = dotted[1:].lower()
         if name.lower().endswith(".qsm.csv"):
             extension = "qsm"
+        form = {
+            "lods": whole("lods", lods, 0, 6),
+            "one_file": flag("one_file", one_file),
+            "instances": flag("instances", instances),
+            "impostor": None if impostor is None else whole("impostor", impostor, 128, 4096),
+            "pack": None if pack is None else word("pack", pack),
+            "sway": flag("sway", sway),
+        }
         if extension in ("mtg", "opf", "qsm", "burgeon"):
+            asked = [word for word, value in form.items() if value not in (0, False, None)]
+            if asked:
+                raise ValueError(f"{asked[0]} is of models, not of .{extension} files")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
-            self.model.save(path, unit, up or "y")
+            files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
+            write_whole(folder, [(name, files[0][1]), *files[1:]])
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
         """A picture: see ``Model.render``."""

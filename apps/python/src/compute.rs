@@ -102,11 +102,9 @@ const TICK: Duration = Duration::from_millis(20);
 
 /// Sets how many threads compute, 1 to 256; 0 for as many as the machine has. Results do not depend on it.
 #[pyfunction]
-pub(crate) fn set_threads(count: usize) -> PyResult<()> {
-    if count > 256 {
-        let line = format!("count must be 0 to 256, not {count}");
-        return Err(pyo3::exceptions::PyValueError::new_err(line));
-    }
-    THREADS.store(count, Ordering::Relaxed);
+pub(crate) fn set_threads(count: i64) -> PyResult<()> {
+    let sound = usize::try_from(count).ok().filter(|&n| n <= 256);
+    let line = || pyo3::exceptions::PyValueError::new_err(format!("count must be 0 to 256, not {count}"));
+    THREADS.store(sound.ok_or_else(line)?, Ordering::Relaxed);
     Ok(())
 }

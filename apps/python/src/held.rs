@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use burgeon::document::{Document, Editor, Maker, PlantId};
+use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::Layout;
@@ -19,8 +20,19 @@ pub(crate) struct Held {
     pub(crate) document: Document,
     pub(crate) id: PlantId,
     pub(crate) budget: f64,
-    /// In its place, a leaf that no document holds: of chief veins, or of a scan.
+    /// In its place, a plant that no document holds: a leaf of chief veins, or of a scan, or a scanned tree.
     pub(crate) lone: Option<MadePlant>,
+    /// Of a scanned tree.
+    pub(crate) found: Option<Found>,
+}
+
+/// What a scan told of its tree.
+pub(crate) struct Found {
+    /// Where it stood in the scan, metres, +Y up.
+    pub(crate) foot: DVec3,
+    /// What became of the points.
+    pub(crate) tally: serde_json::Value,
+    pub(crate) seed: Seed,
 }
 
 impl Held {
@@ -35,7 +47,7 @@ impl Held {
         if !(1.0..=1000.0).contains(&budget) {
             return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
         }
-        let mut held = Self { scene, document, id, budget, lone: None };
+        let mut held = Self { scene, document, id, budget, lone: None, found: None };
         let made = compute(py, budget, |run| held.scene.update(id, &held.document, run).map(|()| held))?;
         let held = made.map_err(|e| refused(py, &e))?;
         let there = held.scene.get(id).is_some_and(|p| p.plant.is_some() && p.owners.is_some());
@@ -45,10 +57,10 @@ impl Held {
         Ok(Arc::new(held))
     }
 
-    /// A leaf that no document holds.
-    pub(crate) fn lone(made: MadePlant, budget: f64) -> Arc<Self> {
+    /// A plant that no document holds.
+    pub(crate) fn lone(made: MadePlant, found: Option<Found>, budget: f64) -> Arc<Self> {
         let (scene, document) = (SceneEvaluator::default(), Document::default());
-        Arc::new(Self { scene, document, id: PlantId(u32::MAX), budget, lone: Some(made) })
+        Arc::new(Self { scene, document, id: PlantId(u32::MAX), budget, lone: Some(made), found })
     }
 
     /// The entry of the report.
@@ -84,6 +96,9 @@ impl Held {
     }
 
     pub(crate) fn seed(&self) -> Seed {
+        if let Some(found) = &self.found {
+            return found.seed;
+        }
         self.document.plant(self.id).map_or_else(Seed::default, |p| p.settings().seed)
     }
 
@@ -96,7 +111,8 @@ impl Held {
         if self.lone.is_none() {
             return Ok(());
         }
-        let line = "a leaf of chief veins or of a scan has no edits by hand, no other days and no project";
+        let line = "a plant of a scan, and a leaf of chief veins, has no edits by hand, no other settings or days, and no \
+                    project";
         Err(unusable(py, &line))
     }
 
@@ -106,14 +122,23 @@ impl Held {
         py: Python<'_>,
         commands: impl IntoIterator<Item = burgeon::document::Command>,
     ) -> PyResult<Arc<Self>> {
+        self.after_with(py, None, commands)
+    }
+
+    /// The plant after more commands; with columns for wind or without, if that is said.
+    pub(crate) fn after_with(
+        &self,
+        py: Python<'_>,
+        wind: Option<bool>,
+        commands: impl IntoIterator<Item = burgeon::document::Command>,
+    ) -> PyResult<Arc<Self>> {
         self.must_have_document(py)?;
         let mut editor = Editor::new(self.document.clone());
-        for command in commands {
-            match editor.run(command) {
-                Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
-                Err(e) => return Err(refused(py, &e)),
-            }
+        commands.into_iter().try_for_each(|command| crate::make::run(py, &mut editor, command))?;
+        let mut scene = self.scene.clone();
+        if let Some(wind) = wind {
+            scene.set_wind(wind);
         }
-        Self::make(py, self.scene.clone(), editor.document().clone(), self.id, self.budget)
+        Self::make(py, scene, editor.document().clone(), self.id, self.budget)
     }
 }

@@ -3,6 +3,9 @@
 //! | module | owns |
 //! |---|---|
 //! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
+//! | `again` | a plant with other settings |
+//! | `scan` | trees of laser scans |
+//! | `write` | a plant's files with coarser copies, instances, joints |
 //! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
 //! | `forest` | plants that stand together |
@@ -13,6 +16,7 @@
 //!
 //! The package `burgeon` (apps/python/burgeon) is what people import; this is its private module.
 
+mod again;
 mod column;
 mod compute;
 mod fault;
@@ -21,7 +25,9 @@ mod held;
 mod make;
 mod model;
 mod plant;
+mod scan;
 mod value;
+mod write;
 
 /// The private module of the package `burgeon`.
 #[pyo3::pymodule]
@@ -41,6 +47,8 @@ mod _burgeon {
     use crate::model::{RawModel, drawing_svg, png};
     #[pymodule_export]
     use crate::plant::RawPlant;
+    #[pymodule_export]
+    use crate::scan::tree_of_scan;
 
     #[pymodule_export]
     const VERSION: &str = burgeon::VERSION;

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use burgeon::bloom::{FlowerSpec, GrowthLaw, Offset, Series};
 use burgeon::document::{
-    Document, Editor, FlowerMaker, LeafData, LeafMaker, Maker, NewPlant, PlantId, SceneCommand, Settings,
-    SketchCommand,
+    Command, CommandError, Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker,
+    NewPlant, PlantId, SceneCommand, Settings, SketchCommand, TreeCommand,
 };
 use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, MarksAxes, ModelFormat};
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{Drawing, StrokeClass};
 use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
 use burgeon::sketch::SketchSpec;
-use burgeon::skin::SkinSpec;
+use burgeon::skin::{Foliage, SkinSpec};
 use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -31,9 +31,9 @@ use crate::value::json_of;
 #[derive(FromPyObject)]
 pub(crate) struct Asked<'py> {
     #[pyo3(item)]
-    seed: u64,
+    pub(crate) seed: u64,
     #[pyo3(item)]
-    budget: f64,
+    pub(crate) budget: f64,
     /// Fields of the maker's spec.
     #[pyo3(item)]
     fields: Bound<'py, PyDict>,
@@ -44,26 +44,63 @@ pub(crate) struct Asked<'py> {
 
 impl Asked<'_> {
     /// A spec with the fields that are asked for in the place of its own.
-    fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
+    pub(crate) fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
         if self.fields.is_empty() {
             return burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e));
         }
         put(py, base, json_of(self.fields.as_any(), "")?)
     }
 
-    fn skin(&self, py: Python<'_>) -> PyResult<(SkinSpec, bool)> {
-        let mut fields = json_of(self.skin.as_any(), "")?;
-        let wind = fields.as_object_mut().and_then(|f| f.remove("wind"));
-        let skin = put(py, &SkinSpec::default(), fields)?;
-        match wind {
-            None => Ok((skin, false)),
-            Some(Value::Bool(wind)) => Ok((skin, wind)),
-            Some(other) => Err(PyValueError::new_err(format!("wind must be True or False, not {other}"))),
-        }
+    pub(crate) fn skin(&self, py: Python<'_>) -> PyResult<(SkinSpec, bool)> {
+        let (skin, wind) = self.skin_on(py, &SkinSpec::default())?;
+        Ok((skin, wind.unwrap_or(false)))
     }
 
-    fn seed(&self) -> Seed {
+    /// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
+    /// said.
+    pub(crate) fn skin_on(&self, py: Python<'_>, base: &SkinSpec) -> PyResult<(SkinSpec, Option<bool>)> {
+        let mut fields = json_of(self.skin.as_any(), "")?;
+        // What a schema of saved fields does not have.
+        let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
+        let wind = match unsaved("wind") {
+            None => None,
+            Some(Value::Bool(wind)) => Some(wind),
+            Some(other) => {
+                return Err(PyValueError::new_err(format!("wind must be True or False, not {other}")));
+            }
+        };
+        let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
+        let mut skin = put(py, base, fields)?;
+        if let Some(size) = size {
+            let pixels =
+                size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
+            skin.texture_size = pixels.ok_or_else(|| {
+                PyValueError::new_err(format!("texture_size must be 64 to 4096 pixels, not {size}"))
+            })?;
+        }
+        if let Some(word) = foliage {
+            skin.foliage = match word.as_str() {
+                Some("outlines") => Foliage::Outlines,
+                Some("cards") => Foliage::Cards,
+                Some("by-level") => Foliage::ByLevel,
+                _ => {
+                    let known = "outlines, cards or by-level";
+                    return Err(PyValueError::new_err(format!("foliage must be {known}, not {word}")));
+                }
+            };
+        }
+        Ok((skin, wind))
+    }
+
+    pub(crate) fn seed(&self) -> Seed {
         Seed::new(self.seed)
+    }
+
+    pub(crate) fn budget(&self) -> PyResult<f64> {
+        if (1.0..=1000.0).contains(&self.budget) {
+            return Ok(self.budget);
+        }
+        Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {}", self.budget)))
     }
 
     fn made(&self, py: Python<'_>, document: Document, id: PlantId, wind: bool) -> PyResult<RawPlant> {
@@ -74,26 +111,44 @@ impl Asked<'_> {
 
     /// The only plant of a document.
     fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<RawPlant> {
-        let settings = Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() };
+        self.bearing(py, name, maker, None, wind)
+    }
+
+    /// The only plant of a document, but for one that is hidden and whose leaf it bears.
+    fn bearing(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        maker: Maker,
+        leaf: Option<Settings>,
+        wind: bool,
+    ) -> PyResult<RawPlant> {
         let mut editor = Editor::new(Document::default());
-        let sheet: Vec<PlantId> =
-            editor.document().plants().iter().map(burgeon::document::DocumentPlant::id).collect();
-        let plant = NewPlant { settings, strokes: Vec::new() };
-        let mut commands = vec![SceneCommand::Add(Box::new(plant)), SceneCommand::Rename(name.to_owned())];
-        if !sheet.is_empty() {
-            commands.push(SceneCommand::Remove(sheet));
-        }
-        for command in commands {
-            match editor.run(command) {
-                Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
-                Err(e) => return Err(refused(py, &e)),
-            }
-        }
-        let document = editor.document().clone();
-        let Some(id) = document.plants().last().map(burgeon::document::DocumentPlant::id) else {
-            return Err(unusable(py, &"internal error, a bug in burgeon: the plant is not in its document"));
+        let sheet: Vec<PlantId> = editor.document().plants().iter().map(DocumentPlant::id).collect();
+        let mut add = |settings| -> PyResult<PlantId> {
+            let plant = NewPlant { settings, strokes: Vec::new() };
+            run(py, &mut editor, SceneCommand::Add(Box::new(plant)).into())?;
+            let lost = || unusable(py, &"internal error, a bug in burgeon: the plant is not in its document");
+            editor.document().plants().last().map(DocumentPlant::id).ok_or_else(lost)
         };
-        self.made(py, document, id, wind)
+        let lender = leaf.map(|leaf| add(Settings { hidden: true, ..leaf })).transpose()?;
+        let id = add(Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() })?;
+        if lender.is_some() {
+            run(py, &mut editor, TreeCommand::SetLeaf(lender).of(id))?;
+        }
+        run(py, &mut editor, SceneCommand::Rename(name.to_owned()).into())?;
+        if !sheet.is_empty() {
+            run(py, &mut editor, SceneCommand::Remove(sheet).into())?;
+        }
+        self.made(py, editor.document().clone(), id, wind)
+    }
+}
+
+/// Does a command; one that changes nothing is no error.
+pub(crate) fn run(py: Python<'_>, editor: &mut Editor, command: Command) -> PyResult<()> {
+    match editor.run(command) {
+        Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
+        Err(e) => Err(refused(py, &e)),
     }
 }
 
@@ -111,31 +166,72 @@ pub(crate) struct Base {
     toml: Option<(String, std::path::PathBuf)>,
 }
 
-/// A tree.
+/// A tree; `leaf`: the leaf that it bears.
 #[pyfunction]
-pub(crate) fn grow(py: Python<'_>, base: Base, asked: Asked<'_>) -> PyResult<RawPlant> {
-    let (spec, preset) = match (&base.preset, &base.toml) {
-        (Some(word), _) => {
-            let preset = Preset::find(word).ok_or_else(|| {
-                let known = burgeon::PRESETS.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
-                unusable(py, &format!("there is no preset {word:?}; there are {known}"))
-            })?;
-            (preset.spec().map_err(|e| refused(py, &e))?, Some(preset.key))
-        }
-        (None, Some((text, path))) => {
-            let folder = path.parent().unwrap_or_else(|| Path::new(""));
-            let spec = burgeon::read_tree_spec(text, &|name| named_mesh(&folder.join(name)));
-            let spec = spec.map_err(|e| refused(py, &e.in_text(text)))?;
-            (spec, None)
-        }
-        (None, None) => (TreeSpec::default(), None),
-    };
-    let spec = asked.spec(py, &spec)?;
+pub(crate) fn grow(
+    py: Python<'_>,
+    base: Base,
+    asked: Asked<'_>,
+    leaf: Option<PyRef<'_, RawPlant>>,
+) -> PyResult<RawPlant> {
+    let (spec, preset) = base.tree(py)?;
+    let mut spec = asked.spec(py, &spec)?;
     let (skin, wind) = asked.skin(py)?;
+    let leaf = match (leaf, spec.blade.file.take()) {
+        (Some(leaf), _) => Some(lender(py, &leaf)?),
+        (None, Some(file)) => Some(leaf_beside(py, &base, &file, asked.seed())?),
+        (None, None) => None,
+    };
     let name = spec.name.clone();
     let mut tree = burgeon::tree_settings(&spec, preset);
     tree.skin = skin;
-    asked.alone(py, &name, Maker::Tree(Box::new(tree)), wind)
+    asked.bearing(py, &name, Maker::Tree(Box::new(tree)), leaf, wind)
+}
+
+impl Base {
+    /// The spec of a tree, and the species that it comes from.
+    pub(crate) fn tree(&self, py: Python<'_>) -> PyResult<(TreeSpec, Option<&'static str>)> {
+        match (&self.preset, &self.toml) {
+            (Some(word), _) => {
+                let preset = Preset::find(word).ok_or_else(|| {
+                    let known = burgeon::PRESETS.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
+                    unusable(py, &format!("there is no preset {word:?}; there are {known}"))
+                })?;
+                Ok((preset.spec().map_err(|e| refused(py, &e))?, Some(preset.key)))
+            }
+            (None, Some((text, path))) => {
+                let folder = path.parent().unwrap_or_else(|| Path::new(""));
+                let spec = burgeon::read_tree_spec(text, &|name| named_mesh(&folder.join(name)));
+                Ok((spec.map_err(|e| refused(py, &e.in_text(text)))?, None))
+            }
+            (None, None) => Ok((TreeSpec::default(), None)),
+        }
+    }
+}
+
+/// A leaf of marks, of a vein graph or of numbers, for a tree to bear.
+fn lender(py: Python<'_>, leaf: &RawPlant) -> PyResult<Settings> {
+    let held = &leaf.0;
+    let own = held.document.plant(held.id).map(DocumentPlant::settings);
+    let leaf = own.filter(|s| matches!(s.maker, Maker::Leaf(_))).cloned();
+    leaf.ok_or_else(|| unusable(py, &"leaf must be a leaf of marks, of a vein graph or of numbers"))
+}
+
+/// The leaf of a file that a spec names, beside the spec.
+fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<Settings> {
+    let path = base.toml.as_ref().and_then(|(_, spec)| Some(spec.parent()?.join(file)));
+    let path = path.unwrap_or_else(|| file.into());
+    let unread = |why: &dyn std::fmt::Display| unusable(py, &format!("blade.file {file:?}: {why}"));
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv") || e.eq_ignore_ascii_case("json")) {
+        return Err(unread(&"Python reads leaves of marks (.csv) and of vein graphs (.json)"));
+    }
+    let text = std::fs::read_to_string(&path).map_err(|e| unread(&e))?;
+    if burgeon::formats::is_rays(text.as_bytes()) {
+        return Err(unread(&"is of chief veins, which only the command line hangs into a tree"));
+    }
+    let data = LeafData { name: file.to_owned(), text: text.into() };
+    let maker = Maker::Leaf(Box::new(LeafMaker { data, settings: LeafSpec::default() }));
+    Ok(Settings { name: file.to_owned(), seed, maker, ..Settings::default() })
 }
 
 /// A mesh or cloud that a spec names, in metres, +Y up.
@@ -287,6 +383,7 @@ pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> P
             (read.name, read.rays)
         }
     };
+    let budget = asked.budget()?;
     let usual = if veins.venation.as_deref() == Some("palmate") { 4 } else { 0 };
     let side_veins = veins.side_veins.unwrap_or(usual);
     if side_veins > 12 {
@@ -294,8 +391,8 @@ pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> P
     }
     let skin = SkinSpec { wind, ..SkinSpec::default() };
     let options = LeafOptions { spec, skin, side_veins, ..LeafOptions::default() };
-    let made = compute(py, asked.budget, |run| burgeon::make_ray_leaf(&name, &rays, &options, run))?;
-    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?, asked.budget)))
+    let made = compute(py, budget, |run| burgeon::make_ray_leaf(&name, &rays, &options, run))?;
+    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?, None, budget)))
 }
 
 /// A leaf of a scan: points in metres, or the bytes of a file, its extension and its unit.
@@ -323,7 +420,7 @@ pub(crate) fn leaf_of_scan(
     }
     let spec = ScanSpec::default();
     let made = compute(py, budget, |run| burgeon::make_leaf_from_scan(name, &points, &spec, run))?;
-    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?.0, budget)))
+    Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?.0, None, budget)))
 }
 
 /// Whether the text of a file of marks tells chief veins that start together.
@@ -396,23 +493,27 @@ pub(crate) fn sketch(
         commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).of(id));
     }
     let mut editor = Editor::new(document);
-    for command in commands {
-        match editor.run(command) {
-            Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
-            Err(e) => return Err(refused(py, &e)),
-        }
-    }
+    commands.into_iter().try_for_each(|command| run(py, &mut editor, command))?;
     document = editor.document().clone();
     asked.made(py, document, id, wind)
 }
 
-/// Every plant of a project of the Studio that is not hidden.
+/// Every plant of a project of the Studio that is not hidden, or one of them by its row.
 #[pyfunction]
-pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64, wind: bool) -> PyResult<Vec<RawPlant>> {
+#[pyo3(signature = (bytes, budget, wind, only = None))]
+pub(crate) fn open_project(
+    py: Python<'_>,
+    bytes: &[u8],
+    budget: f64,
+    wind: bool,
+    only: Option<usize>,
+) -> PyResult<Vec<RawPlant>> {
     let document = burgeon::document::read_project(bytes).map_err(|e| unusable(py, &e))?;
     let seen = document.plants().iter().filter(|p| !p.settings().hidden);
-    let ids: Vec<PlantId> = seen.map(burgeon::document::DocumentPlant::id).collect();
-    ids.into_iter()
+    let ids: Vec<PlantId> = seen.map(DocumentPlant::id).collect();
+    let wanted = ids.into_iter().enumerate().filter(|(row, _)| only.is_none_or(|only| only == *row));
+    wanted
+        .map(|(_, id)| id)
         .map(|id| {
             let mut scene = SceneEvaluator::default();
             scene.set_wind(wind);

@@ -229,11 +229,7 @@ impl RawModel {
         up: &str,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let spec = axes(unit, up)?;
-        let Some(format) = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf) else {
-            let line =
-                format!("models are written as .glb, .obj, .ply, .stl, .usda or .usdz, not .{extension}");
-            return Err(PyValueError::new_err(line));
-        };
+        let format = model_format(extension)?;
         let files = py.detach(|| written(self.get(), format, extension, stem, &spec));
         let files = files.map_err(|e| unusable(py, &e))?;
         Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
@@ -271,8 +267,17 @@ impl RawModel {
     }
 }
 
+/// What a model is written as, by its extension.
+pub(crate) fn model_format(extension: &str) -> PyResult<ModelFormat> {
+    let format = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf);
+    format.ok_or_else(|| {
+        let known = ".glb, .obj, .ply, .stl, .usda or .usdz";
+        PyValueError::new_err(format!("models are written as {known}, not .{extension}"))
+    })
+}
+
 /// The files of a model: its own, then those that it names.
-fn written(
+pub(crate) fn written(
     model: &Model,
     format: ModelFormat,
     extension: &str,

@@ -13,8 +13,10 @@ use crate::column::{Column, Owner};
 use crate::compute::compute;
 use crate::fault::{refused, unusable};
 use crate::held::Held;
+use crate::make::Asked;
 use crate::model::{RawModel, axes};
 use crate::value::json_of;
+use crate::write::Form;
 
 /// A plant, which nothing changes.
 #[pyclass(frozen, module = "burgeon._burgeon")]
@@ -79,7 +81,11 @@ impl RawPlant {
 
     #[getter]
     fn maker(&self) -> &'static str {
-        if self.0.lone.is_some() { "leaf" } else { self.0.maker().map_or("", Maker::word) }
+        match (&self.0.found, &self.0.lone) {
+            (Some(_), _) => "scan",
+            (None, Some(_)) => "leaf",
+            (None, None) => self.0.maker().map_or("", Maker::word),
+        }
     }
 
     /// The entry of the report, as JSON.
@@ -220,6 +226,22 @@ impl RawPlant {
         self.0.after(py, edits).map(Self)
     }
 
+    /// The plant of other settings; `seeded`: the seed that is asked for is meant.
+    fn again(&self, py: Python<'_>, asked: Asked<'_>, seeded: bool, day: Option<f64>) -> PyResult<Self> {
+        self.0.again(py, &asked, seeded, day).map(Self)
+    }
+
+    /// The files of its model by its extension: names and bytes, the model's own first, then its coarser copies.
+    fn files<'py>(
+        &self,
+        py: Python<'py>,
+        extension: &str,
+        stem: &str,
+        form: Form,
+    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+        crate::write::files(py, &self.0, (extension, stem), &form)
+    }
+
     /// The plant at a day: of flowers, and of drawings whose flowers open.
     fn at(&self, py: Python<'_>, day: f64) -> PyResult<Self> {
         self.0.must_have_document(py)?;
@@ -241,9 +263,39 @@ impl RawPlant {
         self.0.scene.days(self.0.id, &self.0.document)
     }
 
+    /// Of a scanned tree, what became of the points, as JSON.
+    #[getter]
+    fn found(&self) -> Option<String> {
+        Some(self.0.found.as_ref()?.tally.to_string())
+    }
+
+    /// How it is meshed: fineness and sides.
+    #[getter]
+    fn surface(&self) -> Option<(f64, u32)> {
+        let skin = match self.0.maker()? {
+            Maker::Sketch(s) => &s.skin,
+            Maker::Tree(t) => &t.skin,
+            _ => return None,
+        };
+        Some((skin.detail, skin.sides))
+    }
+
+    /// Of a flower, and of a drawing whose flowers open, the day.
+    #[getter]
+    fn day(&self) -> Option<f64> {
+        match self.0.maker()? {
+            Maker::Flower(f) => Some(f.day),
+            Maker::Sketch(s) => s.day,
+            _ => None,
+        }
+    }
+
     /// Where it stands in its document: x, y, z, turn about +Y in degrees, scale.
     #[getter]
     fn place(&self) -> ([f64; 3], f64, f64) {
+        if let Some(found) = &self.0.found {
+            return (found.foot.to_array(), 0.0, 1.0);
+        }
         let place = self.0.document.plant(self.0.id).map(|p| p.settings().placement).unwrap_or_default();
         (place.position.to_array(), place.yaw_deg, place.scale)
     }

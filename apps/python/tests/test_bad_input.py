@@ -89,7 +89,7 @@ def test_views_and_clouds_out_of_range(small):
         (lambda: small.render(background="#zzz"), "background must be"),
         (lambda: small.cloud(0), "points must be 1 to"),
         (lambda: small.cloud(10, stations=0), "stations must be 1 to 64, not 0"),
-        (lambda: small.cloud(10, noise=float("nan")), "noise_m must be"),
+        (lambda: small.cloud(10, noise=float("nan")), "noise must be 0 to 1 m, not nan"),
         (lambda: small.model.to_html(3), "height must be"),
         (lambda: small.shape([{"op": "nothing"}]), "edits"),
         (lambda: small.at(3), "has no days"),

@@ -16,7 +16,7 @@ use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
-use mesh::{MaterialId, Model, Standing};
+use mesh::{Copies, MaterialId, Model, Standing};
 use plant::{AxisId, Plant};
 use sketch::SketchSpec;
 use skin::{Layout, OrganMaterial, SkinSpec, Worn};
@@ -160,6 +160,12 @@ pub struct PlantLevel {
 }
 
 impl PlantLevel {
+    /// The model without leaves that are one form, and these ([`skin::copies`]). None where it is not known what lies where.
+    pub fn copies(&self) -> Option<(Model, Vec<Copies>)> {
+        let (plant, layout) = self.laid_out.as_ref()?;
+        Some(skin::copies(plant, &self.model, layout))
+    }
+
     /// The triangles of a branch of `plant`, which this is a level of, and of all that it bears, as
     /// [`Layout::branch`] has them. None where that is not known, or the branch is too fine for the level.
     pub fn branch(&self, plant: &Plant, axis: AxisId) -> Option<Vec<Vec<Range<u32>>>> {

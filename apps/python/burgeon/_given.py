@@ -1,0 +1,88 @@
+"""What is passed, checked before it crosses into the core: errors name the argument, what it was, and what it may be."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import operator
+import os
+from typing import Any, Dict, Iterable, Mapping
+
+from .errors import SpecError
+
+ENDLESS = float("inf")
+
+
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number within its range; also one of NumPy."""
+    try:
+        # True is no number of anything.
+        number = operator.index(None if isinstance(value, bool) else value)
+    except TypeError:
+        bounds = f"a whole number, {least} to {most}"
+        if isinstance(value, float):
+            raise _beyond(name, f"{value:.17g}", bounds) from None
+        raise TypeError(f"{name} must be {bounds}, not {value!r}") from None
+    if not least <= number <= most:
+        raise _beyond(name, str(number), f"{least} to {most}")
+    return number
+
+
+def _beyond(name: str, value: str, bounds: str) -> SpecError:
+    """As the core says it."""
+    fields = {"field": name, "value": value, "range": bounds}
+    return SpecError(f"{name} must be {bounds}, not {value}", "field-range", fields)
+
+
+def number(name: str, value: Any, least: float = -ENDLESS, most: float = ENDLESS, unit: str = "") -> float:
+    """A finite number within its range; also one of NumPy."""
+    bounds = "" if math.isinf(least) else f"{least:g} to {most:g} {unit}".rstrip()
+    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__") or getattr(value, "shape", ()) != ():
+        raise TypeError(f"{name} must be a number{', ' + bounds if bounds else ''}, not {value!r}")
+    try:
+        real = float(value)
+    except OverflowError:
+        real = ENDLESS
+    if not math.isfinite(real) or not least <= real <= most:
+        raise _beyond(name, f"{real:.17g}" if isinstance(value, float) else str(value), bounds or "a finite number")
+    return real
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or False; also one of NumPy."""
+    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+        return bool(value)
+    raise TypeError(f"{name} must be True or False, not {value!r}")
+
+
+def word(name: str, value: Any) -> str:
+    """A text. Which words there are, the core knows."""
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{name} must be a text, not {value!r}")
+
+
+def table(name: str, value: Any) -> "Dict[str, Any]":
+    """A dict with texts as its keys; an empty one for None."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
+        raise TypeError(f"{name} must be a dict of names and values, not {value!r}")
+    return dict(value)
+
+
+def path(name: str, value: Any) -> str:
+    """A path. A number is none: as one it would be a file that is open."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.fsdecode(value)
+    raise TypeError(f"{name} must be a path, not {value!r}")
+
+
+def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
+    """Fails on a key that is not known, and says which is meant."""
+    known = list(known)
+    for key in given:
+        if key not in known:
+            near = difflib.get_close_matches(str(key), known, n=1, cutoff=0.5)
+            meant = f"; is {near[0]!r} meant?" if near else ""
+            raise SpecError(f"{name} has no {key!r}, it has {', '.join(known)}{meant}", "unknown-field", {"field": str(key)})

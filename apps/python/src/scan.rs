@@ -1,0 +1,119 @@
+//! Trees of laser scans.
+
+use burgeon::formats::CloudFormat;
+use burgeon::glam::DVec3;
+use burgeon::mesh::PointCloud;
+use burgeon::scan::{FoundTree, TreeScanSpec};
+use burgeon::skin::SkinSpec;
+use burgeon::{Report, ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::compute::compute;
+use crate::fault::{refused, unusable};
+use crate::held::{Found, Held};
+use crate::make::{Asked, Base};
+use crate::model::axes;
+use crate::plant::RawPlant;
+
+/// A scan: the bytes of a file and its extension, or points as bytes of `f64`, three each; and how a tree is sought in it.
+#[derive(FromPyObject)]
+pub(crate) struct Sought {
+    #[pyo3(item)]
+    file: Option<(Vec<u8>, String)>,
+    #[pyo3(item)]
+    points: Vec<u8>,
+    #[pyo3(item)]
+    unit: String,
+    #[pyo3(item)]
+    up: String,
+    /// The two coordinates that are not up, in the order and the unit of the scan.
+    #[pyo3(item)]
+    at: Option<[f64; 2]>,
+    #[pyo3(item)]
+    cell: Option<f64>,
+    #[pyo3(item)]
+    gap: Option<f64>,
+}
+
+/// A number that may be left out, within its range, metres.
+fn within(name: &str, value: Option<f64>, [least, most]: [f64; 2]) -> PyResult<Option<f64>> {
+    match value {
+        Some(value) if !(least..=most).contains(&value) => {
+            Err(PyValueError::new_err(format!("{name} must be {least} to {most} m, not {value}")))
+        }
+        value => Ok(value),
+    }
+}
+
+impl Sought {
+    /// The points, metres, +Y up.
+    fn cloud(&self, py: Python<'_>, name: &str, report: &mut Report) -> PyResult<Vec<DVec3>> {
+        let axes = axes(&self.unit, &self.up)?;
+        let Some((bytes, extension)) = &self.file else {
+            let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
+            let row = |row: &[u8]| DVec3::new(number(&row[..8]), number(&row[8..16]), number(&row[16..]));
+            return Ok(self.points.chunks_exact(24).map(|r| axes.inward(row(r))).collect());
+        };
+        let format = CloudFormat::from_extension(extension).or_else(|| CloudFormat::sniff(bytes));
+        let format = format.ok_or_else(|| {
+            unusable(py, &format!("{name}: is no cloud (.laz, .las, .ply, .xyz, .pcd, .obj)"))
+        })?;
+        let read = py.detach(|| burgeon::formats::read_cloud(&**bytes, format, &axes, report));
+        Ok(read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points)
+    }
+}
+
+/// A tree of a scan; `leaves`: the species whose leaves it gets, with the fields that are asked for.
+#[pyfunction]
+pub(crate) fn tree_of_scan(
+    py: Python<'_>,
+    name: &str,
+    sought: Sought,
+    leaves: Option<Base>,
+    asked: Asked<'_>,
+) -> PyResult<RawPlant> {
+    let budget = asked.budget()?;
+    let leaves = leaves.map(|base| asked.spec(py, &base.tree(py)?.0)).transpose()?;
+    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
+        return Err(unusable(py, &"leaves: this species bears no leaves of its own; name another"));
+    }
+    let (skin, wind) = asked.skin(py)?;
+    let mut report = Report::default();
+    let mut points = sought.cloud(py, name, &mut report)?;
+    let offset = PointCloud::far_offset(&points).unwrap_or_default();
+    points.iter_mut().for_each(|p| *p -= offset);
+    let spec = axes(&sought.unit, &sought.up)?;
+    let at = sought.at.map(|[a, b]| {
+        let file = if sought.up == "y" { DVec3::new(a, 0.0, b) } else { DVec3::new(a, b, 0.0) };
+        let p = spec.inward(file) - offset;
+        [p.x, p.z]
+    });
+    let (cell_m, gap_m) =
+        (within("cell", sought.cell, [0.001, 1.0])?, within("gap", sought.gap, [0.0, 5.0])?);
+    let options = ScanTreeOptions {
+        scan: TreeScanSpec { at, cell_m, gap_m, ..TreeScanSpec::default() },
+        leaves,
+        skin: SkinSpec { wind, ..skin },
+    };
+    let seed = asked.seed();
+    let made = compute(py, budget, |run| make_tree_from_scan(name, &points, &options, seed, run))?;
+    let (mut made, found) = made.map_err(|e| match e {
+        ScannedTreeError::Stopped(stopped) => refused(py, &burgeon::SceneError::from(stopped)),
+        other => unusable(py, &format!("{name}: {other}")),
+    })?;
+    made.item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+    let foot = found.foot + offset;
+    Ok(RawPlant(Held::lone(made, Some(Found { foot, tally: tally(&found), seed }), budget)))
+}
+
+/// What became of the points.
+fn tally(found: &FoundTree) -> serde_json::Value {
+    let t = &found.tally;
+    serde_json::json!({
+        "points": t.points, "ground": t.ground, "noise": t.noise, "others": t.others, "leaves": t.leaves,
+        "wood": t.wood, "other_things": t.other_things, "bridges": t.bridges, "cell_m": t.cell_m, "rings": t.rings,
+        "circles": t.circles, "pipe_exponent": t.pipe_exponent, "pipe_scatter": t.pipe_scatter,
+        "ground_found": found.ground.is_some(),
+    })
+}

@@ -1,0 +1,183 @@
+//! The files of a plant: its model, coarser copies beside it or in it, leaves as instances, joints that sway.
+
+use std::sync::Arc;
+
+use burgeon::SceneError;
+use burgeon::formats::{
+    Level, ModelFormat, Packing, PngCache, WriteError, write_glb_levels, write_glb_rigged,
+};
+use burgeon::mesh::{Copies, Model};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::compute::compute;
+use crate::fault::{refused, unusable};
+use crate::held::Held;
+use crate::model::{axes, model_format, written};
+
+/// How a plant is written, as Python asks for it.
+#[derive(FromPyObject)]
+pub(crate) struct Form {
+    #[pyo3(item)]
+    unit: String,
+    #[pyo3(item)]
+    up: String,
+    /// Coarser copies.
+    #[pyo3(item)]
+    lods: u32,
+    #[pyo3(item)]
+    one_file: bool,
+    #[pyo3(item)]
+    instances: bool,
+    #[pyo3(item)]
+    impostor: Option<u32>,
+    #[pyo3(item)]
+    pack: Option<String>,
+    #[pyo3(item)]
+    sway: bool,
+}
+
+fn refuse<T>(line: impl Into<String>) -> PyResult<T> {
+    Err(PyValueError::new_err(line.into()))
+}
+
+impl Form {
+    fn packing(&self) -> PyResult<Option<Packing>> {
+        Ok(match self.pack.as_deref() {
+            None => None,
+            Some("quantized") => Some(Packing::Quantized),
+            Some("meshopt") => Some(Packing::Compressed),
+            Some(other) => return refuse(format!("pack must be quantized or meshopt, not {other:?}")),
+        })
+    }
+
+    /// Fails on what nothing uses, and on what excludes another.
+    fn check(&self, format: ModelFormat, held: &Held) -> PyResult<()> {
+        let swung = self.sway || held.is_blown();
+        let textured =
+            matches!(format, ModelFormat::Glb | ModelFormat::Obj | ModelFormat::Usda | ModelFormat::Usdz);
+        let of_glb = [
+            ("pack", self.pack.is_some()),
+            ("one_file", self.one_file),
+            ("instances", self.instances),
+            ("sway", self.sway),
+        ];
+        if let Some((name, _)) = of_glb.iter().find(|(_, asked)| *asked && format != ModelFormat::Glb) {
+            return refuse(format!("{name} is of .glb files"));
+        }
+        if self.lods > 6 {
+            return refuse(format!("lods must be 0 to 6, not {}", self.lods));
+        }
+        if let Some(size) = self.impostor.filter(|size| !(128..=4096).contains(size)) {
+            return refuse(format!("impostor must be 128 to 4096 pixels, not {size}"));
+        }
+        if self.impostor.is_some() && !textured {
+            return refuse("impostor is of models with textures: .glb, .obj, .usda, .usdz");
+        }
+        if self.one_file && self.lods == 0 {
+            return refuse("one_file is of coarser copies: ask for lods");
+        }
+        if self.sway && (self.pack.is_some() || self.one_file) {
+            return refuse("what sways has files of its own for its levels, and is not packed");
+        }
+        if swung && (self.instances || self.impostor.is_some()) {
+            return refuse(
+                "instances and an impostor do not move in the wind: leave out sway, and make it without wind",
+            );
+        }
+        Ok(())
+    }
+}
+
+/// A model, and what it is without leaves that are one form.
+type Split = (Model, Option<(Model, Vec<Copies>)>);
+
+/// What is written of a model.
+fn level<'a>(model: &'a Model, split: Option<&'a (Model, Vec<Copies>)>) -> Level<'a> {
+    match split {
+        Some((rest, copies)) => Level { model: rest, copies },
+        None => Level::plain(model),
+    }
+}
+
+impl Held {
+    /// Whether it has columns for wind.
+    fn is_blown(&self) -> bool {
+        self.model().parts.iter().any(|p| !p.mesh.wind.is_empty())
+    }
+
+    /// Its coarser copies, finest first.
+    fn coarser(&self, py: Python<'_>, form: &Form) -> PyResult<Vec<Split>> {
+        let mut all = Vec::new();
+        for level in 1..=form.lods {
+            let made = compute(py, self.budget, |run| -> Result<Split, SceneError> {
+                if let Some(lone) = &self.lone {
+                    return Ok((lone.at_level(level, run)?, None));
+                }
+                let Some(plant) = self.document.plant(self.id) else {
+                    return Ok((self.model().clone(), None));
+                };
+                let at = self.scene.level(plant, &self.document, level, run)?;
+                let split = if form.instances { at.copies() } else { None };
+                Ok((at.model, split))
+            })?;
+            all.push(made.map_err(|e| refused(py, &e))?);
+        }
+        if let Some(size) = form.impostor {
+            let made = compute(py, self.budget, |run| burgeon::render::impostor(self.model(), size, run))?;
+            all.extend(made.map_err(|e| refused(py, &SceneError::from(e)))?.map(|far| (far, None)));
+        }
+        Ok(all)
+    }
+}
+
+/// The files of a plant's model by its extension: names and bytes, the model's own first, then its coarser copies.
+pub(crate) fn files<'py>(
+    py: Python<'py>,
+    plant: &Arc<Held>,
+    (extension, stem): (&str, &str),
+    form: &Form,
+) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+    let (format, spec) = (model_format(extension)?, axes(&form.unit, &form.up)?);
+    let packing = form.packing()?;
+    form.check(format, plant)?;
+    let held = if form.sway && !plant.is_blown() {
+        plant.after_with(py, Some(true), [])?
+    } else {
+        Arc::clone(plant)
+    };
+    let coarser = held.coarser(py, form)?;
+    let files = py.detach(|| -> Result<Vec<(String, Vec<u8>)>, WriteError> {
+        let model = held.model();
+        let split = form.instances.then(|| burgeon::skin::copies(held.plant(), model, held.layout()));
+        let models = std::iter::once((model, split.as_ref()));
+        let models: Vec<_> = models.chain(coarser.iter().map(|(m, s)| (m, s.as_ref()))).collect();
+        let levels: Vec<Level<'_>> = models.iter().map(|(model, split)| level(model, *split)).collect();
+        let mut cache = PngCache::new();
+        if form.one_file {
+            let mut bytes = Vec::new();
+            write_glb_levels(&levels, packing, &mut cache, &mut bytes)?;
+            return Ok(vec![(format!("{stem}.{extension}"), bytes)]);
+        }
+        let mut files = Vec::new();
+        for (k, (level, (model, _))) in levels.iter().zip(&models).enumerate() {
+            let stem = if k == 0 { stem.to_owned() } else { format!("{stem}-lod{k}") };
+            let rig = form.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten();
+            if let (ModelFormat::Glb, Some(rig)) = (format, rig) {
+                let mut bytes = Vec::new();
+                write_glb_rigged(model, &rig, &mut cache, &mut bytes)?;
+                files.push((format!("{stem}.{extension}"), bytes));
+            } else if format == ModelFormat::Glb {
+                let mut bytes = Vec::new();
+                write_glb_levels(std::slice::from_ref(level), packing, &mut cache, &mut bytes)?;
+                files.push((format!("{stem}.{extension}"), bytes));
+            } else {
+                files.extend(written(model, format, extension, &stem, &spec)?);
+            }
+        }
+        Ok(files)
+    });
+    let files = files.map_err(|e| unusable(py, &e))?;
+    Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
+}

@@ -1,0 +1,204 @@
+"""What is written beside the plain model, and plants of other settings: the bytes and digests of the command line."""
+
+import numpy as np
+import pytest
+
+import burgeon as bg
+
+SMALL = {"seed": 3, "age": 4, "detail": 0.2}
+ASKED = ("--seed", 3, "--age", 4, "--detail", 0.2)
+
+
+@pytest.mark.parametrize(
+    "name, how, words",
+    [
+        ("a.glb", {"lods": 2}, ["--lods", 2]),
+        ("a.glb", {"lods": 1, "one_file": True, "instances": True}, ["--lods", 1, "--lod-file", "one", "--instances"]),
+        ("a.glb", {"pack": "meshopt", "impostor": 128}, ["--pack", "meshopt", "--impostor", 128]),
+        ("a.glb", {"sway": True}, ["--sway"]),
+        ("a.obj", {"lods": 1, "up": "z", "unit": "cm"}, ["--lods", 1, "--up", "z", "--unit", "cm"]),
+    ],
+)
+def test_files_are_those_of_the_command_line(cli, tmp_path, name, how, words):
+    mine, theirs = tmp_path / "mine", tmp_path / "theirs"
+    mine.mkdir()
+    theirs.mkdir()
+    bg.grow("hazel", **SMALL).save(mine / name, **how)
+    cli("grow", "hazel", *ASKED, *words, "-o", theirs / name)
+    names = sorted(p.name for p in theirs.iterdir())
+    assert sorted(p.name for p in mine.iterdir()) == names and name in names
+    for file in names:
+        assert (mine / file).read_bytes() == (theirs / file).read_bytes(), file
+
+
+def test_leaves_on_cards_are_those_of_the_command_line(cli):
+    mine = bg.grow("hazel", **SMALL, foliage="cards", texture_size=64, look={"season": 0.5})
+    words = ("--foliage", "cards", "--textures", 64, "--season", 0.5, "--png", "x.png", "--size", "16x16")
+    assert mine.digest == cli("grow", "hazel", *ASKED, *words)["digest"] != bg.grow("hazel", **SMALL).digest
+
+
+def test_a_leaf_of_ones_own_is_that_of_the_command_line(cli, root, shown, tmp_path):
+    marks = root / "fixtures/leaves/leaf1.csv"
+    mine = bg.grow("hazel", **SMALL, leaf=bg.leaf(marks, seed=3))
+    theirs = cli("grow", "hazel", *ASKED, "--leaf-template", marks, "--json")["digest"]
+    assert mine.digest == theirs != bg.grow("hazel", **SMALL).digest
+    # A spec that names it does the same, and a project keeps it.
+    (tmp_path / "leaf1.csv").write_bytes(marks.read_bytes())
+    spec = tmp_path / "hazel.toml"
+    spec.write_text(shown("hazel").replace("[blade]", '[blade]\nfile = "leaf1.csv"'))
+    assert 'file = "leaf1.csv"' in spec.read_text()
+    again = bg.grow(spec, **SMALL)
+    assert again.digest == theirs
+    again.save(tmp_path / "x.burgeon")
+    (opened,) = bg.open(tmp_path / "x.burgeon")
+    assert opened.digest == theirs
+    with pytest.raises(bg.SpecError, match="leaf must be a leaf of marks"):
+        bg.grow("hazel", leaf=mine)
+    spec.write_text(spec.read_text().replace("leaf1.csv", "none.csv"))
+    with pytest.raises(bg.SpecError, match=r"blade.file .none.csv"):
+        bg.grow(spec)
+
+
+@pytest.mark.parametrize(
+    "name, how, words",
+    [
+        ("x.glb", {"lods": 7}, "lods must be 0 to 6, not 7"),
+        ("x.glb", {"impostor": 64}, "impostor must be 128 to 4096"),
+        ("x.glb", {"pack": "zip"}, "pack must be quantized or meshopt"),
+        ("x.glb", {"one_file": True}, "one_file is of coarser copies"),
+        ("x.glb", {"sway": True, "pack": "meshopt"}, "sways"),
+        ("x.glb", {"sway": True, "instances": True}, "do not move in the wind"),
+        ("x.obj", {"sway": True}, "sway is of .glb files"),
+        ("x.stl", {"impostor": 128}, "of models with textures"),
+        ("x.mtg", {"lods": 1}, "lods is of models, not of .mtg files"),
+    ],
+)
+def test_what_nothing_uses_is_refused(small, tmp_path, name, how, words):
+    with pytest.raises(ValueError, match=words):
+        small.save(tmp_path / name, **how)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_plant_is_used_after_it_was_written(tmp_path):
+    """From other threads at the same time, too: writing takes nothing away."""
+    import threading
+
+    plant = bg.grow("hazel", **SMALL)
+    before = (plant.digest, plant.nodes.position.copy(), plant.to_bytes("glb"))
+    failed = []
+
+    def write(k):
+        try:
+            plant.save(tmp_path / f"{k}.glb", lods=1)
+            assert plant.to_bytes("glb") == (tmp_path / f"{k}.glb").read_bytes() == before[2]
+            assert plant.at if k else plant.again(seed=8).digest != before[0]
+        except BaseException as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=write, args=(k,)) for k in range(3)]
+    [t.start() for t in threads]
+    [t.join() for t in threads]
+    assert not failed and plant.digest == before[0] and (plant.nodes.position == before[1]).all()
+
+
+def test_other_settings_make_the_plant_that_has_them(small):
+    plain = {"detail": 0.2, "textures": False}
+    assert small.again().digest == small.digest
+    assert small.again(seed=8).digest == bg.grow("hazel", seed=8, age=4, **plain).digest
+    fewer = {"age": 6, "leaves": {"leaf_keep": 0.5}}
+    assert small.again(**fewer).digest == bg.grow("hazel", seed=3, **fewer, **plain).digest
+    assert small.again(detail=0.4).model.triangle_count > small.model.triangle_count
+    assert len(small.again(wind=True).model.parts[0].wind) > 0
+    rose = bg.bloom("rose", 1.0, seed=2)
+    assert rose.again(day=3.0, stalk_m=0.4).digest == bg.bloom("rose", 3.0, seed=2, stalk_m=0.4).digest
+    assert bg.leaf().again(form={"lobes": 0.4}).digest == bg.leaf(form={"lobes": 0.4}).digest
+    box = {"shape": "box", "min": [0.2, 0, -1], "max": [1, 2, 1]}
+    shapes = bg.schema("tree")["$defs"]["Obstacle"]["oneOf"]
+    assert any(one["properties"]["shape"].get("const") == "box" for one in shapes if "shape" in one["properties"]), shapes
+    around = small.again(obstacles=[box])
+    assert around.digest == bg.grow("hazel", seed=3, age=4, obstacles=[box], **plain).digest != small.digest
+    assert around.again(obstacles=[]).digest == small.digest
+
+
+def test_other_settings_keep_what_was_done_by_hand(small, root):
+    cut = small.shape([{"op": "prune", "axis": {"path": small.branches(1)[1]["path"]}, "at": 0.3}])
+    other = cut.again(look={"leaf_color": "#804020"})
+    assert len(other.nodes) == len(cut.nodes) < len(small.nodes) and other.digest != cut.digest
+    assert other.report["edits"][0]["done"]
+    for plant in bg.open(root / "fixtures/projects/version-5.burgeon"):
+        assert plant.again().digest == plant.digest
+        assert plant.again(seed=77).place == plant.place
+
+
+@pytest.mark.parametrize(
+    "how, words",
+    [
+        ({"day": 3}, "has no days"),
+        ({"leave": {}}, "is `leaves` meant"),
+        ({"detail": 99}, "detail must be 0.1 to 8"),
+        ({"seed": -1}, "seed must be a whole number"),
+        ({"age": float("inf")}, "age must be a finite number"),
+    ],
+)
+def test_settings_that_are_none_are_told(small, how, words):
+    with pytest.raises(ValueError, match=words):
+        small.again(**how)
+
+
+def test_flowers_have_no_fineness():
+    with pytest.raises(ValueError, match="of trees and drawings"):
+        bg.bloom("rose").again(detail=0.3)
+
+
+@pytest.fixture(scope="module")
+def oak():
+    return bg.grow("oak", seed=2, age=12, detail=0.2, textures=False, bare=True)
+
+
+def test_scanned_trees_are_those_of_the_command_line(cli, oak, tmp_path):
+    pytest.importorskip("laspy")
+    cloud = oak.cloud(60_000, stations=6)
+    cloud.save(tmp_path / "oak.laz")
+    mine = bg.scan(tmp_path / "oak.laz", leaves="hazel", detail=0.2, textures=False)
+    theirs = cli("scan", tmp_path / "oak.laz", "--leaves", "hazel", "--detail", "0.2", "--no-textures", "-o", tmp_path / "x.glb")
+    assert mine.digest == theirs["digest"] and mine.report["counts"] == theirs["counts"]
+    assert mine.maker == "scan" and len(mine.organs) > 0 and mine.found["points"] == 60_000
+
+
+def test_a_tree_comes_back_from_its_cloud(oak, tmp_path):
+    cloud = oak.cloud(60_000, stations=6)
+    found = bg.scan(cloud.points, up="y", detail=0.2, textures=False)
+    mine, theirs = found.measures(), oak.measures()
+    assert mine["height_m"] == pytest.approx(theirs["height_m"], rel=0.02)
+    assert np.abs(found.place[0]).max() < 0.05
+    # Where it stood is told, far from the origin, too; the tree is the same but for the last bits of its coordinates.
+    far = bg.scan(cloud.points[:, [0, 2, 1]] * [1, -1, 1] + [430_000.0, 5_600_000.0, 120.0], detail=0.2, textures=False)
+    assert np.allclose(far.place[0], np.array([430_000, 120, -5_600_000]) + found.place[0], atol=0.02)
+    assert far.measures()["height_m"] == pytest.approx(mine["height_m"], rel=0.01)
+    found.save(tmp_path / "x.qsm.csv")
+    found.save(tmp_path / "x.glb", lods=1)
+    assert (tmp_path / "x-lod1.glb").exists()
+    with pytest.raises(bg.SpecError, match="no project"):
+        found.save(tmp_path / "x.burgeon")
+    with pytest.raises(bg.SpecError, match="no edits by hand"):
+        found.shape([])
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: bg.scan(np.zeros((9, 2))), r"shape \(points, 3\)"),
+        (lambda: bg.scan(np.full((9, 3), np.nan)), "finite"),
+        (lambda: bg.scan(np.array([["a", "b", "c"]])), "a scan is numbers"),
+        (lambda: bg.scan(np.zeros((9, 3))), "scan: "),
+        (lambda: bg.scan(np.zeros((0, 3))), "scan: "),
+        (lambda: bg.scan(np.random.default_rng(1).random((500, 3)), cell=7), "cell must be 0.001 to 1 m, not 7"),
+        (lambda: bg.scan(np.random.default_rng(1).random((500, 3)), gap=-1), "gap must be 0 to 5 m"),
+        (lambda: bg.scan(np.zeros((9, 3)), leaves="dead-oak"), "bears no leaves"),
+        (lambda: bg.scan(np.zeros((9, 3)), up="x"), "up must be y or z"),
+        (lambda: bg.scan(np.zeros((9, 3)), budget=0), "budget must be 1 to 1000"),
+    ],
+)
+def test_what_is_no_scan_is_told(call, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        call()
