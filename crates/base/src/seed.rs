@@ -132,6 +132,14 @@ impl Stream {
         (-2.0 * ops::ln(u)).sqrt() * ops::cos(ops::TAU * v)
     }
 
+    /// Two that know nothing of each other, as [`normal`](Self::normal): for little more than one.
+    pub fn normals(&mut self) -> [f64; 2] {
+        let u = 1.0 - self.uniform();
+        let (sin, cos) = ops::sin_cos(ops::TAU * self.uniform());
+        let far = (-2.0 * ops::ln(u)).sqrt();
+        [far * cos, far * sin]
+    }
+
     /// True with probability `p`.
     pub fn chance(&mut self, p: f64) -> bool {
         self.uniform() < p

@@ -618,8 +618,9 @@ impl Growing {
         let across = tip.heading.cross(tip.side);
         let jitter = self.spec.jitter_deg * (PI / 180.0);
         for (k, azimuth) in (0_u64..).zip(self.numbers.phyllotaxis.azimuths(tip.rank)) {
-            let turn = azimuth + jitter * stream.normal();
-            let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * stream.normal();
+            let [aside, open] = stream.normals();
+            let turn = azimuth + jitter * aside;
+            let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * open;
             let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
             let heading = (tip.heading * ct + (tip.side * ca + across * sa) * st).normalize_or(tip.heading);
             self.buds.push(Bud {

@@ -91,7 +91,7 @@ pub(crate) fn branch_depths(plans: &mut Plans, mode: BranchDepth, seed: Seed) {
             })
             .collect();
         let only: Vec<Child> = seen.iter().map(|s| s.0.clone()).collect();
-        let turned = most_entropy(&only, mode);
+        let turned = most_entropy(&only, mode, |_, _| true);
         for (((c, along, across), phi), &row) in seen.iter().zip(turned).zip(borne.iter()) {
             let Some(plan) = plans.rows[row].as_mut() else { continue };
             let node = plan.bearer.map_or(0, |b| b.1);
@@ -104,7 +104,8 @@ pub(crate) fn branch_depths(plans: &mut Plans, mode: BranchDepth, seed: Seed) {
     }
 }
 
-/// Several axes that stand on the ground fan out about the plumb line through the first of the longest.
+/// Several axes that stand on the ground fan out about the plumb line through the first of the longest. Those whose feet are
+/// farther apart than the longer of them is long are of plants side by side, and do not see each other.
 fn spread_ground(plans: &mut Plans, ground: &[usize], mode: BranchDepth, seed: Seed) {
     let standing: Vec<usize> = ground.to_vec();
     if standing.len() < 2 {
@@ -120,7 +121,14 @@ fn spread_ground(plans: &mut Plans, ground: &[usize], mode: BranchDepth, seed: S
         .iter()
         .filter_map(|&row| plans.rows[row].as_ref().map(|p| child(p, DVec2::Y, 0.0, mode, seed)))
         .collect();
-    let turned = most_entropy(&children, mode);
+    let feet: Vec<(DVec2, f64)> = standing
+        .iter()
+        .filter_map(|row| Some((plans.rows[*row].as_ref()?.points[0].truncate(), length(row))))
+        .collect();
+    let turned = most_entropy(&children, mode, |i, j| {
+        let ((a, high), (b, other)) = (feet[i], feet[j]);
+        a.distance(b) <= high.max(other)
+    });
     for ((c, phi), &row) in children.iter().zip(turned).zip(&standing) {
         let Some(plan) = plans.rows[row].as_mut() else { continue };
         let own = plan.points[0].truncate();
@@ -165,18 +173,25 @@ fn child(plan: &AxisPlan, along: DVec2, rise: f64, mode: BranchDepth, seed: Seed
 ///
 /// `paper`: `alpha * mean angle + beta * mean exp(-lengthening)`; `riesz`: `-alpha * mean 1/angle^2` instead, since
 /// the sum of angles cannot tell an even spread from two clumps (docs/papers.md). alpha = beta = 1. Siblings in the
-/// order of their places along the bearer.
-pub(crate) fn most_entropy(children: &[Child], mode: BranchDepth) -> Vec<f64> {
+/// order of their places along the bearer; `sees`: which of those near in that order see each other.
+pub(crate) fn most_entropy(
+    children: &[Child],
+    mode: BranchDepth,
+    sees: impl Fn(usize, usize) -> bool,
+) -> Vec<f64> {
     let n = children.len();
     let mut phi: Vec<f64> = children.iter().map(|c| c.first).collect();
     let mut dir: Vec<DVec3> = children.iter().zip(&phi).map(|(c, &p)| c.direction(p)).collect();
-    #[expect(clippy::cast_precision_loss, reason = "counts")]
-    let (pairs, count) = ((n * n.min(SEEN * 2 + 1).saturating_sub(1)) as f64 / 2.0, n.max(1) as f64);
+    let window = |i: usize| (i.saturating_sub(SEEN)..(i + SEEN + 1).min(n)).filter(move |&j| j != i);
+    let near: Vec<Vec<usize>> = (0..n).map(|i| window(i).filter(|&j| sees(i, j)).collect()).collect();
+    let most = n.min(SEEN * 2 + 1).saturating_sub(1);
     let score = |i: usize, own: DVec3, at: f64, dir: &[DVec3]| {
-        let near = i.saturating_sub(SEEN)..(i + SEEN + 1).min(n);
-        let angles: f64 = near
-            .filter(|&j| j != i)
-            .map(|j| {
+        let seen = most - (window(i).count() - near[i].len());
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (pairs, count) = ((n * seen) as f64 / 2.0, n as f64);
+        let angles: f64 = near[i]
+            .iter()
+            .map(|&j| {
                 let theta = ops::acos_clamped(own.dot(dir[j]));
                 match mode {
                     BranchDepth::Paper => theta,
@@ -209,7 +224,8 @@ pub(crate) fn most_entropy(children: &[Child], mode: BranchDepth) -> Vec<f64> {
             }
             if best.1.to_bits() != phi[i].to_bits() {
                 (phi[i], dir[i]) = (best.1, best.2);
-                settled[i.saturating_sub(SEEN)..(i + SEEN + 1).min(n)].fill(false);
+                settled[i] = false;
+                near[i].iter().for_each(|&j| settled[j] = false);
             }
         }
         if !moved {
@@ -294,8 +310,8 @@ mod tests {
     fn riesz_spreads_where_the_sum_of_angles_clumps() {
         // Three on each side: the sum of angles is as large for two opposite clumps as for an even spread.
         let children = whorl(3, 3, |i| [0.20, 0.22, 0.24, -0.20, -0.22, -0.24][i]);
-        let paper = least_angle(&children, &most_entropy(&children, BranchDepth::Paper));
-        let riesz = least_angle(&children, &most_entropy(&children, BranchDepth::Riesz));
+        let paper = least_angle(&children, &most_entropy(&children, BranchDepth::Paper, |_, _| true));
+        let riesz = least_angle(&children, &most_entropy(&children, BranchDepth::Riesz, |_, _| true));
         assert!(riesz > 2.0 * paper.max(0.05), "riesz {riesz}, paper {paper}");
         assert!(riesz > 0.45, "{riesz}");
     }
@@ -304,11 +320,43 @@ mod tests {
     fn rotations_stay_in_bounds_and_on_their_side() {
         let children = whorl(9, 2, |i| if i % 2 == 0 { 1.1 } else { -1.1 });
         for mode in [BranchDepth::Paper, BranchDepth::Riesz] {
-            for (c, phi) in children.iter().zip(most_entropy(&children, mode)) {
+            for (c, phi) in children.iter().zip(most_entropy(&children, mode, |_, _| true)) {
                 assert!(phi.abs() <= MOST + 1e-12);
                 assert!(c.direction(phi).y * c.side > 0.0);
             }
         }
+    }
+
+    #[test]
+    fn plants_side_by_side_are_turned_each_by_itself() {
+        let stem = |x: f64, lean: f64, source: u32| AxisReading {
+            points: (0..=20).map(|i| DVec2::new(x + lean * f64::from(i), 0.01 * f64::from(i))).collect(),
+            kind: AxisKind::Stem,
+            bearer: None,
+            half_width: vec![],
+            source: Some(source),
+        };
+        // Tufts of four stems of 0.2, 0.5 apart.
+        let tufts = |count: u32| {
+            let stems = (0..4 * count).map(|k| {
+                let (tuft, own) = (f64::from(k / 4), f64::from(k % 4));
+                stem(0.5 * tuft + 0.01 * own, 0.002 * (own - 1.5), k)
+            });
+            let mut plans = Plans::new(&Reading { axes: stems.collect(), ..Reading::default() });
+            branch_depths(&mut plans, BranchDepth::Riesz, Seed::new(3));
+            plans
+        };
+        // Less the depth of their feet, which follows from the longest of all.
+        let deep = |plans: &Plans, row: usize| {
+            let points = &plans.rows[row].as_ref().expect("a stem").points;
+            points.iter().map(|p| p.z - points[0].z).collect::<Vec<f64>>()
+        };
+        let (one, many) = (tufts(1), tufts(30));
+        for row in 0..4 {
+            let (a, b) = (deep(&one, row), deep(&many, row));
+            assert!(a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-12), "{row}");
+        }
+        assert!(deep(&one, 0).last().is_some_and(|z| z.abs() > 1e-3));
     }
 
     fn tree() -> Reading {
