@@ -7,7 +7,7 @@ mod near;
 
 use base::{Draw, Report, Run, Seed, map_indexed};
 use geom::{Ball, BallBSpline, HeightField, KdTree, SplineError, one_a_cube};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use self::near::{Near, segment_distance};
 use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
@@ -84,6 +84,22 @@ const MOST_POINTS: usize = 32 << 20;
 const SAMPLE: usize = 100_000;
 /// Points whose surroundings are looked at for a stalk.
 const STALK_SAMPLE: usize = 4096;
+/// A point is no stray with company this near, as a share of the size of the leaf: a stalk is covered by few points where the
+/// cloud is sparse.
+const COMPANY: f64 = 0.15;
+/// A line: the second of its variances is at most this share of the first, which is a strip three times as long as wide; the
+/// margin of a blade has 0.25 and more. And how far around, in reaches, the places lie whose median counts.
+const SLIM: f64 = 0.09;
+const AROUND: f64 = 0.5;
+/// Neighbours that show a direction.
+const FEW: usize = 8;
+/// Gaps that belong to a stalk, as a share of the deviation of the cloud along itself, which is 0.29 of its length.
+const GAP: f64 = 0.7;
+/// Directions that are tried for the midrib of a leaf without a stalk, and how long the blade must be along it, of the longest.
+const WAYS: u32 = 36;
+const AS_LONG: f64 = 0.85;
+/// Cubes along a leaf of which each counts once where its plane is laid, however dense the cloud is there.
+const EVEN: f64 = 40.0;
 
 /// The plane in which the blade is seen: x across, y from base to tip, z the upper side.
 #[derive(Clone, Copy)]
@@ -209,6 +225,8 @@ struct Sample {
     points: Vec<DVec3>,
     /// How far it is from a point to its sixth neighbour, mostly.
     spacing: f64,
+    /// A point without others within this distance is a stray.
+    alone: f64,
     /// Those with company and those without, and which are without.
     all: KdTree,
     stray: Vec<bool>,
@@ -244,16 +262,17 @@ impl Sample {
         // outliers: most points crowd in a part of the leaf then, and the others tell how wide the spacing is. On an
         // even sheet the tenth is at 4/3 of the median.
         let spacing = if tenth > 4.0 * median { 0.75 * tenth } else { median };
-        let stray: Vec<bool> = sixth.iter().map(|&d| d > 4.0 * spacing).collect();
+        let alone = (4.0 * spacing).max(COMPANY * size);
+        let stray: Vec<bool> = sixth.iter().map(|&d| d > alone).collect();
         let good: Vec<DVec3> = points.iter().zip(&stray).filter(|(_, s)| !**s).map(|(p, _)| *p).collect();
         let evenly = if spacing > 0.0 && spacing.is_finite() { 0.25 * spacing } else { return None };
         let kept = one_a_cube(&good, evenly).into_iter().map(|i| good[i as usize]).collect();
-        Some(Self { points: kept, spacing, all: tree, stray, bounds })
+        Some(Self { points: kept, spacing, alone, all: tree, stray, bounds })
     }
 
     /// True for a point of the cloud far from its neighbours: the next one of the sample tells.
     fn is_stray(&self, p: DVec3) -> bool {
-        !within(p, self.bounds) || self.all.nearest(p, 4.0 * self.spacing).is_none_or(|k| self.stray[k])
+        !within(p, self.bounds) || self.all.nearest(p, self.alone).is_none_or(|k| self.stray[k])
     }
 }
 
@@ -297,31 +316,40 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     let reach = (0.45 * variances[0].sqrt()).max(3.0 * spacing);
     let few = some(points, STALK_SAMPLE);
     let tree = KdTree::new(&few);
-    let line = map_indexed(run.executor, few.len(), |k| {
+    let slim = map_indexed(run.executor, few.len(), |k| {
         let mut near = Vec::new();
-        tree.within(few[k], reach, &mut near);
+        let mut away = [0.0; FEW + 1];
+        tree.nearest_distances(few[k], &mut away);
+        tree.within(few[k], reach.max(1.001 * away[FEW]), &mut near);
         // At most 64 neighbours, evenly taken: enough for a direction.
         let step = near.len().div_ceil(64).max(1);
         let near: Vec<DVec3> = near.iter().step_by(step).map(|&i| few[i]).collect();
-        // 0.06: a strip four times as long as wide; the margin of a blade has 0.25 and more.
-        geom::pca3(&near).is_some_and(|(_, _, v)| near.len() >= 5 && v[1] < 0.06 * v[0])
+        geom::pca3(&near).filter(|_| near.len() >= FEW).map_or(1.0, |(_, _, v)| v[1] / v[0].max(1e-300))
     });
-    let next = map_indexed(run.executor, points.len(), |k| tree.nearest(points[k], f64::INFINITY));
-    let line: Vec<bool> = next.into_iter().map(|k| k.is_some_and(|k| line[k])).collect();
-    let link = 4.0 * spacing;
-    let linked = KdTree::new(points);
-    let (group, groups) = pieces(points, &linked, link, |i| line[i]);
+    // Of few points one place says little: the median of those around it does.
+    let line = map_indexed(run.executor, few.len(), |k| {
+        let mut near = Vec::new();
+        tree.within(few[k], AROUND * reach, &mut near);
+        let mut all: Vec<f64> = near.iter().map(|&i| slim[i]).collect();
+        base::sort_numbers(&mut all);
+        all[all.len() / 2] < SLIM
+    });
+    let apart = (4.0 * spacing).max(GAP * variances[0].sqrt());
+    let (group, groups) = pieces(&few, &tree, apart, |i| line[i]);
     let extent = |members: &[usize]| {
-        let first = points[members[0]];
-        let far = members.iter().map(|&i| points[i].distance(first)).fold(0.0, f64::max);
-        members.iter().map(|&i| points[i].distance(first)).fold(far, f64::max)
+        let first = few[members[0]];
+        let far = members.iter().map(|&i| few[i].distance(first)).fold(0.0, f64::max);
+        members.iter().map(|&i| few[i].distance(first)).fold(far, f64::max)
     };
     let longest = groups.iter().enumerate().map(|(k, m)| (k, extent(m), m.len()));
     let longest = longest.filter(|g| g.2 >= 10).max_by(|a, b| a.1.total_cmp(&b.1));
     // A scrap of margin is no stalk: it must be a good part of the leaf.
     let stalk = longest.filter(|g| g.1 > 0.5 * variances[0].sqrt()).map(|g| g.0);
     let Some(stalk) = stalk else { return vec![false; points.len()] };
-    let mut thin: Vec<bool> = group.iter().map(|&g| g == Some(stalk)).collect();
+    let next = map_indexed(run.executor, points.len(), |k| tree.nearest(points[k], f64::INFINITY));
+    let mut thin: Vec<bool> = next.into_iter().map(|k| k.is_some_and(|k| group[k] == Some(stalk))).collect();
+    let link = 4.0 * spacing;
+    let linked = KdTree::new(points);
     // The largest rest is the blade. Another piece belongs to what is nearer to it: the loose end of a stalk to
     // the stalk, the far side of a hole to the blade.
     let (rest, rests) = pieces(points, &linked, link, |i| !thin[i]);
@@ -380,7 +408,10 @@ fn pieces(
 }
 
 fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plane> {
-    let (centre, axes, variances) = geom::pca3(blade)?;
+    let [low, high] = usual_box(blade)?;
+    let even: Vec<DVec3> =
+        one_a_cube(blade, (high - low).max_element() / EVEN).into_iter().map(|i| blade[i as usize]).collect();
+    let (centre, axes, variances) = geom::pca3(&even)?;
     if variances[1] <= 1e-9 * variances[0] {
         return None;
     }
@@ -392,21 +423,50 @@ fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plan
         // From where the stalk joins across the middle of the blade.
         Some((_, join)) => centre - join,
         None => {
-            let along = |p: &DVec3| (*p - centre).dot(axes[0]);
-            let far = blade.iter().map(along).fold(0.0_f64, |a, b| a.max(b.abs()));
-            let third = |sign: f64| {
-                let end = blade.iter().filter(|p| sign * along(p) > 0.5 * far);
-                end.map(|p| (*p - centre).dot(axes[1]).abs()).fold(0.0, f64::max)
-            };
             report.warn(
                 "no-stalk",
                 "no stalk was found: the broader end was taken for the base, which may be wrong",
             );
-            if third(1.0) > third(-1.0) { -axes[0] } else { axes[0] }
+            let flat: Vec<DVec2> = even
+                .iter()
+                .map(|p| DVec2::new((*p - centre).dot(axes[0]), (*p - centre).dot(axes[1])))
+                .collect();
+            let way = mirror_line(&flat);
+            let along = flat.iter().map(|p| p.dot(way));
+            let (low, high) = along.fold((0.0_f64, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
+            // The middle of the blade is nearer to its broader end.
+            let way = if high > -low { way } else { -way };
+            axes[0] * way.x + axes[1] * way.y
         }
     };
     let y = (y - z * y.dot(z)).try_normalize()?;
     Some(Plane { origin: centre, x: y.cross(z), y, z })
+}
+
+/// The way along a blade: of the directions in which it is nearly as long as it can be that about which its two sides are
+/// most alike. A long blade leaves no choice; of a round one the longest direction is chance.
+fn mirror_line(flat: &[DVec2]) -> DVec2 {
+    let lift = |p: &DVec2| p.extend(0.0);
+    let tree = KdTree::new(&flat.iter().map(lift).collect::<Vec<DVec3>>());
+    let ways: Vec<(DVec2, f64)> = (0..WAYS)
+        .map(|k| {
+            let (sin, cos) = base::ops::sin_cos(base::ops::PI * f64::from(k) / f64::from(WAYS));
+            let way = DVec2::new(cos, sin);
+            let mut along: Vec<f64> = flat.iter().map(|p| p.dot(way)).collect();
+            base::sort_numbers(&mut along);
+            // One in a hundred at either end may be a rag.
+            let cut = along.len() / 100;
+            (way, along[along.len() - 1 - cut] - along[cut])
+        })
+        .collect();
+    let longest = ways.iter().map(|w| w.1).fold(0.0, f64::max);
+    let unlike = |way: DVec2| {
+        let other = |p: &DVec2| 2.0 * p.dot(way) * way - *p;
+        let gap = |p: DVec2| Some(flat[tree.nearest(p.extend(0.0), f64::INFINITY)?].distance(p));
+        flat.iter().filter_map(|p| gap(other(p))).sum::<f64>()
+    };
+    let able = ways.iter().filter(|w| w.1 >= AS_LONG * longest).map(|w| (unlike(w.0), w.0));
+    able.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(DVec2::X, |w| w.1)
 }
 
 /// The surface, by repeated fits that count far points less (Tukey's biweight).
@@ -674,10 +734,8 @@ base::coded!(ScanError {
 
 #[cfg(test)]
 mod tests {
-    use base::{Draw, Seed, ops};
-    use glam::DVec2;
-
     use super::*;
+    use base::{Draw, Seed, ops};
 
     /// A leaf of 60 mm with a stalk of 40 mm, bent and folded, noise 0.2 mm, a hole and strays.
     fn cloud() -> Vec<DVec3> {
@@ -783,6 +841,29 @@ mod tests {
         for (what, leaf) in [("repeated", repeated), ("crowd", crowd), ("strays", strays)] {
             assert!((length(&leaf) - length(&plain)).abs() < 0.004, "{what}: {}", length(&leaf));
             assert!(leaf.covered > 0.93 && leaf.outliers < 100, "{what}: {} {}", leaf.covered, leaf.outliers);
+        }
+    }
+
+    #[test]
+    fn a_round_leaf_lies_along_its_midrib_however_dense_it_is() {
+        // As wide as long, two sides alike, a broad base: the longest direction of its points is chance.
+        let mut s = Seed::new(8).stream(Draw::Test);
+        let way = DVec2::new(0.6, 0.8);
+        let mut all = Vec::new();
+        while all.len() < 6000 {
+            let (x, y) = (s.range(-0.025, 0.025), s.range(0.0, 0.05));
+            let v = y / 0.05;
+            if x.abs() < 0.0335 * ops::powf(v, 0.35) * (1.0 - v) * (1.0 + v) {
+                let flat = way * y + way.perp() * x;
+                all.push(DVec3::new(flat.x, 0.2 * x.abs() + 0.0001 * s.normal(), flat.y));
+            }
+        }
+        for step in [1, 2, 4] {
+            let few: Vec<DVec3> = all.iter().copied().step_by(step).collect();
+            let midrib = found(&few).midrib();
+            let chord = (midrib[midrib.len() - 1] - midrib[0]).normalize();
+            let along = DVec2::new(chord.x, chord.z).dot(way);
+            assert!(along > 0.96, "{step}: {along}");
         }
     }
 
