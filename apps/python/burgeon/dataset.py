@@ -10,6 +10,7 @@ the same bytes wherever it runs. A run that was stopped is taken up again: only 
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import io
 import json
@@ -336,6 +337,20 @@ TRIES = 5
 """How often a shard is tried whose worker was killed."""
 
 
+@contextlib.contextmanager
+def _without_main() -> "Iterator[None]":
+    """New processes do not run the program again that asks for them: they need nothing of it, and one without the guard
+    ``if __name__ == "__main__"`` would start them over and over."""
+    import types
+
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
 def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -347,7 +362,8 @@ def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[in
     while left:
         done, failed = set(), False
         with ProcessPoolExecutor(min(workers or os.cpu_count() or 1, len(left)), mp_context=context) as pool:
-            jobs = {pool.submit(make_shard, recipe, out, k): k for k in left}
+            with _without_main():
+                jobs = {pool.submit(make_shard, recipe, out, k): k for k in left}
             try:
                 for job in as_completed(jobs):
                     try:

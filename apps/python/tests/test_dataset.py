@@ -157,6 +157,18 @@ def test_processes_that_are_killed_are_replaced(tmp_path):
     assert got == want and sums(tmp_path / "a") == sums(tmp_path / "b")
 
 
+@pytest.mark.parametrize("as_file", [True, False])
+def test_programs_need_no_guard(tmp_path, as_file):
+    """Nor a file: what is typed or piped into Python uses several processes, too."""
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, shard=1, workers=2, progress=False)
+    code = f"import burgeon as bg\nprint(bg.dataset.generate('grass', 3, {str(tmp_path / 'out')!r}, **{how!r})['plants'])"
+    (tmp_path / "program.py").write_text(code)
+    words = [sys.executable, tmp_path / "program.py"] if as_file else [sys.executable, "-"]
+    given = None if as_file else code
+    done = subprocess.run(words, input=given, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, done.stdout.strip()) == (0, "3"), done.stderr
+
+
 def test_drawings_and_laz(tmp_path, program):
     laspy = pytest.importorskip("laspy")
     how = {**HOW, "formats": ("cloud", "laz", "drawing"), "picture": None}
