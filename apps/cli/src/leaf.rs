@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use burgeon::formats::{ModelFormat, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
+use burgeon::glam::DVec3;
 use burgeon::leaf::{
     FullMarks, LeafGrowth, LeafPaint, LeafSpec, Marks, PalmateSpec, ParallelSpec, Rays, ScanSpec,
     ThicknessRule, VeinParameters,
@@ -13,9 +14,7 @@ use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, LeafError, LeafOptions, MadePlant, Report, RunReport, Seed, ShootSpec};
 
-use crate::args::{
-    AxesArgs, LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, UnitWord, VenationWord,
-};
+use crate::args::{AxesArgs, LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, VenationWord};
 use crate::failure::{Failure, Outcome};
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
@@ -278,6 +277,59 @@ enum Measured {
     Rays(Rays),
 }
 
+/// No leaf that is scanned is larger; metres, and the most and the least that no unit makes likely.
+const LARGEST_M: f64 = 3.0;
+const SMALLEST_M: f64 = 0.002;
+/// The size of leaves that people scan: of two units that which makes a leaf nearer to it is likelier.
+const USUAL_M: f64 = 0.08;
+
+/// Takes another unit where none was given and metres make no leaf; says so, as it does where the given one makes none.
+fn check_unit(args: &LeafArgs, points: &mut [DVec3], report: &mut Report) {
+    let finite = || points.iter().filter(|p| p.is_finite());
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let [low, high] = finite().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
+    let size = (high - low).max_element();
+    if !(size > 0.0 && size.is_finite()) {
+        return;
+    }
+    if args.given.has("unit") {
+        if !(SMALLEST_M..=LARGEST_M).contains(&size) {
+            doubtful(report, size);
+        }
+        return;
+    }
+    if size <= LARGEST_M {
+        if size < SMALLEST_M {
+            doubtful(report, size);
+        }
+        return;
+    }
+    let away = |scale: f64| {
+        let ratio = size * scale / USUAL_M;
+        ratio.max(1.0 / ratio)
+    };
+    let (word, name, scale) =
+        if away(0.01) < away(0.001) { ("cm", "centimetres", 0.01) } else { ("mm", "millimetres", 0.001) };
+    points.iter_mut().for_each(|p| *p *= scale);
+    report.warn(
+        "unit-guessed",
+        format!(
+            "the cloud is {size:.1} wide, which is no leaf in metres: it was taken for {name}, {:.0} mm; --unit {word} says \
+             so, --unit mm, cm or m something else",
+            1e3 * size * scale
+        ),
+    );
+}
+
+fn doubtful(report: &mut Report, size: f64) {
+    report.warn(
+        "unit-doubtful",
+        format!(
+            "the cloud is {size:.6} m wide in the unit that was taken, which is no leaf; is --unit right?"
+        ),
+    );
+}
+
 /// A scan to a leaf.
 fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let [path] = args.inputs.as_slice() else {
@@ -288,16 +340,7 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let opened = files::open_cloud(path)?;
     let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, opened, &axes, &mut report));
     let mut points = cloud?.points;
-    let first = points.first().copied().unwrap_or_default();
-    let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);
-    // 10 m: no leaf is longer, and scanners of leaves write millimetres.
-    if (size[1] - size[0]).max_element() > 10.0 && matches!(args.axes.unit, UnitWord::M) {
-        points.iter_mut().for_each(|p| *p *= 0.001);
-        report.warn(
-            "unit-guessed",
-            "the cloud is more than 10 m wide: it was taken for millimetres; say --unit mm",
-        );
-    }
+    check_unit(args, &mut points, &mut report);
     let mut origin = Origin::default();
     origin.bring(&mut points, &axes, &mut report);
     let made = machine.with_progress("scan", |_| {

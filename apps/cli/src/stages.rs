@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::bloom::{self, CleanSpec, Organ, SegmentSpec, Stage};
+use burgeon::bloom::{self, CleanSpec, Oddity, Organ, SegmentSpec, Stage};
 use burgeon::formats::{CloudFormat, ExportSpec};
 use burgeon::glam::DVec3;
 use burgeon::mesh::TriMesh;
@@ -63,6 +63,9 @@ struct StageEntry {
     file: PathBuf,
     day: f64,
     unit: Option<UnitWord>,
+    up: Option<UpWord>,
+    #[serde(default)]
+    mirror: bool,
     organ: Option<String>,
     region: Option<usize>,
     seed: Option<[f64; 3]>,
@@ -79,6 +82,8 @@ pub(crate) struct StageReport {
     cropped: usize,
     ground: usize,
     outliers: usize,
+    /// Of things that stand apart from the largest.
+    others: usize,
     /// Width, height and depth of what was kept.
     size_mm: [f64; 3],
     organs: Vec<OrganTold>,
@@ -89,7 +94,7 @@ impl StageReport {
     pub(crate) fn line(&self) -> String {
         let organs: Vec<String> = self.organs.iter().map(|o| format!("{} {}", o.name, o.points)).collect();
         let [w, h, d] = self.size_mm;
-        let gone = self.cropped + self.ground + self.outliers;
+        let gone = self.cropped + self.ground + self.outliers + self.others;
         format!(
             "day {}: {} points, {gone} left out; {h:.1} mm high, {w:.1} x {d:.1} mm wide: {}",
             self.day,
@@ -198,7 +203,7 @@ pub(crate) fn read_points(
 fn prepare(
     path: &Path,
     day: f64,
-    axes: &ExportSpec,
+    (axes, mirror): (&ExportSpec, bool),
     spec: Option<&CleanSpec>,
     seed: Seed,
     machine: &Machine,
@@ -206,9 +211,13 @@ fn prepare(
 ) -> Outcome<(Vec<DVec3>, Option<TriMesh>, StageReport)> {
     machine.cancel.check()?;
     let Loaded { warnings, origin, .. } = out;
-    let (points, mesh) = read_any(path, axes, origin, warnings)?;
+    let (mut points, mesh) = read_any(path, axes, origin, warnings)?;
+    if mirror {
+        points.iter_mut().for_each(|p| *p = mirrored(*p));
+    }
     // The box to keep is given in the coordinates of the file.
-    let spec = spec.map(|s| CleanSpec { crop: s.crop.map(|c| c.map(|p| origin.place(p))), ..*s });
+    let spec = spec
+        .map(|s| CleanSpec { crop: s.crop.map(|c| c.map(|p| mirrored_if(mirror, origin.place(p)))), ..*s });
     let mut told = StageReport {
         file: path.display().to_string(),
         day,
@@ -216,6 +225,7 @@ fn prepare(
         cropped: 0,
         ground: 0,
         outliers: 0,
+        others: 0,
         size_mm: [0.0; 3],
         organs: vec![],
     };
@@ -234,6 +244,15 @@ fn prepare(
     told.cropped = cleaned.cropped;
     told.ground = cleaned.ground;
     told.outliers = cleaned.outliers;
+    told.others = cleaned.others;
+    if cleaned.others > 0 {
+        warnings.push(format!(
+            "{}: {} points of other things stand apart from the largest one and were left out; `crop` in its [[stage]] says \
+             what is meant, `clean = false` keeps all",
+            path.display(),
+            cleaned.others
+        ));
+    }
     if cleaned.ground > 0 {
         warnings.push(format!(
             "{}: {} points of a ground plane were left out",
@@ -265,6 +284,15 @@ fn prepare(
     let kept: Vec<DVec3> = cleaned.kept.into_iter().map(|i| points[i]).collect();
     told.size_mm = (box_of(&kept) * 1e3).to_array();
     Ok((kept, mesh, told))
+}
+
+/// The mirror image, beside the origin that the series has.
+fn mirrored(p: DVec3) -> DVec3 {
+    DVec3::new(-p.x, p.y, p.z)
+}
+
+fn mirrored_if(mirror: bool, p: DVec3) -> DVec3 {
+    if mirror { mirrored(p) } else { p }
 }
 
 /// Width, height and depth.
@@ -303,7 +331,51 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
         stage.organs.retain(|o| o.points.len() >= 8);
     }
     alike(&mut out, file.split == Split::Auto);
+    let by_hand = file.stage.iter().any(|e| e.organ.is_some() || e.seed.is_some());
+    if file.split == Split::Auto && !by_hand {
+        odd(&mut out, machine)?;
+    }
     Ok(out)
+}
+
+/// Warns of scans that are mirrored, lie down, or have another scale than the others. Of single organs nothing says how they
+/// stand.
+fn odd(out: &mut Loaded, machine: &Machine) -> Outcome {
+    if out.mesh.is_some() || out.stages.iter().any(|s| s.organs.len() < 2) {
+        return Ok(());
+    }
+    let found =
+        bloom::odd_stages(&out.stages, &machine.run()).map_err(Failure::bloom(Path::new("stages")))?;
+    for o in found {
+        let (day, other) = (out.stages[o.stage].day, out.stages[o.beside].day);
+        let nearer = o.as_it_is / o.mended.max(1e-12);
+        let which = match o.sure {
+            true => format!("the scan of day {day}"),
+            false => format!("the scan of day {day} (or that of day {other})"),
+        };
+        out.warnings.push(match o.oddity {
+            Oddity::Mirrored => format!(
+                "{which} seems to be mirrored: its mirror image is {nearer:.1} times nearer to day {other}; write `mirror = \
+                 true` in its [[stage]], or negate an axis where it is exported"
+            ),
+            Oddity::Turned(up) => {
+                let advice = match (up.to_array(), out.axes.up) {
+                    ([_, _, 1.0], UpAxis::Y) => "write `up = \"z\"` in its [[stage]]",
+                    ([_, _, -1.0], UpAxis::Z) => "write `up = \"y\"` in its [[stage]]",
+                    _ => "say `up` in its [[stage]], or turn it so that y or z points up",
+                };
+                format!(
+                    "{which} seems to lie down or to stand on its head: turned up it is {nearer:.1} times nearer to day \
+                     {other}; {advice}"
+                )
+            }
+            Oddity::Scaled(by) => format!(
+                "the scan of day {day} is that of day {other} {by:.3} times as large and else the same: is its unit right? \
+                 `unit = \"mm\"` in its [[stage]] says another"
+            ),
+        });
+    }
+    Ok(())
 }
 
 fn add_entry(
@@ -321,7 +393,7 @@ fn add_entry(
         Some(UnitWord::Mm) => Unit::Millimetre,
         None => axes.unit,
     };
-    let up = match file.up {
+    let up = match entry.up.or(file.up) {
         Some(UpWord::Y) => UpAxis::Y,
         Some(UpWord::Z) => UpAxis::Z,
         None => axes.up,
@@ -338,9 +410,10 @@ fn add_entry(
         crop: entry.crop.map(|c| c.map(place)),
         ..CleanSpec::default()
     };
-    let (points, mesh, mut told) = prepare(&scan, entry.day, &axes, Some(&clean), seed, machine, out)?;
+    let (points, mesh, mut told) =
+        prepare(&scan, entry.day, (&axes, entry.mirror), Some(&clean), seed, machine, out)?;
     let origin = out.origin;
-    let near = |p: [f64; 3]| origin.place(place(p));
+    let near = |p: [f64; 3]| mirrored_if(entry.mirror, origin.place(place(p)));
     let spec = SegmentSpec { foot: entry.base.map(near), ..SegmentSpec::default() };
     let mut found = match (&entry.organ, entry.seed) {
         (Some(name), Some(at)) => {
@@ -425,7 +498,8 @@ fn alike(out: &mut Loaded, split: bool) {
         let (a, b) = (size(before), size(now));
         if b > 8.0 * a || a > 8.0 * b {
             out.warnings.push(format!(
-                "the scans of day {} and day {} differ in size by a factor of {:.1}; are their units the same?",
+                "the scans of day {} and day {} differ in size by a factor of {:.1}; are their units the same? `unit = \"mm\"` in \
+                 a [[stage]] says another",
                 before.day,
                 now.day,
                 (b / a).max(a / b)
@@ -433,6 +507,16 @@ fn alike(out: &mut Loaded, split: bool) {
         }
         if split && now.organs.iter().any(|o| o.name == "stem") {
             bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+            let leaves = |s: &Stage| s.organs.iter().filter(|o| o.name != "stem").count();
+            let again =
+                now.organs.iter().any(|o| o.name != "stem" && before.organs.iter().any(|b| b.name == o.name));
+            if leaves(before) > 0 && leaves(now) > 0 && !again {
+                out.warnings.push(format!(
+                    "no leaf of day {} is found again on day {}: are both scans of one plant, with the same side up? \
+                     `organ` and `seed` in a [[stage]] name leaves by hand",
+                    before.day, now.day
+                ));
+            }
         }
     }
 }
@@ -459,7 +543,8 @@ pub(crate) fn load_files(
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;
     for &(path, day) in shapes {
-        let (points, mesh, mut told) = prepare(path, day, axes, Some(&clean), seed, machine, &mut out)?;
+        let (points, mesh, mut told) =
+            prepare(path, day, (axes, false), Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
         let organs = if split {
@@ -487,5 +572,8 @@ pub(crate) fn load_files(
         split = false;
     }
     alike(&mut out, split);
+    if split {
+        odd(&mut out, machine)?;
+    }
     Ok(out)
 }

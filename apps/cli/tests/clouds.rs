@@ -118,3 +118,67 @@ fn clouds_convert_and_have_no_place_in_stl() {
         assert!(!at.join("x.stl").exists());
     }
 }
+
+#[test]
+fn a_scan_in_another_unit_is_the_leaf_or_says_so() {
+    let at = folder("leaf-units");
+    for (name, size) in [("m.xyz", 1.0), ("cm.xyz", 100.0), ("mm.xyz", 1000.0)] {
+        blade(&at, name, size, [0.0; 3]);
+    }
+    let length = |r: &Value| r["items"][0]["leaf"]["length_mm"].as_f64().unwrap();
+    let truth = length(&report(&at, &["leaf", "--scan", "m.xyz", "--up", "z", "-o", "x.glb"]));
+    for (name, unit) in [("cm.xyz", "--unit cm"), ("mm.xyz", "--unit mm")] {
+        let told = report(&at, &["leaf", "--scan", name, "--up", "z", "-o", "x.glb"]);
+        assert!((length(&told) / truth - 1.0).abs() < 0.01, "{name}: {} {truth}", length(&told));
+        let warnings = told["items"][0]["warnings"].to_string();
+        assert!(warnings.contains(unit), "{name}: {warnings}");
+    }
+    for (name, unit) in [("m.xyz", "mm"), ("mm.xyz", "m")] {
+        let told = report(&at, &["leaf", "--scan", name, "--up", "z", "--unit", unit, "-o", "x.glb"]);
+        assert!(told["items"][0]["warnings"].to_string().contains("is --unit right?"), "{name} {unit}");
+    }
+    // Mirrored, and with another axis up, it is as long.
+    let text = fs::read_to_string(at.join("m.xyz")).unwrap();
+    let flipped: String = text.lines().map(|l| format!("-{l}\n").replace("--", "")).collect();
+    fs::write(at.join("mirrored.xyz"), flipped).unwrap();
+    for (name, up) in [("mirrored.xyz", "z"), ("m.xyz", "y")] {
+        let told = report(&at, &["leaf", "--scan", name, "--up", up, "-o", "x.glb"]);
+        assert!((length(&told) / truth - 1.0).abs() < 0.03, "{name} {up}: {} {truth}", length(&told));
+    }
+}
+
+#[test]
+fn a_plant_is_no_leaf_and_a_table_or_a_thing_beside_it_is_left_out() {
+    let at = folder("leaf-alone");
+    blade(&at, "leaf.xyz", 1.0, [0.0, 0.0, 0.01]);
+    let leaf = fs::read_to_string(at.join("leaf.xyz")).unwrap();
+    let length = |name: &str, want: &str| {
+        let told = report(&at, &["leaf", "--scan", name, "--up", "z", "-o", "x.glb"]);
+        let warnings = told["items"][0]["warnings"].to_string();
+        assert!(warnings.contains(want), "{name}: {warnings}");
+        told["items"][0]["leaf"]["length_mm"].as_f64().unwrap()
+    };
+    let truth = length("leaf.xyz", "");
+    let table: String = (0..6400)
+        .map(|k| format!("{} {} -0.02\n", 0.002 * f64::from(k % 80) - 0.08, 0.002 * f64::from(k / 80) - 0.05))
+        .collect();
+    fs::write(at.join("table.xyz"), format!("{leaf}{table}")).unwrap();
+    assert!((length("table.xyz", "a table") / truth - 1.0).abs() < 0.03);
+    blade(&at, "other.xyz", 0.5, [0.2, 0.0, 0.0]);
+    let other = fs::read_to_string(at.join("other.xyz")).unwrap();
+    fs::write(at.join("two.xyz"), format!("{leaf}{other}")).unwrap();
+    assert!((length("two.xyz", "stand apart") / truth - 1.0).abs() < 0.03);
+    // Two leaves on a stalk.
+    let mut plant = leaf.clone();
+    for line in leaf.lines() {
+        let p: Vec<f64> = line.split(' ').map(|w| w.parse().unwrap()).collect();
+        plant += &format!("{} {} {}\n", p[0], -p[1], p[2]);
+    }
+    for k in 0..300 {
+        plant += &format!("{} 0 {}\n", 0.0005 * f64::from(k % 3), 0.01 - 0.0002 * f64::from(k));
+    }
+    fs::write(at.join("plant.xyz"), plant).unwrap();
+    let told = bad(&at, &["leaf", "--scan", "plant.xyz", "--up", "z", "-o", "y.glb"]);
+    assert!(told.contains("2 blades") && told.contains("--plant"), "{told}");
+    assert!(!at.join("y.glb").exists());
+}

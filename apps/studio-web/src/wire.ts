@@ -137,6 +137,7 @@ export const CODES = {
   "rule-tropism-numbers": [],
   "rule-tropism-strength": [],
   "rule-unknown": ["name"],
+  "scan-several": ["blades"],
   "scan-surface": ["why"],
   "scan-too-few": ["points"],
   "scan-too-many": ["points", "most"],

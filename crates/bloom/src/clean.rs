@@ -38,6 +38,8 @@ pub struct Cleaned {
     pub ground: usize,
     /// Stray points and specks.
     pub outliers: usize,
+    /// Points of things that stand apart from the largest: people, other plants.
+    pub others: usize,
     /// No ground lies across `up`, but a plane like one lies across this axis, the plant on its side of it: the scan
     /// may lie down.
     pub ground_across: Option<DVec3>,
@@ -82,9 +84,99 @@ pub fn clean(points: &[DVec3], spec: &CleanSpec, seed: Seed, run: &Run<'_>) -> R
             good[row - 1]
         });
         out.outliers = before - kept.len();
+        run.cancel.check()?;
+        let here: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
+        if let Some(largest) = largest_thing(&here) {
+            out.others = kept.len() - largest.len();
+            kept = largest.into_iter().map(|i| kept[i]).collect();
+        }
     }
     out.kept = kept;
     Ok(out)
+}
+
+/// A gap of this share of the size of a cloud parts two things; leaves of one plant, and scraps of a torn leaf, are nearer.
+const APART: f64 = 0.12;
+/// What has a smaller share of the points is no thing, but strays.
+const A_THING: f64 = 0.05;
+
+/// Rows of the largest of several things that stand apart in a cloud; `None` where it is one thing, strays aside.
+pub fn largest_thing(points: &[DVec3]) -> Option<Vec<usize>> {
+    let mut rows: Vec<usize> = (0..points.len()).filter(|&i| points[i].is_finite()).collect();
+    let mut found = false;
+    // What is far away makes the cubes large: each round sees the rest more finely.
+    for _ in 0..6 {
+        let here: Vec<DVec3> = rows.iter().map(|&i| points[i]).collect();
+        let size = extent(&here);
+        if size <= 0.0 {
+            break;
+        }
+        let cubes = Voxels::with_cell(&here, 0.5 * APART * size);
+        let mut piece = vec![usize::MAX; cubes.len()];
+        let mut sizes: Vec<usize> = Vec::new();
+        let mut stack = Vec::new();
+        for first in 0..cubes.len() {
+            if piece[first] != usize::MAX {
+                continue;
+            }
+            sizes.push(0);
+            piece[first] = sizes.len() - 1;
+            stack.push(first);
+            while let Some(c) = stack.pop() {
+                sizes[piece[first]] += cubes.rows(c).len();
+                cubes.near(c, 1, |k| {
+                    if piece[k] == usize::MAX {
+                        piece[k] = piece[first];
+                        stack.push(k);
+                    }
+                });
+            }
+        }
+        let Some(best) = (0..sizes.len()).max_by_key(|&k| (sizes[k], core::cmp::Reverse(k))) else { break };
+        if sizes.len() == 1 {
+            break;
+        }
+        let least = A_THING * sizes[best] as f64;
+        found |= sizes.iter().enumerate().any(|(k, &n)| k != best && n as f64 >= least);
+        let mut keep = vec![false; here.len()];
+        for c in (0..cubes.len()).filter(|&c| piece[c] == best) {
+            cubes.rows(c).iter().for_each(|&i| keep[i as usize] = true);
+        }
+        let mut row = 0;
+        rows.retain(|_| {
+            row += 1;
+            keep[row - 1]
+        });
+    }
+    found.then_some(rows)
+}
+
+/// Least share of the points that lie above a table, and least height of what lies there, of the size of the cloud.
+const ON_TABLE: f64 = 0.05;
+
+/// Rows of what stands on a table or turntable in a cloud, whichever way is up; `None` where there is none.
+///
+/// A table is a filled plane of a quarter of the points with everything else on one side of it, and that is no line: a flat
+/// blade with its stalk is none.
+pub fn on_table(points: &[DVec3], seed: Seed) -> Option<Vec<usize>> {
+    let axes = [DVec3::Y, DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z, DVec3::NEG_X];
+    let finite: Vec<usize> = (0..points.len()).filter(|&i| points[i].is_finite()).collect();
+    let all: Vec<DVec3> = finite.iter().map(|&i| points[i]).collect();
+    let few: Vec<DVec3> = thin(&all, 3000).into_iter().map(|i| all[i as usize]).collect();
+    axes.into_iter().find_map(|up| {
+        let spec = CleanSpec { up, plane_share: 0.25, ..CleanSpec::default() };
+        let (normal, level, width) = ground(&few, &spec, seed)?;
+        let over = |p: DVec3| normal.dot(p) - level;
+        let above: Vec<DVec3> = few.iter().copied().filter(|p| over(*p) > width).collect();
+        let height = above.iter().map(|p| over(*p)).fold(0.0, f64::max);
+        let (_, _, [first, second, _]) = geom::pca3(&above)?;
+        let stands = above.len() as f64 > ON_TABLE * few.len() as f64
+            && height > ON_TABLE * extent(&few)
+            && second > 0.06 * first
+            && filled(&few, normal, level, width)
+            && reaches_over(&few, normal, level, width);
+        stands.then(|| finite.iter().copied().filter(|&i| over(points[i]) > width).collect())
+    })
 }
 
 /// Normal (upwards), level and half width of a ground plane.
@@ -139,6 +231,20 @@ fn lying(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<DVec3> {
             let height = few.iter().map(|p| normal.dot(*p) - level).fold(0.0, f64::max);
             height > 0.25 * extent(&few) && filled(&few, normal, level, width)
         })
+    })
+}
+
+/// A table is as wide as what stands on it, on all sides; the flat part of a blade is not.
+fn reaches_over(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool {
+    let (u, v) = normal.any_orthonormal_pair();
+    let limits = |on: bool, axis: DVec3| {
+        let side = points.iter().filter(|p| ((normal.dot(**p) - level).abs() <= width) == on);
+        side.map(|p| axis.dot(*p)).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
+    };
+    [u, v].iter().all(|&axis| {
+        let ((low, high), (least, most)) = (limits(true, axis), limits(false, axis));
+        let slack = 0.05 * (high - low);
+        least >= low - slack && most <= high + slack
     })
 }
 
@@ -232,6 +338,34 @@ mod tests {
         assert!(kept_stem > 3900, "{kept_stem} of the stem's 4000 points are left");
         assert!(c.kept.len() - kept_stem < 5, "{} others are left", c.kept.len() - kept_stem);
         assert_eq!((c.cropped, c.kept.len() + c.cropped + c.ground + c.outliers), (1, p.len()));
+        assert_eq!(c.others, 0);
+    }
+
+    #[test]
+    fn people_are_left_out_and_a_table_is_seen_whichever_way_is_up() {
+        let (mut p, table, stem) = scene();
+        let person: Vec<DVec3> =
+            p[table..stem].iter().step_by(3).map(|q| DVec3::new(0.9, 0.0, 0.2) + *q * 9.0).collect();
+        p.extend(&person);
+        let c = clean(&p, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
+        assert!(c.others > 1200 && c.kept.iter().all(|&i| i < stem), "{} {}", c.others, c.kept.len());
+        assert_eq!(largest_thing(&p[table..stem]), None);
+        assert_eq!(largest_thing(&[DVec3::ONE; 9]), None);
+        // A blade over a table: +Z up, +Y up, upside down.
+        let mut s = Seed::new(4).stream(Draw::Test);
+        let mut scan: Vec<DVec3> = p[..table].iter().map(|q| *q * 0.4).collect();
+        let first = scan.len();
+        scan.extend((0..5000).map(|_| {
+            let (x, z) = (s.range(-0.02, 0.02), s.range(0.0, 0.05));
+            DVec3::new(x, 0.02 + 3.0 * z * z, z)
+        }));
+        for turn in [|p: DVec3| p, |p: DVec3| DVec3::new(p.x, -p.z, p.y), |p: DVec3| -p] {
+            let turned: Vec<DVec3> = scan.iter().map(|p| turn(*p)).collect();
+            let kept = on_table(&turned, Seed::new(1)).unwrap();
+            assert!(kept.len() > 4900 && kept.iter().all(|&i| i >= first), "{}", kept.len());
+        }
+        assert_eq!(on_table(&scan[first..], Seed::new(1)), None, "the flat part of a blade");
+        assert_eq!(on_table(&[DVec3::NAN; 100], Seed::new(1)), None);
     }
 
     #[test]

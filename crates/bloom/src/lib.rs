@@ -13,9 +13,11 @@
 //! | `forms` | [`choose`]: one law for several series, if they determine one |
 //! | `clean` | [`clean`]: stray points and the ground go |
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
+//! | `blades` | [`blades`]: one leaf, or several |
 //! | `limb` | [`stem`], [`stalk`]: lines with radii of stems and stalks |
 //! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
+//! | `odd` | [`odd_stages`]: scans that are mirrored, lie down, or have another scale |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
 //! | `motion` | [`Motion`]: the shape at any day |
 //! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]: what can be asked |
@@ -28,6 +30,7 @@
 //! | `register` | [`register`]: the lattice that carries one scan into another |
 //! | `error` | [`compare`]: distances both ways |
 
+mod blades;
 mod centre;
 mod clean;
 mod cluster;
@@ -43,6 +46,7 @@ mod limb;
 mod logistic;
 mod motion;
 mod obb;
+mod odd;
 mod organs;
 mod overlap;
 mod parts;
@@ -57,7 +61,8 @@ mod trial;
 mod wanted;
 mod whorl;
 
-pub use clean::{CleanSpec, Cleaned, clean};
+pub use blades::blades;
+pub use clean::{CleanSpec, Cleaned, clean, largest_thing, on_table};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
@@ -67,6 +72,7 @@ pub use limb::{Limb, joint, stalk, stem, surface_places};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
+pub use odd::{OddStage, Oddity, odd_stages};
 pub use organs::Seat;
 pub use overlap::{PartTriangle, crossed, overlap_share, part_overlap, part_triangles};
 pub use parts::{Achenes, Cluster, ClusterForm, Disc, Foliage, Fruit, Nods, Stamens};

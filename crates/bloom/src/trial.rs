@@ -166,6 +166,8 @@ fn straight(
 
 /// Points of each shape that the best rigid move is sought with: first, and at the end.
 const SAMPLES: [usize; 2] = [800, 3000];
+/// Rounds of nearest points, at most.
+const ROUNDS: usize = 60;
 
 /// The rigid motion of `shape` that brings the two nearest to one another: least mean distance both ways of those that
 /// iterated nearest points reach from no motion and from seven turns about the vertical, weighted by 1 over the distance so that what the other
@@ -185,20 +187,20 @@ pub fn best_move(shape: &[DVec3], scan: &[DVec3], run: &Run<'_>) -> Result<Rigid
         RigidMotion { from: few.middles[0], to: few.middles[1], turn }
     });
     let starts: Vec<RigidMotion> = turned.chain([RigidMotion::REST]).collect();
-    let mut found = base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k]));
+    let mut found = base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS));
     run.cancel.check()?;
     base::sort_by(&mut found, |x, y| x.0.total_cmp(&y.0));
     // Of starts that are nearly as good the small sample cannot say which is best.
     found.truncate(3);
     let all = Pair::new(shape, scan, SAMPLES[1]);
-    let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1));
+    let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1, ROUNDS));
     run.cancel.check()?;
     let best = ends.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
     Ok(best.map_or(RigidMotion::REST, |b| b.1))
 }
 
 /// Samples of two shapes.
-struct Pair {
+pub(crate) struct Pair {
     from: Vec<DVec3>,
     to: Vec<DVec3>,
     middles: [DVec3; 2],
@@ -208,7 +210,7 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(shape: &[DVec3], scan: &[DVec3], sample: usize) -> Self {
+    pub(crate) fn new(shape: &[DVec3], scan: &[DVec3], sample: usize) -> Self {
         // By rank: a sample has the density of what it is of, as the mean distance does.
         let pick = |points: &[DVec3]| -> Vec<DVec3> {
             let finite = || points.iter().copied().filter(|p| p.is_finite());
@@ -222,12 +224,23 @@ impl Pair {
         Self { tree: KdTree::new(&to), from, to, middles, size }
     }
 
+    /// The mean distances there and back, added, after a motion.
+    pub(crate) fn gap(&self, moved: &RigidMotion) -> f64 {
+        let places: Vec<DVec3> = self.from.iter().map(|&p| moved.apply(p)).collect();
+        let back = KdTree::new(&places);
+        let mean = |tree: &KdTree, of: &[DVec3], from: &[DVec3]| {
+            let each = from.iter().filter_map(|p| Some(of[tree.nearest(*p, f64::INFINITY)?].distance(*p)));
+            each.sum::<f64>() / from.len().max(1) as f64
+        };
+        mean(&self.tree, &self.to, &places) + mean(&back, &places, &self.to)
+    }
+
     /// Iterated nearest points both ways: the mean distances there and back, added, and the motion.
-    fn descend(&self, mut moved: RigidMotion) -> (f64, RigidMotion) {
+    pub(crate) fn descend(&self, mut moved: RigidMotion, rounds: usize) -> (f64, RigidMotion) {
         // Below half a hundredth of the size a distance is the spacing of the points.
         let floor = 0.005 * self.size.max(1e-12);
         let mut gap = f64::INFINITY;
-        for _ in 0..60 {
+        for _ in 0..rounds {
             let places: Vec<DVec3> = self.from.iter().map(|&p| moved.apply(p)).collect();
             let back = KdTree::new(&places);
             let there = places.iter().enumerate();

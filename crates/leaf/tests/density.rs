@@ -1,6 +1,6 @@
 //! Scans of single leaves made by other people, whole and thinned out.
 
-#![expect(clippy::expect_used, clippy::print_stdout, reason = "tests")]
+#![expect(clippy::expect_used, reason = "tests")]
 
 use std::fs;
 use std::path::Path;

@@ -45,6 +45,12 @@ pub enum LeafError {
     /// No leaf in a scan.
     #[error(transparent)]
     Scan(#[from] ScanError),
+    /// A scan of more than one leaf.
+    #[error(
+        "the cloud shows {0} blades that part on necks of their own: it is a plant or a leaf of leaflets, not one blade. Cut \
+         one out of it, or make all of it with `burgeon bloom run SCAN --plant`"
+    )]
+    Several(usize),
     /// Nothing to put on a plant.
     #[error("a plant needs at least one leaf")]
     NoLeaves,
@@ -258,6 +264,7 @@ base::coded!(LeafError {
     Self::Spline(why) => "leaf-surface" { why => SplineError },
     Self::Rays(why) => "leaf-veins" { why => RaysError },
     Self::Scan(why) => "leaf-scan" { why => ScanError },
+    Self::Several(blades) => "scan-several" { blades },
     Self::NoLeaves => "no-leaves" {},
 } wraps {
     Self::Marks(e) => e, MarksError;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Report, Run, ops};
+use base::{Report, Run, Seed, ops};
 use geom::{Ball, BallBSpline, SplineError};
 use glam::DVec3;
 use leaf::{LeafPaint, LeafSpec, ScanLeaf, ScanSpec};
@@ -12,10 +12,15 @@ use crate::leaves::{LeafError, LeafOptions, add_leaf, area, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 
+/// Distances from the leaf that was found beyond this share of its length are told: a leaf that is torn and folded has 0.03.
+const UNLIKE: f64 = 0.06;
+
 /// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud.
 ///
+/// A table below it and things that stand apart from it are left out, with a warning.
+///
 /// # Errors
-/// [`LeafError::Scan`].
+/// [`LeafError::Scan`]; [`LeafError::Several`] for a plant or a leaf of leaflets.
 pub fn make_leaf_from_scan(
     name: &str,
     points: &[DVec3],
@@ -23,8 +28,23 @@ pub fn make_leaf_from_scan(
     run: &Run<'_>,
 ) -> Result<(MadePlant, ScanLeaf), LeafError> {
     let mut report = Report::default();
+    let alone = alone(points, &mut report);
+    let points = alone.as_deref().unwrap_or(points);
+    let blades = bloom::blades(points);
+    if blades > 1 {
+        return Err(LeafError::Several(blades));
+    }
     let found = report.stage("structure", run.clock, |r| leaf::fit_scan(points, spec, run, r))?;
     let line = found.midrib();
+    let rms_mm = LeafFit::of(&found.distances).rms_mm;
+    if rms_mm > UNLIKE * 1e3 * geom::polyline_length3(&line) {
+        base::warn!(
+            report,
+            "scan-unlike",
+            { rms_mm = (rms_mm * 100.0).round() / 100.0 },
+            "the cloud is {rms_mm} mm from the leaf that was found in it: is it one leaf, laid open? Cut one leaf out of it"
+        );
+    }
     let mut plant = Plant { name: name.into(), ..Plant::default() };
     let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk));
     let n = found.columns;
@@ -60,6 +80,32 @@ pub fn make_leaf_from_scan(
         ..LeafReport::default()
     });
     Ok((made, found))
+}
+
+/// The cloud without a table and without what stands apart; `None` if it has neither.
+fn alone(points: &[DVec3], report: &mut Report) -> Option<Vec<DVec3>> {
+    let of = |points: &[DVec3], rows: Vec<usize>| rows.into_iter().map(|i| points[i]).collect::<Vec<DVec3>>();
+    let above = bloom::on_table(points, Seed::new(1)).map(|rows| of(points, rows));
+    if let Some(above) = &above {
+        base::warn!(
+            report,
+            "scan-table",
+            { points = points.len() - above.len() },
+            "{points} points of a plane below the leaf (a table) were left out"
+        );
+    }
+    let left = above.as_deref().unwrap_or(points);
+    let one = bloom::largest_thing(left).map(|rows| of(left, rows));
+    if let Some(one) = &one {
+        base::warn!(
+            report,
+            "scan-apart",
+            { points = left.len() - one.len() },
+            "{points} points of other things stand apart from the largest one, which was taken for the leaf: cut the leaf out \
+             of the cloud if it is another"
+        );
+    }
+    one.or(above)
 }
 
 /// The blade that was found, where it stands in the scan.

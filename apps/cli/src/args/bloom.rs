@@ -35,6 +35,8 @@ pub(crate) enum BloomCommand {
   [[stage]]
   file = \"march-05.xyz\"  # .ply .xyz .txt .pcd .las .obj, beside the stages file
   day = 5
+  # unit, up             # of this file, if it has others
+  # mirror = true        # the file is a mirror image
   # organ = \"petal-1\"    # the file is this organ; several files a day give several organs
   # region = 1           # ... or only this region of it, from 1 at the base
   # seed = [x, y, z]     # the organ at this place is cut out, in the file's unit
