@@ -184,9 +184,7 @@ const BETTER: f64 = 2.0;
 /// Strokes of which the classifier is so sure speak for what was read first: another kind must then explain the drawing
 /// this many times as well.
 const CLEAR: f64 = 0.55;
-const MUCH_BETTER: f64 = 20.0;
-/// As [`SURE`] of fruits and roots: a tool for plants is given trees more often than potatoes.
-const SURE_BODY: f64 = 0.6;
+const MUCH_BETTER: f64 = 10.0;
 /// What is no plant at least by this share gives a warning.
 const NO_PLANT: f64 = 0.6;
 /// The code of that warning.
@@ -222,9 +220,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         && reading.strokes.iter().any(|s| s.class == StrokeClass::Ground);
     let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
-        let (own, sure) =
-            (group(&scores, s.kind), if s.kind.is_like(Kind::Fruit) { SURE_BODY } else { SURE });
-        !s.kind.is_like(built) && own > sure && own > better * group(&scores, built)
+        let own = group(&scores, s.kind);
+        !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
     };
     let other = scores.iter().find(likelier).copied();
     if let Some(wanted) = asked.kind {

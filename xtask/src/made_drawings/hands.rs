@@ -43,8 +43,11 @@ pub(crate) fn drawn_again(r: &mut Stream, mut lines: Lines) -> Lines {
     if r.chance(0.3) {
         not_lifted(r, &mut lines, 0.05 * long);
     }
-    if r.chance(0.15) {
-        let twice = lines[r.below(lines.len())].clone();
+    if r.chance(0.25) {
+        // The longest line as often as all others: it changes the whole most.
+        let longest = (0..lines.len()).max_by(|&a, &b| length(&lines[a]).total_cmp(&length(&lines[b])));
+        let any = r.below(lines.len());
+        let twice = lines[longest.filter(|_| r.chance(0.5)).unwrap_or(any)].clone();
         let off = DVec2::new(r.normal(), r.normal()) * (0.008 * long);
         lines.push(twice.into_iter().map(|p| p + off).collect());
     }
@@ -105,7 +108,7 @@ fn by_itself(r: &mut Stream, line: &mut [DVec2], by: f64) {
 fn bent(r: &mut Stream, lines: &mut Lines, (lo, hi): (DVec2, DVec2)) {
     let long = (hi - lo).max_element().max(1e-9);
     let (stretch, slant) = (r.range(0.82, 1.22), r.range(-0.1, 0.1));
-    let turn = super::direction(r.range(-8.0, 8.0) * TAU / 360.0);
+    let turn = super::direction(r.range(-12.0, 12.0) * TAU / 360.0);
     let wave = r.range(0.0, 0.04);
     let waves: Vec<(DVec2, f64, DVec2)> = (0..3)
         .map(|_| {
@@ -125,6 +128,10 @@ fn bent(r: &mut Stream, lines: &mut Lines, (lo, hi): (DVec2, DVec2)) {
 fn extent(lines: &Lines) -> Option<(DVec2, DVec2)> {
     let ends = lines.iter().flatten().map(|&p| (p, p));
     ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+}
+
+fn length(line: &[DVec2]) -> f64 {
+    line.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
 /// A number for a name.

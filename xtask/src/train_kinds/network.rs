@@ -1,13 +1,19 @@
 //! Learns a small network: a softmax over what is linear in the numbers, and over some units that are linear in them
 //! where they are above 0.
 //!
+//! Two networks that begin with other coefficients err in other drawings, so several are learnt and their sums averaged. Sums
+//! are linear in units: the mean of networks is one network with the units of all.
+//!
 //! Adam (Kingma and Ba 2015) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units, and a
 //! pull of every coefficient towards 0. The same rows give the same network.
 
 use base::{Draw, Seed, Stream, ops};
 
-/// Units.
-pub(super) const UNITS: usize = 24;
+/// Networks whose mean is taken, and units of each.
+const NETWORKS: u64 = 5;
+const OWN_UNITS: usize = 24;
+/// Units of the mean.
+pub(super) const UNITS: usize = NETWORKS as usize * OWN_UNITS;
 /// Times that each row is looked at, on the average.
 const ROUNDS: usize = 14;
 const BATCH: usize = 256;
@@ -24,6 +30,7 @@ const NOISE: f64 = 0.1;
 /// Coefficients, row by row.
 pub(super) struct Network {
     columns: usize,
+    units: usize,
     /// A row for each number: a coefficient for each column.
     pub(super) direct: Vec<f64>,
     /// A row for each number: a coefficient for each unit.
@@ -36,13 +43,45 @@ pub(super) struct Network {
 pub(super) type Example<'a> = (&'a [f64], usize, f64);
 
 impl Network {
+    /// The mean of [`NETWORKS`]; two hands learn them.
     pub(super) fn learn(examples: &[Example<'_>], columns: usize) -> Self {
+        const HANDS: u64 = 2;
+        let mut all: Vec<(u64, Self)> = std::thread::scope(|scope| {
+            let own = |hand| (0..NETWORKS).filter(move |k| k % HANDS == hand);
+            let learn =
+                move |hand| own(hand).map(|k| (k, Self::one(examples, columns, k))).collect::<Vec<_>>();
+            let hands: Vec<_> = (0..HANDS).map(|hand| scope.spawn(move || learn(hand))).collect();
+            hands.into_iter().flat_map(|h| h.join().unwrap_or_default()).collect()
+        });
+        all.sort_by_key(|(k, _)| *k);
+        Self::mean(&all.into_iter().map(|(_, net)| net).collect::<Vec<_>>())
+    }
+
+    /// One network whose sums are the means of the sums of several that are alike.
+    fn mean(nets: &[Self]) -> Self {
+        let part = 1.0 / nets.len() as f64;
+        let (columns, units) = (nets[0].columns, nets[0].units);
+        let numbers = nets[0].direct.len() / columns;
+        let sum = |i: usize| nets.iter().map(|n| n.direct[i]).sum::<f64>() * part;
+        let inner = |i: usize| nets.iter().flat_map(move |n| &n.inner[i * units..(i + 1) * units]).copied();
+        Self {
+            columns,
+            units: units * nets.len(),
+            direct: (0..numbers * columns).map(sum).collect(),
+            inner: (0..numbers).flat_map(inner).collect(),
+            outer: nets.iter().flat_map(|n| n.outer.iter().map(|c| c * part)).collect(),
+        }
+    }
+
+    fn one(examples: &[Example<'_>], columns: usize, number: u64) -> Self {
+        const UNITS: usize = OWN_UNITS;
         let numbers = examples.first().map_or(0, |e| e.0.len());
-        let r = &mut Seed::new(20).stream(Draw::Template);
+        let r = &mut Seed::new(20).child(number).stream(Draw::Template);
         let mut chance =
             |n: usize, spread: f64| -> Vec<f64> { (0..n).map(|_| r.normal() * spread).collect() };
         let mut net = Self {
             columns,
+            units: UNITS,
             direct: vec![0.0; numbers * columns],
             inner: chance(numbers * UNITS, 1.0 / (numbers.max(1) as f64).sqrt()),
             outer: chance(UNITS * columns, 1.0 / (UNITS as f64).sqrt()),
@@ -59,7 +98,7 @@ impl Network {
         let mut moments = [&net.direct, &net.inner, &net.outer].map(|c| Moments::new(c.len()));
         for step in 0..steps {
             let mut slope =
-                Self::of(columns, [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
+                Self::of((columns, UNITS), [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
             for _ in 0..BATCH {
                 let drawn = r.uniform() * total;
                 let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
@@ -75,21 +114,21 @@ impl Network {
         net
     }
 
-    fn of(columns: usize, [direct, inner, outer]: [Vec<f64>; 3]) -> Self {
-        Self { columns, direct, inner, outer }
+    fn of((columns, units): (usize, usize), [direct, inner, outer]: [Vec<f64>; 3]) -> Self {
+        Self { columns, units, direct, inner, outer }
     }
 
     /// Adds the slope of one example.
     fn look(&self, (numbers, column, _): Example<'_>, r: &mut Stream, slope: &mut Self) {
         let keep = |r: &mut Stream, drop: f64| if r.chance(drop) { 0.0 } else { 1.0 / (1.0 - drop) };
         let x: Vec<f64> = numbers.iter().map(|x| (x + NOISE * r.normal()) * keep(r, DROP_NUMBERS)).collect();
-        let mask: Vec<f64> = (0..UNITS).map(|_| keep(r, DROP_UNITS)).collect();
+        let mask: Vec<f64> = (0..OWN_UNITS).map(|_| keep(r, DROP_UNITS)).collect();
         let units = self.units(&x);
         let heard: Vec<f64> = units.iter().zip(&mask).map(|(u, m)| u.max(0.0) * m).collect();
         let mut miss = self.shares(&x, &heard);
         miss[column] -= 1.0;
         let part = 1.0 / BATCH as f64;
-        let mut back = [0.0; UNITS];
+        let mut back = [0.0; OWN_UNITS];
         for (k, back) in back.iter_mut().enumerate() {
             let rows = k * self.columns..(k + 1) * self.columns;
             let own = self.outer[rows.clone()].iter().zip(&mut slope.outer[rows]);
@@ -102,14 +141,14 @@ impl Network {
         for (i, &x) in x.iter().enumerate().filter(|(_, x)| **x != 0.0) {
             let direct = &mut slope.direct[i * self.columns..(i + 1) * self.columns];
             direct.iter_mut().zip(&miss).for_each(|(s, m)| *s += x * m * part);
-            let inner = &mut slope.inner[i * UNITS..(i + 1) * UNITS];
+            let inner = &mut slope.inner[i * OWN_UNITS..(i + 1) * OWN_UNITS];
             inner.iter_mut().zip(&back).for_each(|(s, b)| *s += x * b * part);
         }
     }
 
     fn units(&self, x: &[f64]) -> Vec<f64> {
-        let mut units = vec![0.0; UNITS];
-        for (x, row) in x.iter().zip(self.inner.chunks(UNITS)).filter(|(x, _)| **x != 0.0) {
+        let mut units = vec![0.0; self.units];
+        for (x, row) in x.iter().zip(self.inner.chunks(self.units)).filter(|(x, _)| **x != 0.0) {
             units.iter_mut().zip(row).for_each(|(u, c)| *u += x * c);
         }
         units
@@ -153,6 +192,32 @@ impl Moments {
             *mean = MEMORY[0] * *mean + (1.0 - MEMORY[0]) * s;
             *square = MEMORY[1] * *square + (1.0 - MEMORY[1]) * s * s;
             *c -= rate * ((*mean / seen[0]) / ((*square / seen[1]).sqrt() + 1e-8) + PULL * *c);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_networks_says_what_they_say_on_the_average() {
+        let r = &mut Seed::new(3).stream(Draw::Template);
+        let rows: Vec<Vec<f64>> = (0..90).map(|_| (0..6).map(|_| r.normal()).collect()).collect();
+        let examples: Vec<Example<'_>> =
+            rows.iter().enumerate().map(|(k, row)| (&**row, k % 3, 1.0)).collect();
+        let nets: Vec<Network> = (0..3).map(|k| Network::one(&examples, 3, k)).collect();
+        let mean = Network::mean(&nets);
+        for row in &rows {
+            let apart = |net: &Network, k: usize| {
+                let told = net.told(row);
+                ops::ln(told[k] / told[0])
+            };
+            for k in 1..3 {
+                let wanted = nets.iter().map(|n| apart(n, k)).sum::<f64>() / 3.0;
+                assert!((apart(&mean, k) - wanted).abs() < 1e-9, "{wanted}");
+                assert!((apart(&nets[0], k) - apart(&nets[1], k)).abs() > 1e-6, "they are not the same");
+            }
         }
     }
 }
