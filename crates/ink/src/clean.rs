@@ -5,6 +5,7 @@
 use base::{Report, ops};
 use glam::DVec2;
 
+use crate::again::drawn_again;
 use crate::subjects::subjects;
 use crate::{Drawing, StrokeMode, Subjects};
 
@@ -188,7 +189,12 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
     }
     even(&mut ink.strokes, before.map_or(&[], |b| &b.strokes));
     let lines: Vec<(&[DVec2], f64)> = ink.strokes.iter().map(|s| (&*s.points, s.length)).collect();
-    ink.subjects = subjects(&lines);
+    let alike = |a: usize, b: usize| {
+        let (a, b) = (&ink.strokes[a], &ink.strokes[b]);
+        a.mode == b.mode && a.color == b.color
+    };
+    let again = drawn_again(&lines, alike);
+    ink.subjects = subjects(&lines).without(again);
     notes.tell(report);
     if ink.strokes.is_empty() {
         report.warn("empty-drawing", "the drawing has no stroke that can be used: draw a line or an outline");

@@ -12,6 +12,7 @@
 //!
 //! The feature `training` adds what trains the classifier; programs that make plants do without it.
 
+mod again;
 mod class;
 mod classify;
 mod clean;
@@ -21,8 +22,8 @@ mod subjects;
 
 pub use class::StrokeClass;
 pub use classify::{
-    COMMON_GROUND, Classified, KeptMeasures, LONE_LINE, Source, StrokeFeatures, SvmError, classify,
-    classify_again, features,
+    COMMON_GROUND, Classified, DRAWN_AGAIN, KeptMeasures, LONE_LINE, Source, StrokeFeatures, SvmError,
+    classify, classify_again, features,
 };
 #[cfg(any(test, feature = "training"))]
 pub use classify::{

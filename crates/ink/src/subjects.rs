@@ -35,13 +35,30 @@ pub struct Subjects {
     pub plants: Vec<Vec<usize>>,
     /// Rows of the ground that several plants stand on.
     pub ground: Vec<usize>,
+    /// Rows of strokes that only follow another one all the way, each with the row of that one: of no plant themselves.
+    pub again: Vec<(usize, usize)>,
 }
 
 impl Subjects {
     /// All strokes are of one plant.
     fn one(count: usize) -> Self {
         let all: Vec<usize> = (0..count).collect();
-        Self { plants: if count > 0 { vec![all] } else { Vec::new() }, ground: Vec::new() }
+        Self { plants: if count > 0 { vec![all] } else { Vec::new() }, ..Self::default() }
+    }
+
+    /// What was drawn again is left to the lines that it follows.
+    pub(crate) fn without(mut self, again: Vec<(usize, usize)>) -> Self {
+        let other = |row: &usize| again.binary_search_by_key(row, |a| a.0).is_err();
+        self.plants.iter_mut().for_each(|rows| rows.retain(other));
+        self.plants.retain(|rows| !rows.is_empty());
+        self.ground.retain(other);
+        self.again = again;
+        self
+    }
+
+    /// The drawing is not read as it stands: it shows several plants, or lines that were drawn again.
+    pub fn is_parted(&self) -> bool {
+        self.plants.len() > 1 || !self.again.is_empty()
     }
 }
 
@@ -73,7 +90,7 @@ pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
             g.strokes
         })
         .collect();
-    Subjects { plants, ground }
+    Subjects { plants, ground, ..Subjects::default() }
 }
 
 /// One stroke, measured.

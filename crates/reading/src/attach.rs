@@ -1,5 +1,6 @@
 //! Who bears what: stems lead to flowers, leaves get their stalks, fruits and roots find their places.
 
+use base::ops;
 use geom::{contains, point_at, polyline_length};
 use glam::DVec2;
 use ink::StrokeClass;
@@ -11,7 +12,8 @@ use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
 use crate::kept::{alike, same_bits};
 use crate::near::{Near, bounds};
-use crate::thresholds::{ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
+use crate::rules::STAMENS;
+use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{Veins, choose_midrib};
 use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord};
 
@@ -39,6 +41,15 @@ const NUT: f64 = 1.2;
 /// A stamen begins within this share of its flower's reach, and is at most so many times as long as that.
 const STAMEN_FOOT: f64 = 0.3;
 const STAMEN_LENGTH: f64 = 1.3;
+/// Lines over petals are stamens from so many on, where they lead aside from the middles of their petals by more than this share
+/// of the angle between two, on the average: of lines that lead anywhere that is half (*geometry*).
+const FEWEST_STAMENS: u32 = 3;
+const ASIDE: f64 = 0.3;
+/// Of a flower seen from the side stamens stand out: they begin this near to its middle, as a share of a petal, lead the way of
+/// one (the cosine), and end within so many times its size.
+const BURST_FOOT: f64 = 0.2;
+const BURST_WAY: f64 = 0.94;
+const BURST_LONG: f64 = 1.35;
 /// It is shorter than this share of the longest line: that one is the stem.
 const NO_STEM: f64 = 0.6;
 /// A root lies under the ground on the average by more than the first, and rises over it nowhere by more than the second.
@@ -218,8 +229,68 @@ pub(crate) fn part_discs(
     (flowers, nuts)
 }
 
+/// Takes lines out of petals that lie over them and are no veins of theirs: they begin at the middle of the flower and do not
+/// lead along the petals.
+fn over_petals(draft: &mut Draft<'_>, flowers: &[FlowerDraft], veins: &mut Veins) {
+    veins.resize(draft.blades.len(), Vec::new());
+    for flower in flowers.iter().filter(|f| f.petals.len() >= FEWEST_PETALS) {
+        #[expect(clippy::cast_precision_loss, reason = "petals")]
+        let room = ops::PI / flower.petals.len() as f64;
+        let (mut lines, mut aside) = (0_u32, 0.0);
+        for &i in &flower.petals {
+            let blade = &draft.blades[i];
+            let axis = blade.middle - flower.centre;
+            for line in &veins[i] {
+                let (a, b) = (line[0] - flower.centre, line[line.len() - 1] - flower.centre);
+                let far = if a.length() < b.length() { b } else { a };
+                lines += 1;
+                aside += (ops::atan2(axis.perp_dot(far), axis.dot(far)).abs() / room).min(1.0);
+            }
+        }
+        let burst = draft.lines.iter().filter(|l| bursts(draft, flower, l)).count() + lines as usize;
+        let out = burst > 1 + lines as usize && burst >= FEWEST_STAMENS as usize;
+        let all = out || (lines >= FEWEST_STAMENS && aside > ASIDE * f64::from(lines));
+        for &i in &flower.petals {
+            let (over, own): (Vec<_>, Vec<_>) = std::mem::take(&mut veins[i])
+                .into_iter()
+                .map(|points| (draft.ink.strokes.iter().position(|s| s.points.contains(&points[0])), points))
+                .partition(|(k, _)| all || k.is_some_and(|k| draft.rule[k] == Some(STAMENS)));
+            veins[i] = own.into_iter().map(|(_, points)| points).collect();
+            for (k, points) in over {
+                draft.lines.push(Line { points, source: k.map(|k| draft.ink.strokes[k].index) });
+            }
+        }
+    }
+}
+
+/// A line begins where the petals do, leads the way of one, and ends not far beyond it.
+fn bursts(draft: &Draft<'_>, flower: &FlowerDraft, line: &Line) -> bool {
+    let (a, b) = (line.points[0] - flower.centre, line.points[line.points.len() - 1] - flower.centre);
+    let (foot, top) = if a.length() < b.length() { (a, b) } else { (b, a) };
+    flower.petals.iter().any(|&i| {
+        let blade = &draft.blades[i];
+        let axis = blade.middle - flower.centre;
+        let along = axis.dot(top) > BURST_WAY * axis.length() * top.length();
+        along && foot.length() < BURST_FOOT * blade.size && top.length() < BURST_LONG * blade.size
+    })
+}
+
 /// Short lines from a flower's centre outwards are its stamens.
-pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots: &[DVec2]) {
+pub(crate) fn stamens(
+    draft: &mut Draft<'_>,
+    flowers: &mut [FlowerDraft],
+    roots: &[DVec2],
+    veins: &mut Veins,
+) {
+    over_petals(draft, flowers, veins);
+    for k in draft
+        .of_class(StrokeClass::Other)
+        .into_iter()
+        .filter(|&k| draft.rule[k] == Some(STAMENS))
+        .collect::<Vec<_>>()
+    {
+        draft.organ[k] = OrganWord::Stamen;
+    }
     if flowers.is_empty() || draft.lines.is_empty() {
         return;
     }
@@ -235,9 +306,15 @@ pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots:
     let farthest = reach.iter().copied().fold(ROUNDING, f64::max).min(0.3);
     let longest = draft.longest();
     let alone = draft.lines.len() == 1;
+    let bundle = |f: &FlowerDraft| {
+        let petals = f.disc.is_none() && f.petals.len() >= FEWEST_PETALS;
+        petals && draft.lines.iter().filter(|l| bursts(draft, f, l)).count() >= FEWEST_STAMENS as usize
+    };
+    let bundles: Vec<bool> = flowers.iter().map(bundle).collect();
     for line in std::mem::take(&mut draft.lines) {
         let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
         let length = polyline_length(&line.points);
+        let burst = (0..flowers.len()).find(|&f| bundles[f] && bursts(draft, &flowers[f], &line));
         let found = index.nearest(a.midpoint(b), farthest, |f| {
             let centre = flowers[f].centre;
             let disc = flowers[f].disc.map_or(0.0, |d| 1.35 * d.radius);
@@ -246,6 +323,12 @@ pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots:
             near < disc.max(STAMEN_FOOT * reach[f]) && far < reach[f] && length < STAMEN_LENGTH * reach[f]
         });
         match found {
+            _ if burst.is_some() => {
+                let f = burst.unwrap_or_default();
+                let centre = flowers[f].centre;
+                flowers[f].stamens.push(oriented(&line.points, b.distance(centre) < a.distance(centre)));
+                draft.set_organ(line.source, OrganWord::Stamen);
+            }
             Some((e, _)) if !alone && (length < NO_STEM * longest || draft.lines.is_empty()) => {
                 let last = b.distance(e.point) < a.distance(e.point);
                 flowers[e.owner].stamens.push(oriented(&line.points, last));

@@ -148,6 +148,24 @@ impl Sheetlet {
         })
     }
 
+    /// Leads the outline on to a point outside of it, from its nearest point; returns where it begins then.
+    pub(crate) fn claw(&mut self, root: DVec2, foot: DVec2) -> DVec2 {
+        let far = |k: &usize| self.outline[*k].distance_squared(root);
+        let nearest = (0..self.outline.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+        let Some(at) = nearest else { return root };
+        let mut outline = self.outline.clone();
+        outline[at] = foot;
+        // Not where that would cross the outline.
+        match simple_outline(&outline).filter(|o| o.len() == outline.len()) {
+            Some(longer) => {
+                self.outline = longer;
+                self.gap = foot;
+                foot
+            }
+            None => root,
+        }
+    }
+
     /// The point of the outline nearest to `p`, and its distance.
     pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         nearest_on_ring(&self.outline, p)

@@ -233,7 +233,7 @@ impl Forest {
         let mut frontier = self.attach_to_bodies(&lines, &mut done, &mut row_of, touch);
         let seeds = seed_order(&lines, &length, &order, hints, floor);
         for seed in seeds {
-            self.grow_levels(&lines, &contacts, &mut frontier, &mut done, &mut row_of, touch);
+            self.grow_levels(&lines, &contacts, (&mut frontier, hints), &mut done, &mut row_of, touch);
             if done[seed] {
                 continue;
             }
@@ -248,7 +248,7 @@ impl Forest {
                 frontier = vec![seed];
             }
         }
-        self.grow_levels(&lines, &contacts, &mut frontier, &mut done, &mut row_of, touch);
+        self.grow_levels(&lines, &contacts, (&mut frontier, hints), &mut done, &mut row_of, touch);
     }
 
     /// Level 1 of an outlined trunk: the lines whose ends touch it.
@@ -282,7 +282,7 @@ impl Forest {
         &mut self,
         lines: &[Line],
         contacts: &[Vec<Contact>],
-        frontier: &mut Vec<usize>,
+        (frontier, hints): (&mut Vec<usize>, &Hints),
         done: &mut [bool],
         row_of: &mut [Option<usize>],
         touch: f64,
@@ -309,7 +309,7 @@ impl Forest {
                 next.push(j);
             }
             for (row, list) in below {
-                self.below(row, &list, lines, row_of);
+                self.below(row, &list, (lines, hints), row_of);
             }
             *frontier = next;
         }
@@ -335,9 +335,22 @@ impl Forest {
         Borne::Axis(self.push(points, Vec::new(), Some(Attachment { axis: row, at: at.at }), line.source))
     }
 
-    /// Lines that go down from the foot of `row`: one is the rest of the stem, several are roots.
-    fn below(&mut self, row: usize, list: &[(usize, bool)], lines: &[Line], row_of: &mut [Option<usize>]) {
+    /// Lines that go down from the foot of `row`: one is the rest of the stem, several are roots, and so is what goes down
+    /// from the ground.
+    fn below(
+        &mut self,
+        row: usize,
+        list: &[(usize, bool)],
+        (lines, hints): (&[Line], &Hints),
+        row_of: &mut [Option<usize>],
+    ) {
+        let soil = |p: DVec2| hints.soil.nearest(p, TOUCH, |_| true).is_some();
+        let taproot = |j: usize, last: bool| {
+            let p = &lines[j].points;
+            soil(end(p, last)) && !soil(end(p, !last))
+        };
         if let &[(j, last)] = list
+            && !taproot(j, last)
             && self.joins < MOST_JOINS
         {
             self.joins += 1;

@@ -59,6 +59,14 @@ impl RegionDraft {
     }
 }
 
+/// A stem with leaves, or petals, on its way that were drawn in one go.
+#[derive(Clone, Debug)]
+pub(crate) struct OneGo {
+    /// Each begins and ends on the stem.
+    pub(crate) loops: Vec<Vec<DVec2>>,
+    pub(crate) stem: Vec<DVec2>,
+}
+
 /// The drawing half understood.
 #[derive(Debug)]
 pub(crate) struct Draft<'a> {
@@ -98,6 +106,10 @@ pub(crate) struct Draft<'a> {
     pub(crate) united: Vec<usize>,
     /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
     pub(crate) legs: LiteMap<usize, Vec<Vec<DVec2>>>,
+    /// Petals that stand off their disc: the disc's stroke, and theirs.
+    pub(crate) rings: Vec<(usize, Vec<usize>)>,
+    /// Strokes that are a stem and leaves.
+    pub(crate) one_go: LiteMap<usize, OneGo>,
 }
 
 impl<'a> Draft<'a> {
@@ -126,6 +138,8 @@ impl<'a> Draft<'a> {
             sides: Vec::new(),
             loops: LiteMap::new(),
             legs: LiteMap::new(),
+            rings: Vec::new(),
+            one_go: LiteMap::new(),
         }
     }
 
@@ -236,6 +250,14 @@ impl<'a> Draft<'a> {
         let (mut open, mut thin) = (Vec::new(), Vec::new());
         for k in strokes {
             let s = &ink.strokes[k];
+            if let Some(parts) = self.one_go.get(&k) {
+                let leaf =
+                    |line: &Vec<DVec2>| Some(Sheetlet { root: Some(line[0]), ..Sheetlet::new(line, k)? });
+                self.blades.extend(parts.loops.iter().filter_map(leaf));
+                self.lines.push(Line { points: parts.stem.clone(), source: Some(s.index) });
+                self.organ[k] = OrganWord::Leaf;
+                continue;
+            }
             let drawn = self.kept.borrow_mut().blades.get(
                 s.index,
                 |points| alike(points, &s.points),

@@ -20,7 +20,7 @@ use crate::corolla::{Core, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::{Near, bounds};
 use crate::rings::Ring;
-use crate::thresholds::{FEWEST_PETALS, ROUNDING, STOPPED_SHORT, WELL_SHORT};
+use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::{BladeReading, DiscReading, Kind, OrganWord};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
@@ -242,6 +242,7 @@ pub(crate) fn gather(
     let usual = median(draft.blades.iter().map(|b| b.size)).unwrap_or(0.1);
 
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
+    off_disc(draft, &mut flowers, &mut roots, &mut taken);
     on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
     let free: Vec<usize> = (0..n).filter(|&i| !taken[i]).collect();
@@ -313,6 +314,36 @@ fn by_disc(
             flowers[owner].petals.push(i);
             roots[i] = Some(p);
             taken[i] = true;
+        }
+    }
+}
+
+/// Petals that stand off their disc are led to it: each by a claw, as narrow as the pen.
+fn off_disc(
+    draft: &mut Draft<'_>,
+    flowers: &mut [FlowerDraft],
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    for (stroke, petals) in std::mem::take(&mut draft.rings) {
+        let source = draft.ink.strokes[stroke].index;
+        let of = |f: &&mut FlowerDraft| f.disc.is_some_and(|d| d.source == Some(source));
+        let Some(flower) = flowers.iter_mut().find(of) else { continue };
+        let Some(disc) = flower.disc else { continue };
+        for (i, blade) in draft.blades.iter_mut().enumerate().filter(|(_, b)| petals.contains(&b.stroke)) {
+            if !taken[i] {
+                flower.petals.push(i);
+                taken[i] = true;
+                roots[i] = Some(blade.nearest(disc.centre).0);
+            } else if !flower.petals.contains(&i) {
+                continue;
+            }
+            let Some(root) = roots[i] else { continue };
+            let away = root.distance(disc.centre);
+            if away > disc.radius + SAME_PLACE {
+                let foot = disc.centre + (root - disc.centre) * (disc.radius / away);
+                roots[i] = Some(blade.claw(root, foot));
+            }
         }
     }
 }

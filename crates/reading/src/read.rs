@@ -141,13 +141,14 @@ fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repo
 
 /// Every plant of a drawing.
 fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    if !ink.is_several() {
+    if !ink.subjects.is_parted() {
         return one(asked, ink, classes, First::of(asked, ink, classes), report);
     }
     let parts = several::parts(ink, classes);
+    let several = parts.len() > 1;
     let mut firsts: Vec<First> = parts.iter().map(|p| First::of(asked, &p.ink, &p.classes)).collect();
     let mut left = vec![false; parts.len()];
-    if asked.leaves_out(ink) {
+    if several && asked.leaves_out(ink) {
         let pieces: Vec<aside::Piece<'_>> = parts
             .iter()
             .zip(&firsts)
@@ -158,7 +159,7 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
             First::of(asked, &part.ink, &part.classes).shares.no_plant
         });
     }
-    if asked.kind.is_none() && asked.is_free(ink, classes) && !left.contains(&true) {
+    if several && asked.kind.is_none() && asked.is_free(ink, classes) && !left.contains(&true) {
         let first = First::of(asked, ink, classes);
         if first.is_one() {
             return one(asked, ink, classes, first, report);
@@ -347,7 +348,7 @@ fn attempt(
     }
     outlines::scribbled_trunk(&mut draft);
     draft.scribbled_crowns(report);
-    let veins = veins::collect(&mut draft, off);
+    let mut veins = veins::collect(&mut draft, off);
     draft.trim_at_pots();
     draft.last_resort(&discs, report);
     let thorns = outlines::thorns(&mut draft);
@@ -357,7 +358,7 @@ fn attempt(
     let (discs, nuts) = attach::part_discs(&draft, discs);
     let bearers = flowers::Bearers::new(&draft);
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
-    attach::stamens(&mut draft, &mut flowers, &roots);
+    attach::stamens(&mut draft, &mut flowers, &roots, &mut veins);
     let mut fruits = draft.fruits(&nuts);
     let hints = draft.hints(&flowers.iter().map(|f| f.centre).collect::<Vec<_>>());
     let lines = std::mem::take(&mut draft.lines);

@@ -2,7 +2,7 @@
 
 use base::Report;
 use glam::DVec2;
-use ink::{Classified, Ink, InkMap, Source, StrokeClass};
+use ink::{Classified, DRAWN_AGAIN, Ink, InkMap, Source, StrokeClass};
 
 use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading, aside};
 
@@ -27,11 +27,23 @@ pub(crate) fn parts(ink: &Ink, classes: &[Classified]) -> Vec<Part> {
     let mut other: Vec<usize> = other.collect();
     let own = ink.subjects.plants.iter().map(|rows| {
         let mut rows = rows.clone();
+        rows.extend(
+            again(ink, classes, true)
+                .filter(|a| rows.binary_search(&a.1).is_ok())
+                .map(|a| a.0)
+                .collect::<Vec<_>>(),
+        );
         rows.append(&mut other);
         rows.sort_unstable();
         part(ink, classes, rows)
     });
     own.collect()
+}
+
+/// Lines that were drawn again: those of which the user says what they are, and are read, or the others.
+fn again(ink: &Ink, classes: &[Classified], named: bool) -> impl Iterator<Item = (usize, usize)> {
+    let by_user = |row: usize| classes.get(row).is_some_and(|c| c.source == Source::User);
+    ink.subjects.again.iter().copied().filter(move |a| by_user(a.0) == named)
 }
 
 /// What was read of a drawing, piece by piece.
@@ -76,6 +88,16 @@ impl<'a> Collected<'a> {
             })
         });
         all.strokes.extend(ground);
+        for (row, first) in again(ink, self.classes, false) {
+            let (Some(own), Some(first)) = (ink.strokes.get(row), ink.strokes.get(first)) else { continue };
+            let Some(said) = all.strokes.iter().find(|s| s.index == first.index).copied() else { continue };
+            all.strokes.push(StrokeReading { index: own.index, source: Source::Rule(DRAWN_AGAIN), ..said });
+            if let Some(plant) = all.plants.iter_mut().find(|p| p.strokes.binary_search(&first.index).is_ok())
+                && let Err(at) = plant.strokes.binary_search(&own.index)
+            {
+                plant.strokes.insert(at, own.index);
+            }
+        }
         all.strokes.extend(ink.skipped.iter().map(|&index| StrokeReading {
             index,
             class: StrokeClass::Other,

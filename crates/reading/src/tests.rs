@@ -1,4 +1,5 @@
 mod flowers;
+mod marks;
 mod taken;
 
 use base::Report;

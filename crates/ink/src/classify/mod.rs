@@ -42,6 +42,9 @@ const LONE_GAP: f64 = 0.7;
 /// Applied here, too: what several plants stand on is their ground.
 pub const COMMON_GROUND: &str = "common-ground";
 
+/// Applied here, too: what follows another line all the way is what that one is.
+pub const DRAWN_AGAIN: &str = "drawn-again";
+
 /// The models in the repository.
 fn trained() -> Option<&'static StrokeModels> {
     static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
@@ -93,7 +96,7 @@ fn judge(
     kept: &mut KeptMeasures,
     run: &Run<'_>,
 ) -> Vec<Classified> {
-    if ink.is_several() {
+    if ink.subjects.is_parted() {
         return judge_each(models, ink, known, kept, run);
     }
     let unknown = |i: usize| known.get(i).is_none_or(Option::is_none);
@@ -155,6 +158,11 @@ fn judge_each(
             if let Some(slot) = found.get_mut(row) {
                 *slot = class;
             }
+        }
+    }
+    for &(row, first) in &ink.subjects.again {
+        if let (None, Some(&class)) = (known.get(row).copied().flatten(), found.get(first)) {
+            found[row] = Classified { source: Source::Rule(DRAWN_AGAIN), shown: None, ..class };
         }
     }
     found

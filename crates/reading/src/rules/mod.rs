@@ -9,7 +9,11 @@
 
 mod as_kind;
 mod grass;
+mod hanging;
+mod one_go;
 mod pots;
+mod shading;
+mod stamens;
 mod stems;
 mod trees;
 mod whole_flower;
@@ -18,10 +22,10 @@ mod whole_tree;
 
 use geom::contains;
 use glam::DVec2;
-use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+use ink::{COMMON_GROUND, DRAWN_AGAIN, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
-use crate::draft::Draft;
+use crate::draft::{Draft, OneGo};
 use crate::thresholds::STRAIGHT;
 
 pub(crate) use as_kind::take_for;
@@ -30,6 +34,8 @@ pub(crate) use as_kind::take_for;
 pub const READ_AS: &str = "read-as";
 /// The rule that what a line is follows from where it lies.
 pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
+/// The rule about stamens with their anthers.
+pub(crate) const STAMENS: &str = "stamens";
 /// The rule that petals and leaves are told apart by their colours.
 pub(crate) const GREEN_LEAVES: &str = "green-leaves";
 
@@ -52,6 +58,10 @@ struct Findings {
     classes: Vec<(usize, StrokeClass)>,
     /// Lines that were drawn in one go, there and back: the pieces of such a stroke.
     legs: Vec<(usize, [Vec<DVec2>; 2])>,
+    /// Petals that stand off their disc: the disc's stroke, and theirs.
+    rings: Vec<(usize, Vec<usize>)>,
+    /// Stems with leaves on their way, drawn in one go.
+    one_go: Vec<(usize, OneGo)>,
     /// Two of the lines are surely the sides of a trunk.
     trunk: bool,
     /// Strokes whose class no later rule changes: it follows from the whole drawing.
@@ -104,6 +114,12 @@ pub const RULES: &[Rule] = &[
         "A low, flat line on which several plants stand is their ground.",
     ),
     rule(
+        DRAWN_AGAIN,
+        MANY,
+        |_| Findings::default(), // `ink::clean` finds them, and `read` leaves them to the lines that they follow
+        "What follows another line all the way is that line, drawn again.",
+    ),
+    rule(
         crate::BESIDE_THE_PLANT,
         MANY,
         |_| Findings::default(), // `read` applies it, because it compares what stands beside one another
@@ -134,6 +150,30 @@ pub const RULES: &[Rule] = &[
         "An outline that holds nothing but a line along its middle, and lines that leave that one, is a leaf with its veins.",
     ),
     rule(
+        STAMENS,
+        MANY,
+        stamens::stamens,
+        "Lines from the middle of a flower that end in small rings are its stamens.",
+    ),
+    rule(
+        "one-go",
+        SOME,
+        one_go::one_go,
+        "A line that comes back to itself on its way and goes on is a stem, and the loops are its leaves.",
+    ),
+    rule(
+        "fruits-on-twigs",
+        MANY,
+        hanging::fruits_on_twigs,
+        "Round rings alike that hang from twigs or stalks are fruits.",
+    ),
+    rule(
+        "outline-is-no-twig",
+        MANY,
+        hanging::outlines_are_no_twigs,
+        "A small outline on what is taken for a bare tree is a leaf.",
+    ),
+    rule(
         "ground-over-roots",
         SOME,
         pots::ground_over_roots,
@@ -158,12 +198,23 @@ pub const RULES: &[Rule] = &[
         "The largest closed outline is a crown where the tops of a trunk reach it from below, however smooth it is.",
     ),
     rule(
+        "shading",
+        MANY,
+        shading::shading,
+        "A line to and fro in an outline, and lines side by side in a crown, are shading.",
+    ),
+    rule(
         "line-is-no-fruit",
         MANY,
         trees::line_is_no_fruit,
         "A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.",
     ),
-    rule("fruit-in-a-crown", MANY, trees::fruit_in_crown, "A small ring inside a crown is a fruit."),
+    rule(
+        "fruit-in-a-crown",
+        MANY,
+        trees::fruit_in_crown,
+        "A small ring inside a crown is a fruit, and a small outline that is longer than wide a leaf.",
+    ),
     rule(
         "pot",
         MANY,
@@ -220,9 +271,13 @@ fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
     for (stroke, legs) in found.legs {
         draft.legs.insert(stroke, legs.into());
     }
+    for (stroke, parts) in found.one_go {
+        draft.one_go.insert(stroke, parts);
+    }
     draft.trunk |= found.trunk;
     found.settled.iter().for_each(|&k| draft.settled[k] = true);
     draft.united.extend(found.united);
+    draft.rings.extend(found.rings);
 }
 
 /// Ends nearer than this share of the length: an outline that the pen meant to close.
@@ -267,6 +322,12 @@ fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
 /// A rule may change it: its class is not sure.
 pub(crate) fn unsure(draft: &Draft<'_>, k: usize) -> bool {
     !draft.settled[k] && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
+}
+
+/// Decided by no more than what the whole is taken for.
+fn free(draft: &Draft<'_>, k: usize) -> bool {
+    let settled = draft.settled[k] && draft.rule[k] != Some(READ_AS);
+    !settled && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
 /// Highest point first, lowest point last.

@@ -35,6 +35,8 @@ const WIDENS: f64 = 0.95;
 const FULL: f64 = 0.6;
 /// The ground rises by less than this share of its width, and what stands on it by more than so many times [`NEAR`].
 const FLAT: f64 = 0.08;
+/// A taproot is below less than this share as wide as above; a pot is wider.
+const POINTED: f64 = 0.4;
 const RISES: f64 = 4.0;
 
 /// A box at the bottom with a flat top on which the plant stands is its pot.
@@ -125,17 +127,28 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
         let below: Vec<usize> =
             others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
         // What has a bottom is a pot.
-        let lines = below.iter().all(|&j| openness(&strokes[j]) > 0.5 && unsure(draft, j) && !level(j));
+        let line = |j: usize| openness(&strokes[j]) > 0.5 && !level(j);
+        let lines = below.iter().all(|&j| unsure(draft, j) && (line(j) || tapers(&strokes[j].points, y)));
+        let taproot = below.iter().any(|&j| !line(j)) && others().any(|(_, b)| b.1.y > y + RISES * NEAR);
         let stands = others().any(|(j, b)| {
             b.1.y > y + RISES * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
         });
         // Roots hang from the ground or from one another: what lies apart is something else.
         let hangs = below.iter().any(|&j| boxes[j].1.y > y - NEAR);
-        if lines && stands && hangs {
+        if lines && (stands || taproot) && hangs {
             found.settle(k, StrokeClass::Ground);
-            below.into_iter().for_each(|j| found.settle(j, StrokeClass::Axis));
+            below.into_iter().filter(|&j| line(j)).for_each(|j| found.settle(j, StrokeClass::Axis));
             break;
         }
     }
     found
+}
+
+/// An outline that hangs from a level, open there or closed, and runs to a point below: a taproot.
+fn tapers(points: &[DVec2], level: f64) -> bool {
+    let Some((outline, (lo, hi))) = simple_outline(points).zip(bounds(points)) else { return false };
+    let at = |share: f64| width_at(&outline, lo.y + share * (hi.y - lo.y));
+    (hi.y - level).abs() < NEAR
+        && hi.y - lo.y > hi.x - lo.x
+        && at(2.0 * LOWER) < POINTED * at(1.0 - 2.0 * LOWER)
 }

@@ -5,13 +5,14 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{
-    CLOSED, Findings, REACH, SIDES_APART, any, openness, outside, share_inside, standing, unsure, upright,
+    CLOSED, Findings, REACH, SIDES_APART, any, ends, openness, outside, share_inside, standing, unsure,
+    upright,
 };
 use crate::contour::crown_outline;
 use crate::draft::Draft;
 use crate::near::bounds;
 use crate::rings::rings;
-use crate::thresholds::WELL_SHORT;
+use crate::thresholds::{STOPPED_SHORT, WELL_SHORT};
 
 /// The longer of a trunk's sides is at most one over this times as long as the other.
 const ALIKE: f64 = 0.55;
@@ -27,6 +28,10 @@ const ROUND: f64 = 0.6;
 const LINE: f64 = 0.6;
 /// As [`LINE`], of a stalk: a slice of a fruit is an arc.
 const STRAIGHT_LINE: f64 = 0.85;
+/// It fills this share of its box: of a circle 0.79, of a lens that slants less than 0.55 (*geometry*).
+const FILLS: f64 = 0.62;
+/// A leaf's area over the square of its outline's length at least: less is a line.
+const OPEN: f64 = 0.015;
 /// A fruit covers less than this share of its crown.
 const SMALL: f64 = 0.03;
 /// Sides of a trunk are nearer to one another than so many times the shorter one's length; so many times as far apart above as
@@ -36,6 +41,11 @@ const SPREAD: f64 = 1.6;
 const FEET: f64 = 0.15;
 /// A trunk that bears fronds is slimmer than this share of its length, and so many ends at least meet at its top.
 const SLIM: f64 = 0.3;
+/// A bare trunk is at its top at most so many times as wide as at its foot, and has so many limbs at least; they begin above this
+/// share of its height.
+const NARROWS: f64 = 1.15;
+const LIMBS: usize = 3;
+const LIMB_HIGH: f64 = 0.25;
 const FAN: usize = 4;
 /// The tops of a trunk's sides lie below this share of their crown's height.
 const INTO: f64 = 0.6;
@@ -82,7 +92,7 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
             let gaps = (a_top.distance(b_top), a_foot.distance(b_foot));
             let alike = short.min(long) > ALIKE * short.max(long);
             let beside = gaps.0.max(gaps.1) < BESIDE * short.min(long)
-                && gaps.0 > SIDES_APART
+                && gaps.1 > SIDES_APART
                 && gaps.0 < SPREAD * gaps.1
                 && (a_foot.x < b_foot.x) == (a_top.x < b_top.x);
             let deep = a_foot.y.max(b_foot.y) < low + FEET;
@@ -104,7 +114,10 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
                 .filter(|(k, p)| *k != a && *k != b && p.distance(hub) < 0.5 * gaps.0 + WELL_SHORT)
                 .count();
             let slim = gaps.0.max(gaps.1) < SLIM * short.min(long);
-            if crowned || (fan >= FAN && slim && crowns.is_empty()) {
+            let bare =
+                slim && crowns.is_empty() && gaps.0 < NARROWS * gaps.1 && limbs(draft, (a, b), hub) >= LIMBS;
+            let open = gaps.0 > SIDES_APART;
+            if bare || (open && (crowned || (fan >= FAN && slim && crowns.is_empty()))) {
                 sides = Some((a, b));
             }
         }
@@ -115,6 +128,33 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     }
     found.trunk = sides.is_some();
     found
+}
+
+/// Lines that begin on the sides of a trunk, or at its top, and lead away; nothing else may stand as tall, or bear leaves.
+fn limbs(draft: &Draft<'_>, (a, b): (usize, usize), hub: DVec2) -> usize {
+    use StrokeClass::{Blade, Corolla, Disc};
+    if any(draft, &[Blade, Corolla, Disc]) {
+        return 0;
+    }
+    let strokes = &draft.ink.strokes;
+    let sides = [&strokes[a].points, &strokes[b].points];
+    let (_, foot) = ends(sides[0]);
+    let tall = hub.y - foot.y;
+    let wide = sides.map(|s| ends(s).1).map(|f| f.x);
+    let wide = (wide[0] - wide[1]).abs();
+    let off = |p: DVec2| {
+        let near = sides.into_iter().filter_map(|s| geom::distance_to_polyline(s, p));
+        near.chain([p.distance(hub)]).fold(f64::INFINITY, f64::min)
+    };
+    (0..draft.class.len())
+        .filter(|&k| k != a && k != b && openness(&strokes[k]) > LINE)
+        .filter(|&k| {
+            let p = &strokes[k].points;
+            let (from, to) = (p[0], p[p.len() - 1]);
+            let (from, to) = if off(from) < off(to) { (from, to) } else { (to, from) };
+            from.y > foot.y + LIMB_HIGH * tall && off(from) < 0.5 * wide + STOPPED_SHORT && off(to) > wide
+        })
+        .count()
 }
 
 /// The largest closed outline of the drawing is a crown where the tops of a drawn trunk reach it from below.
@@ -188,7 +228,7 @@ fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
     found
 }
 
-/// A small ring inside a crown is a fruit.
+/// A small ring inside a crown is a fruit, and what is longer than wide is a leaf.
 pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Disc, Fruit};
     let mut found = Findings::default();
@@ -203,8 +243,14 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
         let (Some(crown), hull) = (around, convex_hull(&s.points)) else { continue };
         let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };
         let round = (hi.x - lo.x).min(hi.y - lo.y) > ROUND * (hi.x - lo.x).max(hi.y - lo.y);
-        if openness(s) < CLOSED && round && signed_area(&hull) < SMALL * signed_area(crown) {
+        let full = signed_area(&hull) > FILLS * (hi.x - lo.x) * (hi.y - lo.y);
+        if openness(s) > CLOSED || signed_area(&hull) > SMALL * signed_area(crown) {
+            continue;
+        }
+        if round && full {
             found.set(k, Fruit);
+        } else if signed_area(&hull) > OPEN * s.length * s.length {
+            found.set(k, Blade);
         }
     }
     found

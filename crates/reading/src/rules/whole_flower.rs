@@ -34,6 +34,10 @@ const BESIDE: f64 = 0.2;
 const OUTSIDE: f64 = 0.8;
 const AT_DISC: f64 = 1.5;
 const AT_PETAL: f64 = 0.1;
+/// As [`AT_PETAL`], of petals that stand off their disc: at least so many, with no wider angle than that between two.
+const OFF_DISC: f64 = 1.6;
+const RING: usize = 5;
+const RING_GAP: f64 = 1.7;
 /// Circles touch where their middles are nearer than so many times both radii (1 of true circles, *geometry*); a berry behind
 /// others has between these shares of their usual radius.
 const TOUCH: f64 = 1.15;
@@ -68,11 +72,14 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     }
     let mut taken = vec![false; loops.len()];
     let mut flowers = 0;
-    while let Some((disc, petals)) = best(draft, &loops, &taken) {
+    while let Some((disc, petals)) =
+        best(draft, &loops, &taken, AT_PETAL).or_else(|| best(draft, &loops, &taken, OFF_DISC))
+    {
         for &p in &petals {
             taken[p] = true;
             found.settle(loops[p].stroke, StrokeClass::Blade);
         }
+        found.rings.push((loops[disc].stroke, petals.iter().map(|&p| loops[p].stroke).collect()));
         taken[disc] = true;
         found.settle(loops[disc].stroke, StrokeClass::Disc);
         flowers += 1;
@@ -120,10 +127,10 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
 }
 
 /// The free ring with the most petals round it.
-fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Option<(usize, Vec<usize>)> {
+fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool], off: f64) -> Option<(usize, Vec<usize>)> {
     let free: Vec<usize> = (0..loops.len()).filter(|&i| !taken[i]).collect();
     let rings = free.iter().copied().filter(|&d| loops[d].round);
-    let found = rings.filter_map(|d| petals_of(draft, loops, &free, d).map(|p| (d, p)));
+    let found = rings.filter_map(|d| petals_of(draft, loops, (&free, off), d).map(|p| (d, p)));
     found.max_by(|a, b| {
         let far = |d: usize| loops[d].radius;
         a.1.len().cmp(&b.1.len()).then(far(b.0).total_cmp(&far(a.0)))
@@ -131,7 +138,12 @@ fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Option<(usize, Vec
 }
 
 /// What stands round a ring, if it is petals.
-fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Option<Vec<usize>> {
+fn petals_of(
+    draft: &Draft<'_>,
+    loops: &[Loop],
+    (free, off): (&[usize], f64),
+    d: usize,
+) -> Option<Vec<usize>> {
     let disc = &loops[d];
     // How near to the disc's middle an outline comes, and how far from it.
     let reach = |l: &Loop| {
@@ -147,10 +159,7 @@ fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Opt
             // A petal begins beside the disc, or under it and then at its own end.
             let beside = !contains(&l.hull, disc.middle) && gap > BESIDE * disc.radius;
             let begins = beside || way > UNDER * far;
-            i != d
-                && begins
-                && way > OUTSIDE * disc.radius
-                && gap < AT_DISC * disc.radius + AT_PETAL * l.radius
+            i != d && begins && way > OUTSIDE * disc.radius && gap < AT_DISC * disc.radius + off * l.radius
         })
         .collect();
     if petals.len() < FEWEST {
@@ -181,6 +190,14 @@ fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Opt
             && l.round
             && beyond
     });
+    // Farther off, only a whole ring of petals alike, which begin alike far from it, belongs to a disc.
+    let mut gaps = petals.iter().map(|&i| reach(&loops[i]).0);
+    let first = gaps.next().unwrap_or(0.0);
+    let (least, most) = gaps.fold((first, first), |(a, b), g| (a.min(g), b.max(g)));
+    let ring = petals.len() >= RING && widest < RING_GAP && most - least < usual;
+    if off > AT_PETAL && !ring {
+        return None;
+    }
     let fits = petals.len() >= FEWEST && widest < WIDEST && disc.radius < LARGEST_DISC * usual && !behind;
     fits.then_some(petals)
 }
