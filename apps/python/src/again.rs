@@ -9,9 +9,9 @@ use burgeon::skin::SkinSpec;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::asked::Asked;
 use crate::fault::unusable;
 use crate::held::Held;
-use crate::make::Asked;
 
 impl Held {
     /// The plant of other settings, with its edits by hand, materials, classes of strokes, obstacles and place. `seeded`: the

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use burgeon::document::{Document, Editor, Maker, PlantId};
+use burgeon::document::{Command, CommandError, Document, Editor, Maker, PlantId};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
@@ -33,6 +33,14 @@ pub(crate) struct Found {
     /// What became of the points.
     pub(crate) tally: serde_json::Value,
     pub(crate) seed: Seed,
+}
+
+/// Does a command; one that changes nothing is no error.
+pub(crate) fn run(py: Python<'_>, editor: &mut Editor, command: Command) -> PyResult<()> {
+    match editor.run(command) {
+        Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
+        Err(e) => Err(refused(py, &e)),
+    }
 }
 
 impl Held {
@@ -120,7 +128,7 @@ impl Held {
     pub(crate) fn after(
         &self,
         py: Python<'_>,
-        commands: impl IntoIterator<Item = burgeon::document::Command>,
+        commands: impl IntoIterator<Item = Command>,
     ) -> PyResult<Arc<Self>> {
         self.after_with(py, None, commands)
     }
@@ -130,11 +138,11 @@ impl Held {
         &self,
         py: Python<'_>,
         wind: Option<bool>,
-        commands: impl IntoIterator<Item = burgeon::document::Command>,
+        commands: impl IntoIterator<Item = Command>,
     ) -> PyResult<Arc<Self>> {
         self.must_have_document(py)?;
         let mut editor = Editor::new(self.document.clone());
-        commands.into_iter().try_for_each(|command| crate::make::run(py, &mut editor, command))?;
+        commands.into_iter().try_for_each(|command| run(py, &mut editor, command))?;
         let mut scene = self.scene.clone();
         if let Some(wind) = wind {
             scene.set_wind(wind);

@@ -17,6 +17,7 @@
 //! The package `burgeon` (apps/python/burgeon) is what people import; this is its private module.
 
 mod again;
+mod asked;
 mod column;
 mod compute;
 mod fault;

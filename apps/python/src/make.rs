@@ -5,157 +5,25 @@ use std::sync::Arc;
 
 use burgeon::bloom::{FlowerSpec, GrowthLaw, Offset, Series};
 use burgeon::document::{
-    Command, CommandError, Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker,
-    NewPlant, PlantId, SceneCommand, Settings, SketchCommand, TreeCommand,
+    Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantId, Settings,
+    SketchCommand,
 };
 use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, MarksAxes, ModelFormat};
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{Drawing, StrokeClass};
 use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
 use burgeon::sketch::SketchSpec;
-use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::skin::SkinSpec;
 use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use serde_json::Value;
 
+use crate::asked::Asked;
 use crate::compute::compute;
 use crate::fault::{refused, unusable};
-use crate::held::Held;
+use crate::held::{Held, run};
 use crate::model::axes;
 use crate::plant::RawPlant;
-use crate::value::json_of;
-
-/// What all makers are asked for.
-#[derive(FromPyObject)]
-pub(crate) struct Asked<'py> {
-    #[pyo3(item)]
-    pub(crate) seed: u64,
-    #[pyo3(item)]
-    pub(crate) budget: f64,
-    /// Fields of the maker's spec.
-    #[pyo3(item)]
-    fields: Bound<'py, PyDict>,
-    /// Fields of how it is meshed, and `wind`.
-    #[pyo3(item)]
-    skin: Bound<'py, PyDict>,
-}
-
-impl Asked<'_> {
-    /// A spec with the fields that are asked for in the place of its own.
-    pub(crate) fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
-        if self.fields.is_empty() {
-            return burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e));
-        }
-        put(py, base, json_of(self.fields.as_any(), "")?)
-    }
-
-    pub(crate) fn skin(&self, py: Python<'_>) -> PyResult<(SkinSpec, bool)> {
-        let (skin, wind) = self.skin_on(py, &SkinSpec::default())?;
-        Ok((skin, wind.unwrap_or(false)))
-    }
-
-    /// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
-    /// said.
-    pub(crate) fn skin_on(&self, py: Python<'_>, base: &SkinSpec) -> PyResult<(SkinSpec, Option<bool>)> {
-        let mut fields = json_of(self.skin.as_any(), "")?;
-        // What a schema of saved fields does not have.
-        let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
-        let wind = match unsaved("wind") {
-            None => None,
-            Some(Value::Bool(wind)) => Some(wind),
-            Some(other) => {
-                return Err(PyValueError::new_err(format!("wind must be True or False, not {other}")));
-            }
-        };
-        let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
-        let mut skin = put(py, base, fields)?;
-        if let Some(size) = size {
-            let pixels =
-                size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
-            skin.texture_size = pixels.ok_or_else(|| {
-                PyValueError::new_err(format!("texture_size must be 64 to 4096 pixels, not {size}"))
-            })?;
-        }
-        if let Some(word) = foliage {
-            skin.foliage = match word.as_str() {
-                Some("outlines") => Foliage::Outlines,
-                Some("cards") => Foliage::Cards,
-                Some("by-level") => Foliage::ByLevel,
-                _ => {
-                    let known = "outlines, cards or by-level";
-                    return Err(PyValueError::new_err(format!("foliage must be {known}, not {word}")));
-                }
-            };
-        }
-        Ok((skin, wind))
-    }
-
-    pub(crate) fn seed(&self) -> Seed {
-        Seed::new(self.seed)
-    }
-
-    pub(crate) fn budget(&self) -> PyResult<f64> {
-        if (1.0..=1000.0).contains(&self.budget) {
-            return Ok(self.budget);
-        }
-        Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {}", self.budget)))
-    }
-
-    fn made(&self, py: Python<'_>, document: Document, id: PlantId, wind: bool) -> PyResult<RawPlant> {
-        let mut scene = SceneEvaluator::default();
-        scene.set_wind(wind);
-        Held::make(py, scene, document, id, self.budget).map(RawPlant)
-    }
-
-    /// The only plant of a document.
-    fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<RawPlant> {
-        self.bearing(py, name, maker, None, wind)
-    }
-
-    /// The only plant of a document, but for one that is hidden and whose leaf it bears.
-    fn bearing(
-        &self,
-        py: Python<'_>,
-        name: &str,
-        maker: Maker,
-        leaf: Option<Settings>,
-        wind: bool,
-    ) -> PyResult<RawPlant> {
-        let mut editor = Editor::new(Document::default());
-        let sheet: Vec<PlantId> = editor.document().plants().iter().map(DocumentPlant::id).collect();
-        let mut add = |settings| -> PyResult<PlantId> {
-            let plant = NewPlant { settings, strokes: Vec::new() };
-            run(py, &mut editor, SceneCommand::Add(Box::new(plant)).into())?;
-            let lost = || unusable(py, &"internal error, a bug in burgeon: the plant is not in its document");
-            editor.document().plants().last().map(DocumentPlant::id).ok_or_else(lost)
-        };
-        let lender = leaf.map(|leaf| add(Settings { hidden: true, ..leaf })).transpose()?;
-        let id = add(Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() })?;
-        if lender.is_some() {
-            run(py, &mut editor, TreeCommand::SetLeaf(lender).of(id))?;
-        }
-        run(py, &mut editor, SceneCommand::Rename(name.to_owned()).into())?;
-        if !sheet.is_empty() {
-            run(py, &mut editor, SceneCommand::Remove(sheet).into())?;
-        }
-        self.made(py, editor.document().clone(), id, wind)
-    }
-}
-
-/// Does a command; one that changes nothing is no error.
-pub(crate) fn run(py: Python<'_>, editor: &mut Editor, command: Command) -> PyResult<()> {
-    match editor.run(command) {
-        Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
-        Err(e) => Err(refused(py, &e)),
-    }
-}
-
-/// A spec with some fields in the place of its own, all within their ranges.
-fn put<T: Spec>(py: Python<'_>, base: &T, fields: Value) -> PyResult<T> {
-    burgeon::spec::with_fields(base, fields).map_err(|e| refused(py, &e))
-}
 
 /// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.
 #[derive(FromPyObject)]
@@ -185,7 +53,7 @@ pub(crate) fn grow(
     let name = spec.name.clone();
     let mut tree = burgeon::tree_settings(&spec, preset);
     tree.skin = skin;
-    asked.bearing(py, &name, Maker::Tree(Box::new(tree)), leaf, wind)
+    asked.bearing(py, &name, Maker::Tree(Box::new(tree)), leaf, wind).map(RawPlant)
 }
 
 impl Base {
@@ -279,7 +147,7 @@ pub(crate) fn bloom(
     let (name, day) = (spec.name.clone(), day.unwrap_or(spec.opening_days));
     let law = law.map(|l| Arc::new(l.0.clone()));
     let flower = FlowerMaker { preset: base.preset, spec: Arc::new(spec), day, law };
-    asked.alone(py, &name, Maker::Flower(Box::new(flower)), wind)
+    asked.alone(py, &name, Maker::Flower(Box::new(flower)), wind).map(RawPlant)
 }
 
 /// A leaf of numbers, or of a file of marks or veins: its name and text.
@@ -298,7 +166,7 @@ pub(crate) fn leaf(
     let (_, wind) = asked.skin(py)?;
     let (name, text) = file.unwrap_or_else(|| ("leaf".into(), String::new()));
     let data = LeafData { name: name.clone(), text: text.into() };
-    asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind)
+    asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind).map(RawPlant)
 }
 
 /// Chief veins that start together: of a kind, with numbers of it; or of a file, by its name and text.
@@ -495,7 +363,7 @@ pub(crate) fn sketch(
     let mut editor = Editor::new(document);
     commands.into_iter().try_for_each(|command| run(py, &mut editor, command))?;
     document = editor.document().clone();
-    asked.made(py, document, id, wind)
+    asked.made(py, document, id, wind).map(RawPlant)
 }
 
 /// Every plant of a project of the Studio that is not hidden, or one of them by its row.

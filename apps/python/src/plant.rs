@@ -9,11 +9,11 @@ use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
+use crate::asked::Asked;
 use crate::column::{Column, Owner};
 use crate::compute::compute;
 use crate::fault::{refused, unusable};
 use crate::held::Held;
-use crate::make::Asked;
 use crate::model::{RawModel, axes};
 use crate::value::json_of;
 use crate::write::Form;

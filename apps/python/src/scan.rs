@@ -9,10 +9,11 @@ use burgeon::{Report, ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::asked::Asked;
 use crate::compute::compute;
 use crate::fault::{refused, unusable};
 use crate::held::{Found, Held};
-use crate::make::{Asked, Base};
+use crate::make::Base;
 use crate::model::axes;
 use crate::plant::RawPlant;
 

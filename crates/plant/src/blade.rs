@@ -92,6 +92,16 @@ impl Digestible for Blade {
 }
 
 impl Blade {
+    /// A flat blade of length 1 from its right margin, without root and tip.
+    pub fn mirrored(right: &[DVec2], relief: Relief) -> Self {
+        let mut outline = vec![DVec2::ZERO];
+        outline.extend_from_slice(right);
+        outline.push(DVec2::Y);
+        outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+        let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
+        Self { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
+    }
+
     /// The length from root to tip in the plane, metres.
     pub fn length(&self) -> f64 {
         self.midrib.last().map_or(0.0, |tip| tip.length())

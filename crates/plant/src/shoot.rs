@@ -1,43 +1,9 @@
 //! Shoots in needles or scales, each as one blade: its veins are their axes, its outline holds their needles.
 
-use base::Digest;
 use base::ops::{self, sin};
 use glam::DVec2;
 
-use crate::{Blade, Lift, Relief};
-
-/// The needles of a blade that is a whole shoot of them. Lengths are shares of the blade's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Needles {
-    /// Of a needle.
-    pub length: f64,
-    /// Of a needle where it is widest.
-    pub width: f64,
-    /// From a needle to the next on one side of an axis.
-    pub spacing: f64,
-    /// Between a needle and its axis, radians.
-    pub angle: f64,
-}
-
-/// Below this share of the shoot's length needles are scales.
-const SCALES: f64 = 0.045;
-
-impl Needles {
-    /// Needles of a length over that of the shoot, 0.01 to 0.6; scales if they are short. Scales lie close and overlap,
-    /// needles stand off.
-    pub fn of_length(length: f64) -> Self {
-        let length = if length.is_finite() { length.clamp(0.01, 0.6) } else { 0.1 };
-        if length < SCALES {
-            return Self { length, width: 0.4 * length, spacing: 0.5 * length, angle: 0.5 };
-        }
-        let width = (0.075 * length).clamp(0.005, 0.02);
-        Self { length, width, spacing: 2.2 * width, angle: 0.95 }
-    }
-
-    pub(crate) fn digest(&self, d: &mut Digest) {
-        d.add(&self.length).add(&self.width).add(&self.spacing).add(&self.angle);
-    }
-}
+use crate::{Blade, Needles, Relief};
 
 impl Blade {
     /// A shoot in needles, of length 1, with `shoots` side shoots on each side (0 to 12), each of which has some of its own
@@ -83,16 +49,6 @@ impl Blade {
         blade.veins = axes.split_off(1);
         blade.needles = Some(needles);
         blade
-    }
-
-    /// A flat blade of length 1 from its right margin, without root and tip.
-    pub fn mirrored(right: &[DVec2], relief: Relief) -> Self {
-        let mut outline = vec![DVec2::ZERO];
-        outline.extend_from_slice(right);
-        outline.push(DVec2::Y);
-        outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
-        let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
-        Self { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
     }
 }
 

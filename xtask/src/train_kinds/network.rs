@@ -10,10 +10,10 @@
 use base::{Draw, Seed, Stream, ops};
 
 /// Networks whose mean is taken, and units of each.
-const NETWORKS: u64 = 5;
+const NETWORKS: usize = 5;
 const OWN_UNITS: usize = 24;
 /// Units of the mean.
-pub(super) const UNITS: usize = NETWORKS as usize * OWN_UNITS;
+pub(super) const UNITS: usize = NETWORKS * OWN_UNITS;
 /// Times that each row is looked at, on the average.
 const ROUNDS: usize = 14;
 const BATCH: usize = 256;
@@ -45,13 +45,16 @@ pub(super) type Example<'a> = (&'a [f64], usize, f64);
 impl Network {
     /// The mean of [`NETWORKS`]; two hands learn them.
     pub(super) fn learn(examples: &[Example<'_>], columns: usize) -> Self {
-        const HANDS: u64 = 2;
-        let mut all: Vec<(u64, Self)> = std::thread::scope(|scope| {
+        const HANDS: usize = 2;
+        let mut all: Vec<(usize, Self)> = std::thread::scope(|scope| {
             let own = |hand| (0..NETWORKS).filter(move |k| k % HANDS == hand);
             let learn =
                 move |hand| own(hand).map(|k| (k, Self::one(examples, columns, k))).collect::<Vec<_>>();
             let hands: Vec<_> = (0..HANDS).map(|hand| scope.spawn(move || learn(hand))).collect();
-            hands.into_iter().flat_map(|h| h.join().unwrap_or_default()).collect()
+            hands
+                .into_iter()
+                .flat_map(|h| h.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+                .collect()
         });
         all.sort_by_key(|(k, _)| *k);
         Self::mean(&all.into_iter().map(|(_, net)| net).collect::<Vec<_>>())
@@ -73,10 +76,10 @@ impl Network {
         }
     }
 
-    fn one(examples: &[Example<'_>], columns: usize, number: u64) -> Self {
+    fn one(examples: &[Example<'_>], columns: usize, number: usize) -> Self {
         const UNITS: usize = OWN_UNITS;
         let numbers = examples.first().map_or(0, |e| e.0.len());
-        let r = &mut Seed::new(20).child(number).stream(Draw::Template);
+        let r = &mut Seed::new(20).child(number as u64).stream(Draw::Template);
         let mut chance =
             |n: usize, spread: f64| -> Vec<f64> { (0..n).map(|_| r.normal() * spread).collect() };
         let mut net = Self {

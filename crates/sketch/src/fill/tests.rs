@@ -195,7 +195,7 @@ fn a_conifers_crown_bears_shoots_in_needles_and_no_other_does() {
     for name in CROWNS {
         let plant = tree(name, &SketchSpec::default()).plant;
         let needled = |o: &&plant::Organ| match &plant.shapes[o.shape.index()] {
-            plant::Shape::Blade(blade) => blade.needles.is_some(),
+            Shape::Blade(blade) => blade.needles.is_some(),
             _ => false,
         };
         let (shoots, all) = (plant.organs.iter().filter(needled).count(), plant.organs.len());

@@ -1,0 +1,145 @@
+//! What all makers are asked for: a seed, fields of a spec, how to mesh.
+
+use std::sync::Arc;
+
+use burgeon::document::{
+    Document, DocumentPlant, Editor, Maker, NewPlant, PlantId, SceneCommand, Settings, TreeCommand,
+};
+use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::{SceneEvaluator, Seed, Spec};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+
+use crate::fault::{refused, unusable};
+use crate::held::{Held, run};
+use crate::value::json_of;
+
+/// What all makers are asked for.
+#[derive(FromPyObject)]
+pub(crate) struct Asked<'py> {
+    #[pyo3(item)]
+    pub(crate) seed: u64,
+    #[pyo3(item)]
+    pub(crate) budget: f64,
+    /// Fields of the maker's spec.
+    #[pyo3(item)]
+    fields: Bound<'py, PyDict>,
+    /// Fields of how it is meshed, and `wind`.
+    #[pyo3(item)]
+    skin: Bound<'py, PyDict>,
+}
+
+impl Asked<'_> {
+    /// A spec with the fields that are asked for in the place of its own.
+    pub(crate) fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
+        if self.fields.is_empty() {
+            return burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e));
+        }
+        put(py, base, json_of(self.fields.as_any(), "")?)
+    }
+
+    pub(crate) fn skin(&self, py: Python<'_>) -> PyResult<(SkinSpec, bool)> {
+        let (skin, wind) = self.skin_on(py, &SkinSpec::default())?;
+        Ok((skin, wind.unwrap_or(false)))
+    }
+
+    /// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
+    /// said.
+    pub(crate) fn skin_on(&self, py: Python<'_>, base: &SkinSpec) -> PyResult<(SkinSpec, Option<bool>)> {
+        let mut fields = json_of(self.skin.as_any(), "")?;
+        // What a schema of saved fields does not have.
+        let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
+        let wind = match unsaved("wind") {
+            None => None,
+            Some(Value::Bool(wind)) => Some(wind),
+            Some(other) => {
+                return Err(PyValueError::new_err(format!("wind must be True or False, not {other}")));
+            }
+        };
+        let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
+        let mut skin = put(py, base, fields)?;
+        if let Some(size) = size {
+            let pixels =
+                size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
+            skin.texture_size = pixels.ok_or_else(|| {
+                PyValueError::new_err(format!("texture_size must be 64 to 4096 pixels, not {size}"))
+            })?;
+        }
+        if let Some(word) = foliage {
+            skin.foliage = match word.as_str() {
+                Some("outlines") => Foliage::Outlines,
+                Some("cards") => Foliage::Cards,
+                Some("by-level") => Foliage::ByLevel,
+                _ => {
+                    let known = "outlines, cards or by-level";
+                    return Err(PyValueError::new_err(format!("foliage must be {known}, not {word}")));
+                }
+            };
+        }
+        Ok((skin, wind))
+    }
+
+    pub(crate) fn seed(&self) -> Seed {
+        Seed::new(self.seed)
+    }
+
+    pub(crate) fn budget(&self) -> PyResult<f64> {
+        if (1.0..=1000.0).contains(&self.budget) {
+            return Ok(self.budget);
+        }
+        Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {}", self.budget)))
+    }
+
+    pub(crate) fn made(
+        &self,
+        py: Python<'_>,
+        document: Document,
+        id: PlantId,
+        wind: bool,
+    ) -> PyResult<Arc<Held>> {
+        let mut scene = SceneEvaluator::default();
+        scene.set_wind(wind);
+        Held::make(py, scene, document, id, self.budget)
+    }
+
+    /// The only plant of a document.
+    pub(crate) fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<Arc<Held>> {
+        self.bearing(py, name, maker, None, wind)
+    }
+
+    /// The only plant of a document, but for one that is hidden and whose leaf it bears.
+    pub(crate) fn bearing(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        maker: Maker,
+        leaf: Option<Settings>,
+        wind: bool,
+    ) -> PyResult<Arc<Held>> {
+        let mut editor = Editor::new(Document::default());
+        let sheet: Vec<PlantId> = editor.document().plants().iter().map(DocumentPlant::id).collect();
+        let mut add = |settings| -> PyResult<PlantId> {
+            let plant = NewPlant { settings, strokes: Vec::new() };
+            run(py, &mut editor, SceneCommand::Add(Box::new(plant)).into())?;
+            let lost = || unusable(py, &"internal error, a bug in burgeon: the plant is not in its document");
+            editor.document().plants().last().map(DocumentPlant::id).ok_or_else(lost)
+        };
+        let lender = leaf.map(|leaf| add(Settings { hidden: true, ..leaf })).transpose()?;
+        let id = add(Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() })?;
+        if lender.is_some() {
+            run(py, &mut editor, TreeCommand::SetLeaf(lender).of(id))?;
+        }
+        run(py, &mut editor, SceneCommand::Rename(name.to_owned()).into())?;
+        if !sheet.is_empty() {
+            run(py, &mut editor, SceneCommand::Remove(sheet).into())?;
+        }
+        self.made(py, editor.document().clone(), id, wind)
+    }
+}
+
+/// A spec with some fields in the place of its own, all within their ranges.
+fn put<T: Spec>(py: Python<'_>, base: &T, fields: Value) -> PyResult<T> {
+    burgeon::spec::with_fields(base, fields).map_err(|e| refused(py, &e))
+}
