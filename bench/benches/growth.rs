@@ -16,7 +16,7 @@ use base::{Clock as _, Report, Run, Seed};
 use burgeon::glam::DVec3;
 use burgeon_bench::{Oak, Stopwatch, TwoThreads};
 use growth::{
-    ColonizeSpec, Colonized, Envelope, Fate, Obstacles, SelfOrganized, SelfOrganizingSpec, colonize,
+    ColonizeSpec, Colonized, Envelope, Obstacles, PointFate, SelfOrganized, SelfOrganizingSpec, colonize,
     self_organize,
 };
 
@@ -91,7 +91,7 @@ fn scaling() {
         let points = ball(n);
         let runs = (3_000_000 / (n * 10)).clamp(1, 50);
         let (ms, grown) = mean(runs, || grow(&points));
-        let lost = grown.fates.iter().filter(|f| **f == Fate::Unreached).count();
+        let lost = grown.fates.iter().filter(|f| **f == PointFate::Unreached).count();
         let (joints, rounds, peak) = (grown.skeleton.len(), grown.rounds, peak_mib());
         println!("{n:7} {ms:8.2} {joints:8} {rounds:7} {lost:9} {peak:9}");
         logs.push((base::ops::ln(n as f64), base::ops::ln(ms)));

@@ -9,7 +9,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let resolve = |_: &str| Some(bytes.to_vec());
     let read = read_model(bytes, ModelFormat::Glb, "fuzz", &ExportSpec::default(), &resolve, &mut report);
     if let Ok(model) = read {
-        let bad = model.validate().find(|f| !matches!(f, mesh::Fault::Degenerate(_)));
+        let bad = model.validate().find(|f| !matches!(f, mesh::MeshFault::Degenerate(_)));
         assert_eq!(bad, None, "what was read is sound");
         write_glb(&model, std::io::sink()).expect("writes what it read");
     }

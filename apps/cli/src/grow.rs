@@ -9,7 +9,7 @@ use burgeon::growth::{
     SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
-use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::skin::{FoliageStyle, SkinSpec};
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
     TreeSpec, make_tree, method_word, read_tree_spec,
@@ -62,7 +62,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let options = TreeOptions {
         skin: SkinSpec {
             worn: materials.unwrap_or_default().worn(),
-            foliage: args.foliage.map_or_else(Foliage::default, FoliageWord::foliage),
+            foliage: args.foliage.map_or_else(FoliageStyle::default, FoliageWord::foliage),
             ..args.surface.spec()
         },
         leaf,

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use burgeon::document::{
-    Command, CommandError, Document, DocumentPlant, Editor, Picture, PlantCommand, PlantId, SketchCommand,
+    Command, CommandError, Document, DocumentPlant, Editor, PlantCommand, PlantId, SketchCommand, WornPicture,
 };
 use burgeon::formats::{read_picture, write_png};
 use burgeon::mesh::Texture;
@@ -72,7 +72,7 @@ impl Materials {
             let mut png = Vec::new();
             write_png(texture.width, texture.height, &texture.pixels, &mut png)
                 .map_err(|e| Failure::Bug(e.to_string()))?;
-            let picture = Picture::new(png.into()).map_err(|e| Failure::Bad(format!("{name}: {e}")))?;
+            let picture = WornPicture::new(png.into()).map_err(|e| Failure::Bad(format!("{name}: {e}")))?;
             names.insert(name.clone(), picture.name());
             run(&mut editor, PlantCommand::AddPicture(picture).of(id))?;
         }

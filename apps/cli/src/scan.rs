@@ -19,7 +19,7 @@ use crate::{files, grow, levels, picture, report, say};
 
 /// What became of the points.
 #[derive(Debug, Serialize)]
-struct Tally {
+struct ScanTally {
     points: u64,
     ground: u64,
     noise: u64,
@@ -44,7 +44,7 @@ struct Tally {
 struct ScanRun {
     #[serde(flatten)]
     run: RunReport,
-    scan: Tally,
+    scan: ScanTally,
 }
 
 pub(crate) fn scan(args: &ScanArgs) -> Outcome {
@@ -150,10 +150,10 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
 }
 
 /// What was found in the scan; `stood`: where the tree stood, in the coordinates of the scan.
-fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> Tally {
+fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> ScanTally {
     let t = &found.tally;
     let metres = ExportSpec { up: axes.up, ..ExportSpec::default() };
-    Tally {
+    ScanTally {
         points: t.points as u64,
         ground: t.ground as u64,
         noise: t.noise as u64,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::bloom::{self, CleanSpec, Oddity, Organ, SegmentSpec, Stage};
+use burgeon::bloom::{self, CleanSpec, Oddity, ScanOrgan, SegmentSpec, Stage};
 use burgeon::formats::{CloudFormat, ExportSpec};
 use burgeon::glam::DVec3;
 use burgeon::mesh::TriMesh;
@@ -450,7 +450,7 @@ fn add_entry(
 }
 
 /// A region of an organ joins the other regions of the same day.
-fn add_organ(stage: &mut Stage, mut organ: Organ, region: Option<usize>) {
+fn add_organ(stage: &mut Stage, mut organ: ScanOrgan, region: Option<usize>) {
     let Some(region) = region else {
         stage.organs.push(organ);
         return;

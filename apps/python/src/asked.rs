@@ -5,7 +5,7 @@ use std::sync::Arc;
 use burgeon::document::{
     Document, DocumentPlant, Editor, Maker, NewPlant, PlantId, SceneCommand, Settings, TreeCommand,
 };
-use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::skin::{FoliageStyle, SkinSpec};
 use burgeon::{SceneEvaluator, Seed, Spec};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -69,9 +69,9 @@ impl Asked<'_> {
         }
         if let Some(word) = foliage {
             skin.foliage = match word.as_str() {
-                Some("outlines") => Foliage::Outlines,
-                Some("cards") => Foliage::Cards,
-                Some("by-level") => Foliage::ByLevel,
+                Some("outlines") => FoliageStyle::Outlines,
+                Some("cards") => FoliageStyle::Cards,
+                Some("by-level") => FoliageStyle::ByLevel,
                 _ => {
                     let known = "outlines, cards or by-level";
                     return Err(PyValueError::new_err(format!("foliage must be {known}, not {word}")));

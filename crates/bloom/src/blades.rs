@@ -4,7 +4,7 @@ use base::{Run, Seed};
 use glam::DVec3;
 
 use crate::clean::{CleanSpec, clean};
-use crate::segment::{Organ, SegmentSpec, organs};
+use crate::segment::{ScanOrgan, SegmentSpec, organs};
 use crate::thin::thin;
 
 /// Points that are looked at: a leaf of a hundredth of the plant still has some hundreds of them.
@@ -64,7 +64,7 @@ struct Form {
 }
 
 impl Form {
-    fn of(organ: &Organ, all: usize) -> Self {
+    fn of(organ: &ScanOrgan, all: usize) -> Self {
         let widths: Vec<f64> = organ
             .regions((organ.points.len() / A_BAND).clamp(BANDS[0], BANDS[1]))
             .iter()

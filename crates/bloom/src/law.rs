@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    BloomError, Choice, Fit, FitError, Form, Logistic, Offset, Organ, Series, SharedFit, choose, fit_law,
+    BloomError, Choice, Fit, FitError, Form, Logistic, Offset, ScanOrgan, Series, SharedFit, choose, fit_law,
     fit_logistic, fit_shared,
 };
 
@@ -290,7 +290,7 @@ pub struct Stage {
     /// The day, in any count.
     pub day: f64,
     /// What was measured.
-    pub organs: Vec<Organ>,
+    pub organs: Vec<ScanOrgan>,
 }
 
 /// How laws are fitted.
@@ -331,7 +331,7 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
     let regions = spec.regions.clamp(1, 20);
     let mut rows: Vec<Measured> = Vec::new();
     for name in names {
-        let there: Vec<(f64, &Organ)> = stages
+        let there: Vec<(f64, &ScanOrgan)> = stages
             .iter()
             .filter_map(|s| Some((s.day - first_day, s.organs.iter().find(|o| o.name == name)?)))
             .collect();
@@ -339,7 +339,7 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
             continue;
         }
         let days: Vec<f64> = there.iter().map(|t| t.0).collect();
-        let size = |o: &Organ| {
+        let size = |o: &ScanOrgan| {
             o.points.iter().map(|p| p.distance(o.base)).sum::<f64>() / o.points.len().max(1) as f64
         };
         let mut add = |region, axis, values| {
@@ -422,7 +422,7 @@ pub(crate) fn fit_rows(rows: Vec<Measured>, span: f64, offset: Offset) -> Result
 }
 
 /// Mean place of each region from the base; of an empty region that of the one before.
-fn region_means(organ: &Organ, regions: usize) -> Vec<DVec3> {
+fn region_means(organ: &ScanOrgan, regions: usize) -> Vec<DVec3> {
     let mut last = DVec3::ZERO;
     organ
         .regions(regions)
@@ -510,7 +510,7 @@ mod tests {
         let length = law.value(day);
         let way: Vec<f64> = (0..900).map(|_| s.uniform()).collect();
         let points = way.iter().map(|w| DVec3::new(w * length, 0.3 * w * length, 0.0) + DVec3::ONE).collect();
-        let organ = Organ {
+        let organ = ScanOrgan {
             name: "petal".into(),
             rows: (0..900).collect(),
             points,

@@ -6,7 +6,7 @@ use geom::KdTree;
 use glam::{DVec2, DVec3};
 
 use crate::BloomError;
-use crate::segment::{Organ, SegmentSpec, single_organ};
+use crate::segment::{ScanOrgan, SegmentSpec, single_organ};
 
 /// The line of a stem or a stalk.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,7 +68,7 @@ struct Bands {
 }
 
 impl Bands {
-    fn of(organ: &Organ) -> Self {
+    fn of(organ: &ScanOrgan) -> Self {
         let count = (organ.points.len() / A_BAND).clamp(4, BANDS);
         let regions = organ.regions(count).into_iter();
         let of = |rows: Vec<usize>| rows.into_iter().map(|i| organ.points[i]).collect::<Vec<DVec3>>();

@@ -4,7 +4,7 @@ use base::Run;
 use glam::DVec3;
 
 use crate::{
-    BloomError, GrowthLaw, Lattice, Organ, Quantity, RegisterSpec, Registration, Stage, Weights,
+    BloomError, GrowthLaw, Lattice, Quantity, RegisterSpec, Registration, ScanOrgan, Stage, Weights,
     match_organs, register,
 };
 
@@ -72,7 +72,7 @@ pub struct Motion {
 /// The same plant at two days, its organs brought under the same names: those of the first.
 ///
 /// Organs of the second that have no partner keep their name with `new-` before it.
-pub fn name_alike(first: &[Organ], second: &mut [Organ], up: DVec3) {
+pub fn name_alike(first: &[ScanOrgan], second: &mut [ScanOrgan], up: DVec3) {
     let pairs = match_organs(first, second, up);
     for (j, organ) in second.iter_mut().enumerate() {
         organ.name = match pairs.iter().find(|p| p.1 == j) {
@@ -134,7 +134,7 @@ impl Motion {
         &mut self,
         stages: &[Stage],
         begin: usize,
-        organ: &Organ,
+        organ: &ScanOrgan,
         run: &Run<'_>,
     ) -> Result<(), BloomError> {
         let start = self.points;

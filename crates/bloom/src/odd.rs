@@ -221,7 +221,7 @@ fn compare_two(a: &Cloud, b: &Cloud, run: &Run<'_>) -> Result<Option<(Oddity, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Organ;
+    use crate::ScanOrgan;
     use base::{Draw, Seed, ops};
 
     /// A seedling with three unlike leaves, `grown` and with every leaf lifted by `lift`.
@@ -246,7 +246,7 @@ mod tests {
     }
 
     fn stage(day: f64, points: Vec<DVec3>) -> Stage {
-        Stage { day, organs: vec![Organ { name: "plant".into(), points, ..Organ::default() }] }
+        Stage { day, organs: vec![ScanOrgan { name: "plant".into(), points, ..ScanOrgan::default() }] }
     }
 
     fn odd(clouds: [Vec<DVec3>; 3]) -> Vec<(usize, Oddity)> {

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 
 use crate::thin::{extent, thin};
 use crate::{
-    BloomError, GrowthLaw, Motion, MotionSpec, Organ, RegisterSpec, ShapeError, Stage, Weights, register,
+    BloomError, GrowthLaw, Motion, MotionSpec, RegisterSpec, ScanOrgan, ShapeError, Stage, Weights, register,
 };
 
 /// A turn about a place and a shift: `p -> to + turn * (p - from)`.
@@ -147,7 +147,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
     let mut out = Settled::unmoved(stages);
     for k in 1..stages.len() {
         let (a, b) = (&stages[k - 1], &stages[k]);
-        let mut found: Vec<(&Organ, Vec<Places>, ShapeError)> = Vec::new();
+        let mut found: Vec<(&ScanOrgan, Vec<Places>, ShapeError)> = Vec::new();
         for organ in &a.organs {
             let Some(next) = b.organs.iter().find(|o| o.name == organ.name) else { continue };
             let fit = register(&organ.points, organ.base, &next.points, next.base, spec, run)?;
@@ -195,7 +195,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
     Ok(out)
 }
 
-fn organ_step(organ: &Organ, pairs: &[Places], residual: ShapeError) -> OrganStep {
+fn organ_step(organ: &ScanOrgan, pairs: &[Places], residual: ShapeError) -> OrganStep {
     let mut pose = RigidMotion::of_pairs(pairs, organ.base);
     if let Some(along) = register::rod(pairs) {
         // Of a stem nothing shows how far it rolls.

@@ -12,7 +12,7 @@ use crate::BloomError;
 
 /// One organ of a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Organ {
+pub struct ScanOrgan {
     /// `stem`, `leaf-1`, ... or what the user calls it.
     pub name: String,
     /// Rows of the organ's points in the cloud it was cut from.
@@ -27,7 +27,7 @@ pub struct Organ {
     pub tip: DVec3,
 }
 
-impl Organ {
+impl ScanOrgan {
     /// Rows of `points` by region: equal parts of the way from base to tip, base first.
     pub fn regions(&self, count: usize) -> Vec<Vec<usize>> {
         let count = count.max(1);
@@ -78,12 +78,13 @@ const NONE: usize = usize::MAX;
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points.
-pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<Organ>, BloomError> {
+pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<ScanOrgan>, BloomError> {
     let ways = ways(points, spec)?;
     let tree = Tree::new(&ways, spec);
     let labels = tree.labels(&ways, spec);
     let count = labels.iter().copied().max().unwrap_or(0) + 1;
-    let mut out: Vec<Organ> = (0..count).map(|label| cut(points, &ways, |c| labels[c] == label)).collect();
+    let mut out: Vec<ScanOrgan> =
+        (0..count).map(|label| cut(points, &ways, |c| labels[c] == label)).collect();
     if out.len() > 1 {
         base::sort_by_key(&mut out[1..], |o| core::cmp::Reverse(o.points.len()));
     }
@@ -97,10 +98,10 @@ pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<Organ>, BloomE
 ///
 /// # Errors
 /// As [`organs`].
-pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<Organ, BloomError> {
+pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<ScanOrgan, BloomError> {
     let all = organs(points, spec)?;
     let nearest =
-        |o: &Organ| o.points.iter().map(|p| p.distance_squared(place)).fold(f64::INFINITY, f64::min);
+        |o: &ScanOrgan| o.points.iter().map(|p| p.distance_squared(place)).fold(f64::INFINITY, f64::min);
     let best = all.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
     best.ok_or_else(|| BloomError::TooFew { what: "the scan".into(), is: 0, wanted: 16 })
 }
@@ -109,7 +110,7 @@ pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<Or
 ///
 /// # Errors
 /// [`BloomError::TooFew`] below 16 finite points.
-pub fn single_organ(points: &[DVec3], name: &str, spec: &SegmentSpec) -> Result<Organ, BloomError> {
+pub fn single_organ(points: &[DVec3], name: &str, spec: &SegmentSpec) -> Result<ScanOrgan, BloomError> {
     let ways = ways(points, spec)?;
     let mut organ = cut(points, &ways, |_| true);
     organ.name = name.to_owned();
@@ -339,12 +340,12 @@ impl Tree {
     }
 }
 
-fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> Organ {
+fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> ScanOrgan {
     let cubes: Vec<usize> = (0..ways.way.len()).filter(|&c| mine(c)).collect();
     let low = cubes.iter().map(|&c| ways.way[c]).fold(f64::INFINITY, f64::min);
     let high = cubes.iter().map(|&c| ways.way[c]).fold(0.0, f64::max);
     let span = (high - low).max(1e-12);
-    let mut organ = Organ::default();
+    let mut organ = ScanOrgan::default();
     let tip = cubes.iter().copied().max_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
     organ.tip = tip.map_or(DVec3::ZERO, |c| ways.means[c]);
     // The base: the mean of the first 4 of 100 of the way.
@@ -370,7 +371,7 @@ fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> Organ {
 /// shares of the points deciding between near ones. One that has turned far and is of another size, too, is no partner:
 /// an organ that appears or goes is left alone. As pots are turned and stems twist, all leaves may turn
 /// together about `up` by up to 60 degrees, at a price.
-pub fn match_organs(a: &[Organ], b: &[Organ], up: DVec3) -> Vec<(usize, usize)> {
+pub fn match_organs(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3) -> Vec<(usize, usize)> {
     let up = up.try_normalize().unwrap_or(DVec3::Y);
     let mut best: Option<(f64, Vec<(usize, usize)>)> = None;
     for step in -6..=6_i32 {
@@ -385,16 +386,16 @@ pub fn match_organs(a: &[Organ], b: &[Organ], up: DVec3) -> Vec<(usize, usize)> 
 }
 
 /// The pairs if all leaves turned by `angle`, and what they cost; an organ without partner costs 1.
-fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(usize, usize)>) {
+fn match_turned(a: &[ScanOrgan], b: &[ScanOrgan], up: DVec3, angle: f64) -> (f64, Vec<(usize, usize)>) {
     let turn = base::turn::about(up, angle);
-    let direction = |o: &Organ| {
+    let direction = |o: &ScanOrgan| {
         let d = o.tip - o.base;
         let level = d - up * d.dot(up);
         level.try_normalize().or_else(|| d.try_normalize()).unwrap_or(DVec3::X)
     };
-    let total = |all: &[Organ]| all.iter().map(|o| o.points.len()).sum::<usize>().max(1) as f64;
+    let total = |all: &[ScanOrgan]| all.iter().map(|o| o.points.len()).sum::<usize>().max(1) as f64;
     let (all_a, all_b) = (total(a), total(b));
-    let size = |o: &Organ| o.base.distance(o.tip).max(1e-9);
+    let size = |o: &ScanOrgan| o.base.distance(o.tip).max(1e-9);
     let mut out = Vec::new();
     let mut costs = Vec::new();
     for (i, x) in a.iter().enumerate() {
@@ -466,7 +467,8 @@ mod tests {
         assert_eq!(got.iter().map(|o| o.rows.len()).sum::<usize>(), points.len());
         let mut begin = 0;
         for size in sizes {
-            let share = |o: &Organ| o.rows.iter().filter(|&&i| (begin..begin + size).contains(&i)).count();
+            let share =
+                |o: &ScanOrgan| o.rows.iter().filter(|&&i| (begin..begin + size).contains(&i)).count();
             let best = got.iter().map(share).max().unwrap();
             assert!(best * 100 > size * 88, "{best} of {size} points lie in one organ");
             begin += size;

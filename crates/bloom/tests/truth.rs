@@ -3,7 +3,7 @@
 
 use base::{Draw, Run, Seed};
 use bloom::{
-    FlowerSpec, Form, GrowthLaw, LawSpec, Logistic, MotionSpec, Nods, Organ, Quantity, RegionLaw, Rival,
+    FlowerSpec, Form, GrowthLaw, LawSpec, Logistic, MotionSpec, Nods, Quantity, RegionLaw, Rival, ScanOrgan,
     Stage,
 };
 use bloom::{fit_stages, leave_one_out, preset, settle};
@@ -25,7 +25,7 @@ fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
         let at: Vec<DVec3> = sheet.points.iter().map(|&p| o.frame.place(p, o.scale)).collect();
         let mut jitter = || noise * DVec3::new(s.range(-1.0, 1.0), s.range(-1.0, 1.0), s.range(-1.0, 1.0));
         // The joint itself, and the way that the sheet knows.
-        Organ {
+        ScanOrgan {
             name: format!("petal-{}", k + 1),
             rows: (0..at.len()).collect(),
             base: at[0],

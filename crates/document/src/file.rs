@@ -25,8 +25,8 @@ use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, Sket
 use crate::names::shortened;
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault};
 use crate::{
-    Document, DocumentPlant, DocumentStroke, Photo, PhotoError, Picture, PictureError, Pictures, PlantId,
-    SettingFault, Settings,
+    Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PictureError, PlantId, SettingFault,
+    Settings, WornPicture, WornPictures,
 };
 
 /// The form that this version writes, as `manifest.json` names it.
@@ -254,16 +254,16 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
         let png = entry(if earlier { PHOTO.to_owned() } else { photo_name(row) })?;
         Ok(Photo::new(png.into())?)
     };
-    let mut had = Pictures::new();
+    let mut had = WornPictures::new();
     let mut pictures = |names: Vec<String>| {
         if names.len() > MAX_PICTURES {
             return Err(ProjectError::Setting(SettingFault::Pictures));
         }
-        let mut own = Pictures::new();
+        let mut own = WornPictures::new();
         for name in names {
             let picture = match had.get(&name) {
                 Some(picture) => picture.clone(),
-                None => Picture::new(entry(picture_name(&name))?.into())?,
+                None => WornPicture::new(entry(picture_name(&name))?.into())?,
             };
             had.insert(name.clone(), picture.clone());
             own.insert(name, picture);
@@ -281,7 +281,7 @@ fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::E
 fn checked(
     file: DocumentV6,
     photo: impl Fn(usize) -> Result<Photo, ProjectError>,
-    pictures_of: &mut dyn FnMut(Vec<String>) -> Result<Pictures, ProjectError>,
+    pictures_of: &mut dyn FnMut(Vec<String>) -> Result<WornPictures, ProjectError>,
 ) -> Result<Document, ProjectError> {
     if file.plants.len() > MAX_PLANTS {
         return Err(ProjectError::TooMuch { what: "plants", limit: MAX_PLANTS });

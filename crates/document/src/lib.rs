@@ -11,7 +11,7 @@
 //! | `editor` | [`Editor`]: named, unlimited undo; a gesture is one step |
 //! | `file` | [`read_project`], [`write_project`]: a zip of versioned JSON |
 //! | `forms` | the structs of each form of the file |
-//! | `photo`, `picture` | [`Photo`]: what lies under the drawing; [`Picture`]: what organs wear |
+//! | `photo`, `picture` | [`Photo`]: what lies under the drawing; [`WornPicture`]: what organs wear |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
 //! Coordinates of strokes are the drawing's own unit, y up, as in [`ink::Drawing`].
@@ -42,7 +42,7 @@ pub use file::{MAX_PROJECT_BYTES, PROJECT_SCHEMA, ProjectError, is_project, read
 pub use ids::{PlantId, StrokeId};
 pub use makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
-pub use picture::{Picture, PictureError, Pictures};
+pub use picture::{PictureError, WornPicture, WornPictures};
 pub use state::{
     Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantEdit, Settings, range_fault,
 };

@@ -18,20 +18,20 @@ const MAX_SIDE: u32 = 2048;
 ///
 /// It is held as PNG: what every platform decodes to the same pixels. Two pictures are equal if their files are.
 #[derive(Clone)]
-pub struct Picture {
+pub struct WornPicture {
     png: Arc<[u8]>,
     decoded: Arc<OnceLock<Option<Arc<Texture>>>>,
 }
 
-impl PartialEq for Picture {
+impl PartialEq for WornPicture {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.png, &other.png) || self.png == other.png
     }
 }
 
-impl std::fmt::Debug for Picture {
+impl std::fmt::Debug for WornPicture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Picture {{ {} bytes }}", self.png.len())
+        write!(f, "WornPicture {{ {} bytes }}", self.png.len())
     }
 }
 
@@ -47,7 +47,7 @@ pub enum PictureError {
     TooLarge,
 }
 
-impl Picture {
+impl WornPicture {
     /// A picture from the bytes of a PNG.
     ///
     /// Guaranteed: its size is believed from the header and bounded. Not guaranteed: that its pixels decode.
@@ -56,7 +56,7 @@ impl Picture {
     /// [`PictureError`] for what is no PNG or is too large.
     ///
     /// ```
-    /// assert!(document::Picture::new(b"GIF89a".as_slice().into()).is_err());
+    /// assert!(document::WornPicture::new(b"GIF89a".as_slice().into()).is_err());
     /// ```
     pub fn new(png: Arc<[u8]>) -> Result<Self, PictureError> {
         let (width, height) = png_size(&png).ok_or(PictureError::NotPng)?;
@@ -85,10 +85,10 @@ impl Picture {
 }
 
 /// Pictures by their names.
-pub type Pictures = LiteMap<String, Picture>;
+pub type WornPictures = LiteMap<String, WornPicture>;
 
 /// What is wrong with a material of a plant that has these pictures.
-pub(crate) fn material_fault(material: &OrganMaterial, pictures: &Pictures) -> Option<SettingFault> {
+pub(crate) fn material_fault(material: &OrganMaterial, pictures: &WornPictures) -> Option<SettingFault> {
     if let Err(fault) = spec::check(material) {
         return Some(SettingFault::Range(fault));
     }

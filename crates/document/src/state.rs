@@ -15,7 +15,7 @@ use crate::fault::{MAX_EDITS, MAX_PICTURES};
 use crate::ids::{PlantId, StrokeId};
 use crate::names::{NAME_LENGTH, shortened, too_long};
 use crate::picture::material_fault;
-use crate::{Maker, Photo, Pictures, SettingFault, SketchSettings};
+use crate::{Maker, Photo, SettingFault, SketchSettings, WornPictures};
 
 /// One stroke of a sketch.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +78,7 @@ pub struct Settings {
     /// The materials of its organs by their kinds; `strokes` is empty, as strokes have theirs with them.
     pub wear: Wear,
     /// The pictures that its materials name, at most 16.
-    pub pictures: Pictures,
+    pub pictures: WornPictures,
     /// Its maker, and what the maker is asked for.
     pub maker: Maker,
     /// Edits by hand, in the order in which they are done; of sketches and trees only, at most 1,000.
@@ -110,7 +110,7 @@ impl Default for Settings {
             hidden: false,
             placement: Placement::default(),
             wear: Wear::default(),
-            pictures: Pictures::new(),
+            pictures: WornPictures::new(),
             maker: Maker::default(),
             edits: Vec::new(),
         }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use base::Seed;
 use document::{
     Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
-    NewPlant, NewStroke, Photo, PhotoPlace, Picture, Placement, PlantCommand, PlantId, SceneCommand,
-    Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
+    NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand, Settings,
+    ShapeCommand, SketchCommand, StrokeId, TreeCommand, WornPicture, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
@@ -47,9 +47,9 @@ fn material() -> impl Strategy<Value = Option<OrganMaterial>> {
     proptest::option::of(made)
 }
 
-fn picture() -> Picture {
+fn picture() -> WornPicture {
     let png = [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x03"[..], &[7; 9]].concat();
-    Picture::new(png.into()).expect("a PNG header")
+    WornPicture::new(png.into()).expect("a PNG header")
 }
 
 fn layer_command() -> impl Strategy<Value = SketchCommand> {

@@ -193,7 +193,7 @@ pub enum WriteError {
         /// Name of the part.
         part: String,
         /// What is wrong with it.
-        fault: mesh::Fault,
+        fault: mesh::MeshFault,
     },
     /// A texture's pixels do not fit its size, or the size is zero.
     #[error("a texture of {width} by {height} pixels with {bytes} bytes cannot be encoded")]

@@ -78,7 +78,7 @@ impl ModelSummary {
         let mut degenerate = 0_usize;
         for fault in model.validate() {
             match fault {
-                mesh::Fault::Degenerate(_) => degenerate += 1,
+                mesh::MeshFault::Degenerate(_) => degenerate += 1,
                 // One of each sort of fault is enough to send the user to the maker of the file.
                 other if warnings.len() < 20 => warnings.push(other.to_string()),
                 _ => {}

@@ -175,7 +175,7 @@ fn models(format: ModelFormat, bytes: &[u8]) -> bool {
     let mut report = Report::default();
     match read_model(bytes, format, "m", &ExportSpec::default(), &mtl, &mut report) {
         Ok(m) => {
-            let bad = m.validate().find(|f| !matches!(f, mesh::Fault::Degenerate(_)));
+            let bad = m.validate().find(|f| !matches!(f, mesh::MeshFault::Degenerate(_)));
             assert_eq!(bad, None, "what was read is sound");
             assert_eq!(ModelSummary::of(&m, &report.warnings).triangles, m.triangle_count(), "all counted");
             write_glb(&m, std::io::sink()).expect("writes what it read");

@@ -24,10 +24,10 @@ const FLATTEST: f64 = 0.0175;
 /// A cone: apex, unit axis from the apex into the opening, half opening angle.
 ///
 /// ```
-/// use geom::{Cone, Sheet};
+/// use geom::{Cone, ConeSheet};
 /// use glam::{DVec2, DVec3};
 /// let cone = Cone { apex: DVec3::ZERO, axis: DVec3::Z, half_angle: std::f64::consts::FRAC_PI_4 };
-/// assert!((cone.depth(DVec2::new(0.3, 0.4), Sheet::Near) - 0.5).abs() < 1e-12);
+/// assert!((cone.depth(DVec2::new(0.3, 0.4), ConeSheet::Near) - 0.5).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
@@ -41,7 +41,7 @@ pub struct Cone {
 
 /// Which of the two crossings of a view ray with a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sheet {
+pub enum ConeSheet {
     /// The one nearer to the viewer (greater z).
     Near,
     /// The farther one.
@@ -66,13 +66,13 @@ impl Cone {
     /// from the apex in z as in the drawing; the apex's z if `xy` is not usable.
     ///
     /// He and Cheng (2021), Eq 3, in closed form (docs/papers.md).
-    pub fn depth(&self, xy: DVec2, sheet: Sheet) -> f64 {
+    pub fn depth(&self, xy: DVec2, sheet: ConeSheet) -> f64 {
         if !xy.usable() {
             return self.apex.z;
         }
         let q = xy - self.apex.truncate();
         let hits = self.hits(q);
-        let upper = if hits.inside { self.axis.z > 0.0 } else { sheet == Sheet::Near };
+        let upper = if hits.inside { self.axis.z > 0.0 } else { sheet == ConeSheet::Near };
         let z = if upper { hits.upper } else { hits.lower };
         let most = STEEPEST * Vector::length(q);
         let z = self.apex.z + if z.is_nan() { 0.0 } else { z.clamp(-most, most) };
@@ -84,25 +84,25 @@ impl Cone {
     /// The sheet whose depth at the tip is nearer to that of the rim's plane. Seen edge-on (axis within 3
     /// degrees of the drawing plane) a single tip does not tell, and the answer is `Near`: use
     /// [`Cone::sheets_for_tips`] there.
-    pub fn sheet_for_tip(&self, tip: DVec2, height: f64) -> Sheet {
+    pub fn sheet_for_tip(&self, tip: DVec2, height: f64) -> ConeSheet {
         if !tip.usable() || self.axis.z.abs() < EDGE_ON {
-            return Sheet::Near;
+            return ConeSheet::Near;
         }
         let q = tip - self.apex.truncate();
         let hits = self.hits(q);
         if hits.inside {
-            return if self.axis.z > 0.0 { Sheet::Near } else { Sheet::Far };
+            return if self.axis.z > 0.0 { ConeSheet::Near } else { ConeSheet::Far };
         }
         let rim = (height - Vector::dot(q, self.axis.truncate())) / self.axis.z;
-        if (hits.lower - rim).abs() < (hits.upper - rim).abs() { Sheet::Far } else { Sheet::Near }
+        if (hits.lower - rim).abs() < (hits.upper - rim).abs() { ConeSheet::Far } else { ConeSheet::Near }
     }
 
     /// The sheets of all petals of a flower: as [`Cone::sheet_for_tip`], and edge-on in turn.
     ///
     /// Edge-on the tips, sorted across the axis, are laid on the near and the far sheet by turns, so that
     /// neighbours in the drawing do not share a sheet.
-    pub fn sheets_for_tips(&self, tips: &[DVec2], height: f64) -> Vec<Sheet> {
-        let mut sheets: Vec<Sheet> = tips.iter().map(|&tip| self.sheet_for_tip(tip, height)).collect();
+    pub fn sheets_for_tips(&self, tips: &[DVec2], height: f64) -> Vec<ConeSheet> {
+        let mut sheets: Vec<ConeSheet> = tips.iter().map(|&tip| self.sheet_for_tip(tip, height)).collect();
         if self.axis.z.abs() < EDGE_ON {
             let along = self.axis.truncate();
             let angle = |i: usize| {
@@ -112,7 +112,7 @@ impl Cone {
             let mut order: Vec<usize> = (0..tips.len()).filter(|&i| tips[i].usable()).collect();
             base::sort_by(&mut order, |&i, &j| angle(i).total_cmp(&angle(j)).then(i.cmp(&j)));
             for (k, i) in order.into_iter().enumerate() {
-                sheets[i] = if k % 2 == 0 { Sheet::Near } else { Sheet::Far };
+                sheets[i] = if k % 2 == 0 { ConeSheet::Near } else { ConeSheet::Far };
             }
         }
         sheets
@@ -301,7 +301,7 @@ mod tests {
             }
             checked += 1;
             let world = cone.apex + p;
-            let error = [Sheet::Near, Sheet::Far]
+            let error = [ConeSheet::Near, ConeSheet::Far]
                 .map(|sheet| (cone.depth(world.truncate(), sheet) - world.z).abs())
                 .into_iter()
                 .fold(f64::INFINITY, f64::min);
@@ -426,7 +426,7 @@ mod tests {
         let found = flower_cone(DVec2::ZERO, &line, true).unwrap();
         assert!((found.height - 1.0).abs() < 1e-9 && found.rho < 1e-9, "{found:?}");
         let sheets = found.cone.sheets_for_tips(&line, found.height);
-        assert_eq!(sheets, [Sheet::Near, Sheet::Far, Sheet::Near]);
+        assert_eq!(sheets, [ConeSheet::Near, ConeSheet::Far, ConeSheet::Near]);
         let z = sheets.iter().zip(line).map(|(&s, tip)| found.cone.depth(tip, s)).collect::<Vec<_>>();
         assert!(z[0].abs() < 0.1 * found.radius || z[0] > 0.0, "{z:?}");
         assert!(z[1] < -0.5 * found.radius, "the middle petal lies behind: {z:?}");
@@ -457,8 +457,8 @@ mod tests {
     fn outside_the_silhouette_the_depth_is_the_tangents() {
         let cone = Cone { apex: DVec3::ZERO, axis: DVec3::Y, half_angle: 0.5 };
         let (near, far) = (DVec2::new(0.1, 1.0), DVec2::new(5.0, 1.0));
-        assert!(cone.depth(near, Sheet::Near) > 0.0 && cone.depth(near, Sheet::Far) < 0.0);
-        assert_eq!((cone.depth(far, Sheet::Near), cone.covers(far)), (0.0, false));
+        assert!(cone.depth(near, ConeSheet::Near) > 0.0 && cone.depth(near, ConeSheet::Far) < 0.0);
+        assert_eq!((cone.depth(far, ConeSheet::Near), cone.covers(far)), (0.0, false));
     }
 
     #[test]
@@ -472,7 +472,7 @@ mod tests {
                 let cone =
                     Cone { apex: DVec3::new(1.0, 1.0, 2.0), axis: DVec3::new(x, y, 0.0), half_angle: y };
                 for at in [DVec2::new(x, y), DVec2::new(2.0, x), DVec2::ONE] {
-                    for sheet in [Sheet::Near, Sheet::Far] {
+                    for sheet in [ConeSheet::Near, ConeSheet::Far] {
                         assert!(cone.depth(at, sheet).is_finite(), "{cone:?} {at}");
                     }
                     cone.sheets_for_tips(&[at, DVec2::X], x);

@@ -42,7 +42,7 @@ mod wheel;
 
 pub use cluster::mean_shift;
 pub use concave::{AlphaOutline, AlphaShape, triangulate_within};
-pub use cone::{Cone, FlowerCone, Sheet, flower_cone};
+pub use cone::{Cone, ConeSheet, FlowerCone, flower_cone};
 pub use cubes::{cubes, one_a_cube};
 pub use curve::{bezier_quadratic_c1, catmull_rom};
 pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};

@@ -1,6 +1,6 @@
 //! Whatever a pen or a file can give: no function panics, and each keeps its promise.
 
-use geom::{Cone, KdTree2, Sheet};
+use geom::{Cone, ConeSheet, KdTree2};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -165,7 +165,7 @@ proptest! {
     fn any_cone_has_a_depth(v in prop::collection::vec(coordinate(), 9)) {
         let cone = Cone { apex: DVec3::new(v[0], v[1], v[2]), axis: DVec3::new(v[3], v[4], v[5]), half_angle: v[6] };
         let xy = DVec2::new(v[7], v[8]);
-        for sheet in [Sheet::Near, Sheet::Far] {
+        for sheet in [ConeSheet::Near, ConeSheet::Far] {
             let z = cone.depth(xy, sheet);
             prop_assert!(z.is_finite() || !cone.apex.is_finite(), "{z}");
         }

@@ -58,7 +58,7 @@ impl Default for ColonizeSpec {
 
 /// What became of an attraction point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
+pub enum PointFate {
     /// Consumed by a joint.
     Reached(JointId),
     /// Not reached: too far from every joint, or hidden behind obstacles.
@@ -75,7 +75,7 @@ pub struct Colonized {
     /// The joints, those given first.
     pub skeleton: Skeleton,
     /// What became of each attraction point, in the order given.
-    pub fates: Vec<Fate>,
+    pub fates: Vec<PointFate>,
     /// Rounds of growth, those of the trunk included.
     pub rounds: u32,
 }
@@ -130,7 +130,7 @@ impl ColonizeSpec {
 /// Grows trees from `roots` until every attraction point is consumed or cannot be reached.
 ///
 /// `roots`: one tree each; they compete. `attractors`: any points; those that are not finite or lie in an obstacle
-/// are left out. Guaranteed: it ends; every point has a [`Fate`]; a clean `validate()`; no joint in an obstacle or
+/// are left out. Guaranteed: it ends; every point has a [`PointFate`]; a clean `validate()`; no joint in an obstacle or
 /// its clearance; the same bits everywhere. Where growth stalls (a joint pulled to two sides alike), the joint
 /// grows straight to its nearest point. A root that perceives nothing first grows a trunk: up, then to the nearest
 /// point. Not guaranteed: that all points are reached. Cost: about linear in points and joints.
@@ -141,12 +141,12 @@ impl ColonizeSpec {
 /// ```
 /// use base::{Counted, Report, Run};
 /// use glam::DVec3;
-/// use growth::{ColonizeSpec, Fate, Obstacles, colonize};
+/// use growth::{ColonizeSpec, PointFate, Obstacles, colonize};
 /// let attractors = [DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0)];
 /// let spec = ColonizeSpec { attraction_m: 1.5, kill_m: 0.2, ..ColonizeSpec::default() };
 /// let none = Obstacles::none();
 /// let tree = colonize(&[DVec3::ZERO], &attractors, &none, &spec, &Run::plain(), &mut Report::default())?;
-/// assert!(tree.fates.iter().all(|f| matches!(f, Fate::Reached(_))));
+/// assert!(tree.fates.iter().all(|f| matches!(f, PointFate::Reached(_))));
 /// # Ok::<(), growth::GrowthError>(())
 /// ```
 pub fn colonize(
@@ -280,16 +280,16 @@ pub(crate) fn colonize_part(
     }
     let started = run.clock.now_ms();
     run.budget.check(Counted::Points, attractors.len() as u64, "give fewer attraction points")?;
-    let mut fates = vec![Fate::Unreached; attractors.len()];
+    let mut fates = vec![PointFate::Unreached; attractors.len()];
     for (fate, &p) in fates.iter_mut().zip(attractors) {
         if !usable(p) {
-            *fate = Fate::Unusable;
+            *fate = PointFate::Unusable;
         } else if !obstacles.is_empty() && !obstacles.free(p) {
-            *fate = Fate::Buried(obstacles.inside(p));
+            *fate = PointFate::Buried(obstacles.inside(p));
         }
     }
     sane_step(&skeleton, attractors, &fates, steps.step)?;
-    let free: Vec<bool> = fates.iter().map(|f| *f == Fate::Unreached).collect();
+    let free: Vec<bool> = fates.iter().map(|f| *f == PointFate::Unreached).collect();
     let field = Field::new(attractors, &free, steps.attraction);
     let birth = skeleton.age();
     let mut colony = Colony {
@@ -346,9 +346,9 @@ pub fn regrow(
     let mut fates = grown.fates.clone();
     let mut freed = Vec::new();
     for (i, fate) in fates.iter_mut().enumerate() {
-        if let Fate::Reached(j) = *fate {
+        if let PointFate::Reached(j) = *fate {
             match new_id.get(j.index()).copied().flatten() {
-                Some(now) => *fate = Fate::Reached(now),
+                Some(now) => *fate = PointFate::Reached(now),
                 None => freed.push(i),
             }
         }
@@ -362,8 +362,13 @@ pub fn regrow(
 }
 
 /// Steps that leap far over everything make no tree.
-fn sane_step(skeleton: &Skeleton, points: &[DVec3], fates: &[Fate], step_m: f64) -> Result<(), GrowthError> {
-    let free = points.iter().zip(fates).filter(|(_, f)| **f == Fate::Unreached).map(|(p, _)| p);
+fn sane_step(
+    skeleton: &Skeleton,
+    points: &[DVec3],
+    fates: &[PointFate],
+    step_m: f64,
+) -> Result<(), GrowthError> {
+    let free = points.iter().zip(fates).filter(|(_, f)| **f == PointFate::Unreached).map(|(p, _)| p);
     let all = skeleton.position.iter().chain(free);
     let (lo, hi) = all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let space_m = (lo.distance(hi) * 1000.0).round() / 1000.0;
@@ -372,10 +377,10 @@ fn sane_step(skeleton: &Skeleton, points: &[DVec3], fates: &[Fate], step_m: f64)
     if sane { Ok(()) } else { Err(GrowthError::StepTooLong { step_m, space_m }) }
 }
 
-fn tell(fates: &[Fate], report: &mut Report) {
-    let count = |f: fn(&Fate) -> bool| fates.iter().filter(|x| f(x)).count();
+fn tell(fates: &[PointFate], report: &mut Report) {
+    let count = |f: fn(&PointFate) -> bool| fates.iter().filter(|x| f(x)).count();
     let n = fates.len();
-    let lost = count(|f| *f == Fate::Unreached);
+    let lost = count(|f| *f == PointFate::Unreached);
     if lost > 0 {
         base::warn!(
             report,
@@ -384,7 +389,7 @@ fn tell(fates: &[Fate], report: &mut Report) {
             "{count} of {all} attraction points could not be reached"
         );
     }
-    let buried = count(|f| matches!(f, Fate::Buried(_)));
+    let buried = count(|f| matches!(f, PointFate::Buried(_)));
     if buried > 0 {
         base::warn!(
             report,
@@ -393,7 +398,7 @@ fn tell(fates: &[Fate], report: &mut Report) {
             "{count} of {all} attraction points lie in obstacles"
         );
     }
-    let bad = count(|f| *f == Fate::Unusable);
+    let bad = count(|f| *f == PointFate::Unusable);
     if bad > 0 {
         base::warn!(
             report,
@@ -481,7 +486,7 @@ struct Colony<'a> {
     skeleton: Skeleton,
     field: Field,
     load: Load,
-    fates: Vec<Fate>,
+    fates: Vec<PointFate>,
     obstacles: &'a Obstacles,
     steps: Steps,
     birth: u32,
@@ -642,7 +647,7 @@ impl Colony<'_> {
         let mut doomed = core::mem::take(&mut self.doomed);
         for &id in &doomed {
             if let Some((owner, pull)) = self.field.give_up(id) {
-                self.fates[id as usize] = Fate::Reached(JointId::new(owner as usize));
+                self.fates[id as usize] = PointFate::Reached(JointId::new(owner as usize));
                 self.load.lose(owner, pull);
             }
         }
@@ -680,7 +685,7 @@ impl Colony<'_> {
                 load.lose(change.from, change.pull);
             }
             if change.killed {
-                fates[change.id as usize] = Fate::Reached(JointId::new(change.to as usize));
+                fates[change.id as usize] = PointFate::Reached(JointId::new(change.to as usize));
                 return DVec3::ZERO;
             }
             let way = change.place - skeleton.position[change.to as usize];

@@ -78,9 +78,9 @@ fn every_point_of_a_ball_is_reached() {
         let points = region.scatter(2000, 0.0, Seed::new(seed), |_| true).expect("room");
         let spec = ColonizeSpec { attraction_m: 0.9, kill_m: 0.15, ..Default::default() };
         let (grown, report) = grow(&[DVec3::ZERO], &points, &Obstacles::none(), &spec);
-        assert!(grown.fates.iter().all(|f| matches!(f, Fate::Reached(_))), "seed {seed}: {report:?}");
+        assert!(grown.fates.iter().all(|f| matches!(f, PointFate::Reached(_))), "seed {seed}: {report:?}");
         for (f, p) in grown.fates.iter().zip(&points) {
-            if let Fate::Reached(j) = f {
+            if let PointFate::Reached(j) = f {
                 assert!(grown.skeleton.position[j.index()].distance(*p) <= 0.15 + 1e-12);
             }
         }
@@ -93,7 +93,7 @@ fn a_tie_between_two_points_is_broken() {
     let points = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(-1.0, 0.0, 0.0)];
     let spec = ColonizeSpec { attraction_m: 2.0, kill_m: 0.2, ..Default::default() };
     let (grown, report) = grow(&[DVec3::ZERO], &points, &Obstacles::none(), &spec);
-    assert!(grown.fates.iter().all(|f| matches!(f, Fate::Reached(_))), "{report:?}");
+    assert!(grown.fates.iter().all(|f| matches!(f, PointFate::Reached(_))), "{report:?}");
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn points_out_of_reach_are_reported() {
     let mut points = ball(300);
     points.extend([DVec3::splat(90.0), DVec3::NAN, DVec3::splat(1e9)]);
     let (grown, report) = grow(&[DVec3::ZERO], &points, &Obstacles::none(), &ColonizeSpec::default());
-    assert_eq!(grown.fates[300..], [Fate::Unreached, Fate::Unusable, Fate::Unusable]);
+    assert_eq!(grown.fates[300..], [PointFate::Unreached, PointFate::Unusable, PointFate::Unusable]);
     let codes: Vec<_> = report.warnings.iter().map(|w| w.code).collect();
     assert_eq!(codes, ["attractors-unreached", "attractors-unusable"]);
 }
@@ -142,8 +142,8 @@ fn growth_goes_around_a_wall_and_reaches_what_is_behind() {
     }
     let behind = |p: &&DVec3| p.x > 0.7 && p.y < 4.2 && p.z.abs() < 0.8;
     assert!(s.position.iter().filter(behind).count() > 50);
-    let reached = grown.fates.iter().filter(|f| matches!(f, Fate::Reached(_))).count();
-    let open = grown.fates.iter().filter(|f| !matches!(f, Fate::Buried(_))).count();
+    let reached = grown.fates.iter().filter(|f| matches!(f, PointFate::Reached(_))).count();
+    let open = grown.fates.iter().filter(|f| !matches!(f, PointFate::Buried(_))).count();
     assert!(reached * 100 > open * 97, "{reached} of {open}");
 }
 
@@ -173,7 +173,7 @@ fn kill_distance_above_attraction_distance_is_told_and_borne() {
     let spec = ColonizeSpec { attraction_m: 0.2, kill_m: 0.5, steer_before_kill: true, ..Default::default() };
     let (grown, report) = grow(&[DVec3::ZERO], &ball(1500), &Obstacles::none(), &spec);
     assert_eq!(report.warnings[0].code, "attraction-raised");
-    let reached = grown.fates.iter().filter(|f| matches!(f, Fate::Reached(_))).count();
+    let reached = grown.fates.iter().filter(|f| matches!(f, PointFate::Reached(_))).count();
     // Each joint steers once, so there is one limb: a path through the ball, and no more.
     assert!(reached > 300 && grown.skeleton.children().iter().all(|&c| c < 2), "{reached}");
 }
@@ -182,7 +182,7 @@ fn kill_distance_above_attraction_distance_is_told_and_borne() {
 fn many_points_in_one_place_are_one() {
     let points = vec![DVec3::new(0.3, 2.0, 0.0); 100_000];
     let (grown, _) = grow(&[DVec3::ZERO], &points, &Obstacles::none(), &ColonizeSpec::default());
-    assert!(grown.fates.iter().all(|f| matches!(f, Fate::Reached(_))) && grown.skeleton.len() < 30);
+    assert!(grown.fates.iter().all(|f| matches!(f, PointFate::Reached(_))) && grown.skeleton.len() < 30);
     let (none, _) = grow(&[DVec3::ZERO], &[], &Obstacles::none(), &ColonizeSpec::default());
     assert_eq!(none.skeleton.len(), 1);
 }
@@ -206,7 +206,7 @@ fn a_pull_bends_the_tree() {
     let lean = |tropisms: Vec<Tropism>| {
         let spec = ColonizeSpec { tropisms, attraction_m: 5.0, kill_m: 0.3, ..Default::default() };
         let (g, _) = grow(&[DVec3::ZERO], &[DVec3::Y * 3.0], &Obstacles::none(), &spec);
-        assert!(matches!(g.fates[0], Fate::Reached(_)), "the point wins in the end");
+        assert!(matches!(g.fates[0], PointFate::Reached(_)), "the point wins in the end");
         g.skeleton.position.iter().map(|p| p.x).fold(0.0, f64::max)
     };
     assert!(lean(wind) > 0.5 && lean(vec![]) == 0.0);
@@ -227,7 +227,7 @@ fn a_pruned_branch_grows_again_and_the_rest_stays() {
     assert!(cut.len() < s.len() && again.skeleton.len() > cut.len(), "{} {}", s.len(), cut.len());
     assert_eq!(again.skeleton.position[..cut.len()], cut.position[..]);
     for (f, p) in again.fates.iter().zip(&points) {
-        let Fate::Reached(j) = f else { panic!("{p} was reached before and can be again") };
+        let PointFate::Reached(j) = f else { panic!("{p} was reached before and can be again") };
         assert!(again.skeleton.position[j.index()].distance(*p) < 0.25 + 1e-9);
     }
 }
@@ -278,18 +278,18 @@ proptest! {
         prop_assert!(!report.warnings.iter().any(|w| w.code == "growth-stopped"), "{:?}", report);
         for (fate, p) in grown.fates.iter().zip(&points) {
             match fate {
-                Fate::Reached(j) => {
+                PointFate::Reached(j) => {
                     prop_assert!(grown.skeleton.position[j.index()].distance(*p) <= kill_m + 1e-9);
                 }
-                Fate::Unreached => {
+                PointFate::Unreached => {
                     let near = grown.skeleton.position.iter().map(|q| q.distance(*p)).fold(f64::INFINITY, f64::min);
                     prop_assert!(near > kill_m || walled, "{} {}", near, kill_m);
                     // Without walls whatever is perceived is reached, as long as steps do not pass it by.
                     let perceived = near < attraction_m.max(kill_m) * (1.0 - 1e-9);
                     prop_assert!(walled || !perceived, "{} at {}", p, near);
                 }
-                Fate::Buried(_) => prop_assert!(walled && !obstacles.free(*p)),
-                Fate::Unusable => prop_assert!(!usable(*p)),
+                PointFate::Buried(_) => prop_assert!(walled && !obstacles.free(*p)),
+                PointFate::Unusable => prop_assert!(!usable(*p)),
             }
         }
         if walled {

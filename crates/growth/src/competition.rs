@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::colonize::{colonize_part, grow_frame, plant_roots};
 use crate::envelope::crowns;
 use crate::error::GrowthError;
-use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism, VariationSpec};
+use crate::{ColonizeSpec, Envelope, Obstacles, PointFate, Skeleton, Tropism, VariationSpec};
 
 /// Trees after Yang et al. (2019). Lengths in metres; places relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -310,7 +310,7 @@ pub(crate) fn compete_each(
             report.book(s.name, s.ms);
         }
         skeleton = grown.skeleton;
-        let reached = grown.fates.iter().filter(|f| matches!(f, Fate::Reached(_))).count();
+        let reached = grown.fates.iter().filter(|f| matches!(f, PointFate::Reached(_))).count();
         if cycle == 0 {
             stem_age = skeleton.age();
         }

@@ -50,7 +50,7 @@ mod wood;
 
 pub use self::spec::{Method, TreeSpec};
 pub use arrangement::Arrangement;
-pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
+pub use colonize::{ColonizeSpec, Colonized, PointFate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, LsystemError, MeshFault, RuleFault};
@@ -59,14 +59,14 @@ pub use guided::{
 };
 pub use leaves::{FoliageSpec, LeafCount, add_leaves};
 pub use limbs::LimbsSpec;
-pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
+pub use look::{Bark, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use set_down::SetDown;
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
-pub use tree::{Grown, Tally, grow};
+pub use tree::{Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;
 pub use wood::{Wood, WoodSpec, make_wood};

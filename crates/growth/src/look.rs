@@ -2,44 +2,10 @@
 //!
 //! Only what is asked for: meshing and painting read it, growth does not.
 
+use plant::BladeForm;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spec::Colour;
-
-/// A botanical form.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BladeForm {
-    /// Broadest below the middle, drawn-out tip: pear, birch, poplar.
-    #[default]
-    Ovate,
-    /// Broadest in the middle: beech.
-    Elliptic,
-    /// Broadest above the middle: Terminalia, magnolia.
-    Obovate,
-    /// Narrow: willow, olive, bamboo.
-    Lanceolate,
-    /// Heart-shaped: lime.
-    Cordate,
-    /// Nearly a triangle on a broad base: poplar, birch.
-    Deltoid,
-    /// Round lobes on both sides: oak.
-    Lobed,
-    /// Five pointed lobes from one place: maple, plane.
-    Palmate,
-    /// Leaflets in pairs along a midrib: ash, walnut, rowan.
-    Pinnate,
-    /// A long narrow leaflet: palm, grass.
-    Leaflet,
-    /// One needle.
-    Needle,
-    /// A bundle of needles that spread from one place: pine, larch.
-    Tuft,
-    /// A shoot with side shoots, all in needles or scales: fir, spruce, yew, cypress.
-    Spray,
-    /// The end of a shoot in long needles, a third of its length, that lean forward: pine.
-    Brush,
-}
 
 /// A leaf's form.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -68,26 +34,6 @@ pub struct BladeSpec {
     /// Of a spray: side shoots on each side, 0 to 12; default 3.
     #[schemars(range(min = 0, max = 12))]
     pub shoots: Option<u32>,
-}
-
-impl BladeForm {
-    /// Every form.
-    pub const ALL: [Self; 14] = [
-        Self::Ovate,
-        Self::Elliptic,
-        Self::Obovate,
-        Self::Lanceolate,
-        Self::Cordate,
-        Self::Deltoid,
-        Self::Lobed,
-        Self::Palmate,
-        Self::Pinnate,
-        Self::Leaflet,
-        Self::Needle,
-        Self::Tuft,
-        Self::Spray,
-        Self::Brush,
-    ];
 }
 
 /// What flowers a tree bears where leaves would stand.

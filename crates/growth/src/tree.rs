@@ -13,8 +13,8 @@ use crate::life::{grown_by, younger};
 use crate::variation::Habit;
 use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
 use crate::{
-    ColonizeSpec, Colonized, Cycle, Fate, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem,
-    Method, Obstacles, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec, add_leaves,
+    ColonizeSpec, Colonized, Cycle, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem, Method,
+    Obstacles, PointFate, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec, add_leaves,
     grow_lsystem, guide, self_organize,
 };
 
@@ -28,7 +28,7 @@ const LEAFY: f64 = 0.6;
 
 /// What growth itself counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct GrowthTally {
     /// Attraction points or markers, of all cycles; 0 for rules and light.
     pub attractors: usize,
     /// Of these, consumed.
@@ -49,7 +49,7 @@ pub struct Grown {
     /// The skeleton under it: for pruning, ages and measures.
     pub skeleton: Skeleton,
     /// What growth counted.
-    pub tally: Tally,
+    pub tally: GrowthTally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
 }
@@ -266,7 +266,7 @@ fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
 }
 
 /// Why a tree came out without wood.
-fn why_nothing(spec: &TreeSpec, tally: &Tally) -> String {
+fn why_nothing(spec: &TreeSpec, tally: &GrowthTally) -> String {
     match &spec.method {
         _ if spec.age == Some(0) => "the tree is asked for at the age of 0; ask for 1 or more".into(),
         Method::SelfOrganizing(s) if s.years == 0 => "years is 0; make it 1 or more".into(),
@@ -301,7 +301,7 @@ fn reached_some(
     obstacles: &Obstacles,
     grown: &Colonized,
 ) -> Result<(), GrowthError> {
-    if grown.fates.iter().any(|f| matches!(f, Fate::Reached(_))) {
+    if grown.fates.iter().any(|f| matches!(f, PointFate::Reached(_))) {
         return Ok(());
     }
     let usable = points.iter().filter(|p| crate::error::usable(**p));
@@ -326,11 +326,11 @@ struct Bones {
     marks: Vec<LeafMark>,
     /// Which joints are of dead limbs; may be empty.
     dead: Vec<bool>,
-    tally: Tally,
+    tally: GrowthTally,
 }
 
 impl Bones {
-    fn new(skeleton: Skeleton, tally: Tally) -> Self {
+    fn new(skeleton: Skeleton, tally: GrowthTally) -> Self {
         Self { skeleton, marks: Vec::new(), dead: Vec::new(), tally }
     }
 
@@ -360,11 +360,11 @@ impl Bones {
     }
 
     fn colonized(grown: Colonized) -> Self {
-        let count = |f: fn(&Fate) -> bool| grown.fates.iter().filter(|x| f(x)).count();
-        let tally = Tally {
+        let count = |f: fn(&PointFate) -> bool| grown.fates.iter().filter(|x| f(x)).count();
+        let tally = GrowthTally {
             attractors: grown.fates.len(),
-            consumed: count(|f| matches!(f, Fate::Reached(_))),
-            unreachable: count(|f| *f == Fate::Unreached),
+            consumed: count(|f| matches!(f, PointFate::Reached(_))),
+            unreachable: count(|f| *f == PointFate::Unreached),
             iterations: grown.rounds,
             cycles: 1,
         };
@@ -409,7 +409,7 @@ fn bones(
         Method::Competition(s) => {
             let grown = compete_each(&spec.roots, obstacles, s, &spec.variation, seed, run, report)?;
             let sum = |of: fn(&Cycle) -> usize| grown.cycles.iter().map(of).sum();
-            let tally = Tally {
+            let tally = GrowthTally {
                 attractors: sum(|c| c.points),
                 consumed: sum(|c| c.reached),
                 unreachable: sum(|c| c.points - c.reached),
@@ -423,13 +423,13 @@ fn bones(
             let years = spec.age.map_or(s.years, |age| age.min(s.years));
             let s = SelfOrganizingSpec { years, ..s.clone() };
             let skeleton = self_organize(&spec.roots, obstacles, &s, seed, run, report)?.skeleton;
-            let tally = Tally { iterations: years, cycles: 1, ..Tally::default() };
+            let tally = GrowthTally { iterations: years, cycles: 1, ..GrowthTally::default() };
             Ok(Bones::new(skeleton, tally))
         }
         Method::Guided(s) => {
             let grown = guide(&spec.roots, obstacles, s, seed, run, report)?;
             // Its markers live for one round: none is consumed or left.
-            let tally = Tally { iterations: grown.rounds, cycles: 1, ..Tally::default() };
+            let tally = GrowthTally { iterations: grown.rounds, cycles: 1, ..GrowthTally::default() };
             Ok(Bones::new(grown.skeleton, tally))
         }
         Method::Lsystem { rules, most_modules } => {
@@ -438,7 +438,7 @@ fn bones(
             // Of a tree with years, all steps make the whole, which is younger later on.
             let last = spec.age.filter(|_| spec.years.is_none());
             system.steps = last.map_or(system.steps, |age| age.min(system.steps));
-            let tally = Tally { iterations: system.steps, cycles: 1, ..Tally::default() };
+            let tally = GrowthTally { iterations: system.steps, cycles: 1, ..GrowthTally::default() };
             let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
             let mut bones = Bones { marks: tree.leaves, ..Bones::new(tree.skeleton, tally) };
             if !obstacles.is_empty() {

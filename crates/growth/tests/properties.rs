@@ -6,8 +6,8 @@
 use base::{Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use growth::{
-    ColonizeSpec, CompetitionSpec, Envelope, Fate, FoliageSpec, GrowthError, Light, Lsystem, Method,
-    OAK_RULES, Obstacle, Obstacles, Resource, SelfOrganizingSpec, TreeSpec, colonize, compete, grow,
+    ColonizeSpec, CompetitionSpec, Envelope, FoliageSpec, GrowthError, Light, Lsystem, Method, OAK_RULES,
+    Obstacle, Obstacles, PointFate, Resource, SelfOrganizingSpec, TreeSpec, colonize, compete, grow,
 };
 use proptest::prelude::*;
 
@@ -166,8 +166,8 @@ proptest! {
         let attractors = crown.scatter(points as usize, hollow, Seed::new(seed), |_| true).expect("room");
         let steps = ColonizeSpec { attraction_m, kill_m, ..ColonizeSpec::default() };
         let grown = colonize(&[root], &attractors, &none, &steps, &run, &mut told).expect("sound");
-        let reached = grown.fates.iter().filter(|f| matches!(f, Fate::Reached(_))).count();
-        let lost = grown.fates.iter().filter(|f| **f == Fate::Unreached).count();
+        let reached = grown.fates.iter().filter(|f| matches!(f, PointFate::Reached(_))).count();
+        let lost = grown.fates.iter().filter(|f| **f == PointFate::Unreached).count();
         prop_assert_eq!((grown.fates.len(), reached + lost), (attractors.len(), attractors.len()));
         let spec = CompetitionSpec {
             envelope: envelope.clone(),

@@ -43,7 +43,7 @@ pub use growth::{LeafGrowth, StagesError};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarginPoint, MarkRow, Marks, MarksError};
 pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};
-pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};
+pub use rays::{ChiefVein, PalmateSpec, ParallelSpec, RayLeaf, Rays, RaysError};
 pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};
 pub use spec::{LeafPaint, LeafSpec, SurfaceKind, VeinParameters};
 pub use thickness::ThicknessRule;

@@ -6,7 +6,7 @@ use base::{Report, ops};
 use glam::{DVec2, DVec3};
 
 use crate::graph::{GraphError, Net, VeinGraph, median_near, trace};
-use crate::rays::{Ray, Rays};
+use crate::rays::{ChiefVein, Rays};
 
 /// Marks on each ray, the base counted.
 const MARKS: usize = 9;
@@ -218,7 +218,7 @@ fn rays_of(net: &Net<'_>, hub: &Hub) -> Rays {
             });
             let points = points.collect();
             let thickness = (0..MARKS).map(|m| thickness.map(|t| t[m])).collect();
-            out.rays.push(Ray { points, thickness });
+            out.rays.push(ChiefVein { points, thickness });
         };
     let even = |far: f64| move |m: usize| far * m as f64 / (MARKS - 1) as f64;
     let outer = |line: &Line, side: f64| {
@@ -326,7 +326,7 @@ mod tests {
         for (veins, turn, stalk) in [(5, 0.0, true), (5, 2.0, false), (7, -1.1, true), (3, 0.5, true)] {
             let rays = network(veins, turn, stalk).rays(&mut Report::default()).unwrap().expect("palmate");
             assert_eq!(rays.validate().next(), None, "{veins} {turn}");
-            let found: Vec<&Ray> = rays.rays.iter().filter(|r| r.is_vein()).collect();
+            let found: Vec<&ChiefVein> = rays.rays.iter().filter(|r| r.is_vein()).collect();
             assert_eq!(found.len(), veins as usize, "{turn}");
             let given = Rays::palmate(&PalmateSpec { veins, ..PalmateSpec::default() });
             for (a, b) in found.iter().zip(given.rays.iter().filter(|r| r.is_vein())) {

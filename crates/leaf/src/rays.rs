@@ -16,12 +16,12 @@ use crate::thickness::ThicknessRule;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rays {
     /// The rays from right to left as one looks at the upper side with the tip up, at least 3.
-    pub rays: Vec<Ray>,
+    pub rays: Vec<ChiefVein>,
 }
 
 /// One line of marks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Ray {
+pub struct ChiefVein {
     /// Places from the base outwards, metres; as many as on every other ray, at least 3.
     pub points: Vec<DVec3>,
     /// Thickness of the vein at each place, metres, above 0; all `None` where there is no vein.
@@ -45,7 +45,7 @@ pub enum RaysError {
     /// Rays of unlike length.
     #[error("vein {ray} has {got} marks, vein 1 has {wanted}; put as many on each")]
     Unequal {
-        /// Ray from 1.
+        /// Chief vein from 1.
         ray: usize,
         /// Its marks.
         got: usize,
@@ -55,7 +55,7 @@ pub enum RaysError {
     /// A coordinate is no usable number.
     #[error("vein {ray}, mark {mark}: a coordinate is not a finite number; measure it again")]
     NotFinite {
-        /// Ray from 1.
+        /// Chief vein from 1.
         ray: usize,
         /// Mark from 1.
         mark: usize,
@@ -65,7 +65,7 @@ pub enum RaysError {
         "vein {ray}, mark {mark}: a thickness must be above 0, not {value}; leave it empty if it was not measured"
     )]
     Thickness {
-        /// Ray from 1.
+        /// Chief vein from 1.
         ray: usize,
         /// Mark from 1.
         mark: usize,
@@ -75,7 +75,7 @@ pub enum RaysError {
     /// Two marks that follow one another are one place.
     #[error("vein {ray}: marks {mark} and {next} are the same point; remove one of them", next = .mark + 1)]
     Repeated {
-        /// Ray from 1.
+        /// Chief vein from 1.
         ray: usize,
         /// First of the two marks, from 1.
         mark: usize,
@@ -163,7 +163,7 @@ impl Rays {
                 let t = m as f64 / (MADE_MARKS - 1) as f64;
                 vein.then_some(0.016 * length * (1.0 - 0.85 * t))
             });
-            out.rays.push(Ray { points: points.collect(), thickness: thickness.collect() });
+            out.rays.push(ChiefVein { points: points.collect(), thickness: thickness.collect() });
         };
         // From right (+x) to left. Beyond the outermost lobe the margin runs back to the stalk.
         let (edge, last) = lobe(f64::from(k - 1));
@@ -228,7 +228,7 @@ impl Rays {
                 let base = if middle.0 { 0.11 } else { 0.05 };
                 middle.1.then_some(wide * base * (1.0 - 0.8 * share(m)))
             });
-            Ray { points: points.collect(), thickness: thickness.collect() }
+            ChiefVein { points: points.collect(), thickness: thickness.collect() }
         };
         Self { rays: (0..k + 2).map(ray).collect() }
     }
@@ -238,7 +238,7 @@ impl Rays {
         let marks = self.rays.first().map_or(0, |r| r.points.len());
         let few = self.rays.len() < 3 || marks < 3;
         let few = few.then_some(RaysError::TooFew { rays: self.rays.len(), marks });
-        let none = !self.rays.iter().any(Ray::is_vein);
+        let none = !self.rays.iter().any(ChiefVein::is_vein);
         let each = self.rays.iter().enumerate().flat_map(move |(i, ray)| {
             let unequal = (ray.points.len() != marks || ray.thickness.len() != marks)
                 .then_some(RaysError::Unequal { ray: i + 1, got: ray.points.len(), wanted: marks });
@@ -271,13 +271,13 @@ impl Rays {
 
     /// The length of the middle vein, or of the middle ray if there is none, by its chords.
     pub fn length(&self) -> f64 {
-        let veins: Vec<&Ray> = self.rays.iter().filter(|r| r.is_vein()).collect();
+        let veins: Vec<&ChiefVein> = self.rays.iter().filter(|r| r.is_vein()).collect();
         let middle = veins.get(veins.len() / 2).copied().or_else(|| self.rays.get(self.rays.len() / 2));
         middle.map_or(0.0, |r| geom::polyline_length3(&r.points))
     }
 }
 
-impl Ray {
+impl ChiefVein {
     /// A thickness was measured on it.
     pub fn is_vein(&self) -> bool {
         self.thickness.iter().any(Option::is_some)
@@ -391,7 +391,7 @@ mod tests {
             assert_eq!(rays.validate().next(), None);
             let leaf = RayLeaf::new(&rays, ThicknessRule::Diameter).unwrap();
             assert!(leaf.vein_gap(16) < 1e-9, "{}", leaf.vein_gap(16));
-            let veins: Vec<&Ray> = rays.rays.iter().rev().filter(|r| r.is_vein()).collect();
+            let veins: Vec<&ChiefVein> = rays.rays.iter().rev().filter(|r| r.is_vein()).collect();
             assert_eq!(leaf.veins.len(), veins.len());
             for (vein, ray) in leaf.veins.iter().zip(veins) {
                 for (m, (&t, p)) in vein.marks.iter().zip(&ray.points).enumerate() {

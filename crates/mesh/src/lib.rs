@@ -14,4 +14,4 @@ pub use cloud::PointCloud;
 pub use copies::{Copies, CopyPlace};
 pub use material::{AlphaMode, Impostor, Maps, Material, MaterialId, MaterialKind, Texture};
 pub use rig::{Hold, Joint, Rig};
-pub use trimesh::{Bounds, Fault, Model, Part, Standing, TriMesh};
+pub use trimesh::{Bounds, MeshFault, Model, Part, Standing, TriMesh};

@@ -126,7 +126,7 @@ impl Bounds {
 /// Something that is wrong with a mesh or a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Fault {
+pub enum MeshFault {
     /// A coordinate is NaN or infinite.
     #[error("vertex {0} is not finite")]
     NotFinite(usize),
@@ -211,7 +211,7 @@ impl TriMesh {
     }
 
     /// Everything that is wrong. Cost: linear.
-    pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
+    pub fn validate(&self) -> impl Iterator<Item = MeshFault> + '_ {
         let n = self.positions.len();
         let ragged = [
             ("normals", self.normals.len()),
@@ -223,24 +223,25 @@ impl TriMesh {
         let ragged = ragged
             .into_iter()
             .filter(move |&(_, len)| len != 0 && len != n)
-            .map(|(name, _)| Fault::Ragged(name));
+            .map(|(name, _)| MeshFault::Ragged(name));
         let finite = self.positions.iter().chain(&self.pivots).enumerate();
         let finite = finite
             .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
-            .map(move |(i, _)| Fault::NotFinite(if i < n { i } else { i - n }));
+            .map(move |(i, _)| MeshFault::NotFinite(if i < n { i } else { i - n }));
         let share = |w: &[f32; 4]| w.iter().all(|x| (0.0..=1.0).contains(x));
-        let wind = self.wind.iter().enumerate().filter(move |(_, w)| !share(w)).map(|(i, _)| Fault::Wind(i));
+        let wind =
+            self.wind.iter().enumerate().filter(move |(_, w)| !share(w)).map(|(i, _)| MeshFault::Wind(i));
         let normals = self.normals.iter().enumerate();
         let normals = normals
             .filter(|&(_, &v)| {
                 (to_f64(v).length() - 1.0).abs().partial_cmp(&1e-3) != Some(core::cmp::Ordering::Less)
             })
-            .map(|(i, _)| Fault::Normal(i));
+            .map(|(i, _)| MeshFault::Normal(i));
         let triangles = self.triangles.iter().enumerate().filter_map(move |(i, &[a, b, c])| {
             if [a, b, c].iter().any(|&v| v as usize >= n) {
-                Some(Fault::Dangling(i))
+                Some(MeshFault::Dangling(i))
             } else if a == b || b == c || c == a {
-                Some(Fault::Degenerate(i))
+                Some(MeshFault::Degenerate(i))
             } else {
                 None
             }
@@ -305,10 +306,10 @@ impl Model {
     }
 
     /// Everything that is wrong with any part.
-    pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
+    pub fn validate(&self) -> impl Iterator<Item = MeshFault> + '_ {
         self.parts.iter().enumerate().flat_map(move |(i, part)| {
             let missing = part.material.index() >= self.materials.len();
-            missing.then_some(Fault::Material(i)).into_iter().chain(part.mesh.validate())
+            missing.then_some(MeshFault::Material(i)).into_iter().chain(part.mesh.validate())
         })
     }
 }
@@ -333,13 +334,13 @@ mod tests {
             triangles: vec![[0, 1, 9], [1, 1, 2]],
             ..TriMesh::default()
         };
-        let faults: Vec<Fault> = m.validate().collect();
+        let faults: Vec<MeshFault> = m.validate().collect();
         let want = [
-            Fault::Ragged("normals"),
-            Fault::NotFinite(1),
-            Fault::Normal(0),
-            Fault::Dangling(0),
-            Fault::Degenerate(1),
+            MeshFault::Ragged("normals"),
+            MeshFault::NotFinite(1),
+            MeshFault::Normal(0),
+            MeshFault::Dangling(0),
+            MeshFault::Degenerate(1),
         ];
         assert_eq!(faults, want);
         m.positions[1][0] = 1.0;
@@ -364,9 +365,9 @@ mod tests {
         assert_eq!(blown.validate().count(), 0);
         blown.wind[2][1] = 1.5;
         blown.pivots[1][0] = f32::NAN;
-        assert_eq!(blown.validate().collect::<Vec<_>>(), [Fault::NotFinite(1), Fault::Wind(2)]);
+        assert_eq!(blown.validate().collect::<Vec<_>>(), [MeshFault::NotFinite(1), MeshFault::Wind(2)]);
         blown.wind.pop();
-        assert_eq!(blown.validate().next(), Some(Fault::Ragged("wind")));
+        assert_eq!(blown.validate().next(), Some(MeshFault::Ragged("wind")));
     }
 
     #[test]

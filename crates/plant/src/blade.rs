@@ -42,7 +42,7 @@ pub enum Lift {
         /// The cone and the sheet of it on which this petal lies.
         cone: geom::Cone,
         /// Which of the two sheets.
-        sheet: geom::Sheet,
+        sheet: geom::ConeSheet,
     },
 }
 

@@ -8,6 +8,7 @@
 
 mod blade;
 mod flat;
+mod forms;
 mod frame;
 mod ids;
 mod measure;
@@ -24,6 +25,7 @@ mod validate;
 
 pub use blade::{Blade, Lift, Relief};
 pub use flat::FlatLeaf;
+pub use forms::BladeForm;
 pub use frame::Frame;
 pub use ids::{AxisId, FlowerId, NodeId, OrganId, ShapeId};
 pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
@@ -35,4 +37,4 @@ pub use relief::BladeSurface;
 pub use rim::Netted;
 pub use sheet::{Chart, RimPoint, Sheet, SplineBlade, Vein, VeinShade, Venation};
 pub use topology::{Axis, AxisKind, Nodes, Plant};
-pub use validate::Fault;
+pub use validate::PlantFault;

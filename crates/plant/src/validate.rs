@@ -5,7 +5,7 @@ use crate::{AxisId, NodeId, OrganId, Plant, Shape, ShapeId};
 /// Something that is wrong with a plant: always our bug, never the user's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Fault {
+pub enum PlantFault {
     /// The node columns differ in length.
     #[error("the node columns differ in length")]
     RaggedNodes,
@@ -40,15 +40,15 @@ pub enum Fault {
 
 impl Plant {
     /// Everything that is wrong. An empty plant is sound. Cost: linear.
-    pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
+    pub fn validate(&self) -> impl Iterator<Item = PlantFault> + '_ {
         let n = &self.nodes;
         let ragged = n.position.len() != n.radius_m.len() || n.position.len() != n.axis.len();
         let nodes = n.position.iter().zip(&n.radius_m).enumerate();
         let nodes = nodes
             .filter(|(_, (p, r))| !(p.is_finite() && r.is_finite() && **r >= 0.0))
-            .map(|(i, _)| Fault::Node(NodeId::new(i)));
+            .map(|(i, _)| PlantFault::Node(NodeId::new(i)));
         ragged
-            .then_some(Fault::RaggedNodes)
+            .then_some(PlantFault::RaggedNodes)
             .into_iter()
             .chain(nodes)
             .chain((0..self.axes.len()).filter_map(|i| self.axis_fault(AxisId::new(i))))
@@ -57,7 +57,7 @@ impl Plant {
             .chain((0..self.flowers.len()).filter_map(|i| self.flower_fault(i)))
     }
 
-    fn axis_fault(&self, id: AxisId) -> Option<Fault> {
+    fn axis_fault(&self, id: AxisId) -> Option<PlantFault> {
         let axis = self.axis(id);
         let (start, end) = (axis.nodes.start as usize, axis.nodes.end as usize);
         let expected = if id.index() == 0 { 0 } else { self.axes[id.index() - 1].nodes.end as usize };
@@ -68,30 +68,30 @@ impl Plant {
             || (last && end != self.nodes.position.len())
             || self.nodes.axis.get(start..end).is_none_or(|a| a.iter().any(|&a| a != id))
         {
-            return Some(Fault::Range(id));
+            return Some(PlantFault::Range(id));
         }
         let Some(bearer) = axis.bearer else {
-            return (axis.order != 0).then_some(Fault::Order(id));
+            return (axis.order != 0).then_some(PlantFault::Order(id));
         };
         let Some(&bearer_axis) = self.nodes.axis.get(bearer.index()).filter(|a| a.index() < id.index())
         else {
-            return Some(Fault::Bearer(id));
+            return Some(PlantFault::Bearer(id));
         };
         if axis.order != self.axis(bearer_axis).order + 1 {
-            return Some(Fault::Order(id));
+            return Some(PlantFault::Order(id));
         }
         let gap = self.nodes.position[start].distance(self.nodes.position[bearer.index()]);
         let size = 1.0 + self.nodes.position[start].length();
-        (gap > 1e-9 * size).then_some(Fault::Detached(id))
+        (gap > 1e-9 * size).then_some(PlantFault::Detached(id))
     }
 
-    fn organ_fault(&self, id: OrganId) -> Option<Fault> {
+    fn organ_fault(&self, id: OrganId) -> Option<PlantFault> {
         let organ = &self.organs[id.index()];
         if organ.bearer.is_some_and(|n| n.index() >= self.nodes.position.len())
             || organ.shape.index() >= self.shapes.len()
             || organ.flower.is_some_and(|f| f.index() >= self.flowers.len())
         {
-            return Some(Fault::OrganLink(id));
+            return Some(PlantFault::OrganLink(id));
         }
         let f = &organ.frame;
         let orthonormal = (f.right.cross(f.along) - f.normal).length() < 1e-6
@@ -99,10 +99,10 @@ impl Plant {
             && (f.along.length() - 1.0).abs() < 1e-6
             && f.right.dot(f.along).abs() < 1e-6;
         let sound = f.origin.is_finite() && orthonormal && organ.scale.is_finite() && organ.scale > 0.0;
-        (!sound).then_some(Fault::OrganFrame(id))
+        (!sound).then_some(PlantFault::OrganFrame(id))
     }
 
-    fn shape_fault(&self, id: ShapeId) -> Option<Fault> {
+    fn shape_fault(&self, id: ShapeId) -> Option<PlantFault> {
         let positive = |r: f64| r.is_finite() && r > 0.0;
         let sound = match &self.shapes[id.index()] {
             Shape::Blade(b) => {
@@ -131,15 +131,15 @@ impl Plant {
                     && *knob_m >= 0.0
             }
         };
-        (!sound).then_some(Fault::Shape(id))
+        (!sound).then_some(PlantFault::Shape(id))
     }
 
-    fn flower_fault(&self, index: usize) -> Option<Fault> {
+    fn flower_fault(&self, index: usize) -> Option<PlantFault> {
         let f = &self.flowers[index];
         let sound = f.centre.is_finite()
             && (f.axis.length() - 1.0).abs() < 1e-6
             && (0.0..=base::ops::FRAC_PI_2 + 1e-9).contains(&f.half_angle)
             && f.bearer.is_none_or(|n| n.index() < self.nodes.position.len());
-        (!sound).then_some(Fault::Flower(index))
+        (!sound).then_some(PlantFault::Flower(index))
     }
 }

@@ -33,4 +33,4 @@ pub use ground::Ground;
 pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};
 pub use tree::{FoundTree, find_tree};
-pub use wanted::{Tally, TreeScanSpec};
+pub use wanted::{ScanTally, TreeScanSpec};

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::ScanTreeError;
 use crate::ground::Ground;
 use crate::levels::Rings;
-use crate::wanted::{Tally, TreeScanSpec};
+use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
 /// Where a tree stands: heights over the ground.
@@ -163,7 +163,7 @@ impl Stems {
         ways.bridge(gap, &piece, |c| piece[c] != NONE)
     }
 
-    pub(crate) fn tell(&self, ways: &Ways, report: &mut Report, tally: &mut Tally) {
+    pub(crate) fn tell(&self, ways: &Ways, report: &mut Report, tally: &mut ScanTally) {
         let mut counts = vec![0; self.others.len() + 1];
         for c in 0..ways.len() {
             let n = ways.voxels.rows(c).len();

@@ -11,7 +11,7 @@ use crate::ground::Ground;
 use crate::levels::Rings;
 use crate::radii::{Measured, Pipes, measure, smooth};
 use crate::stems::{Site, Stems};
-use crate::wanted::{Tally, TreeScanSpec};
+use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
 /// A tree that was found in a cloud.
@@ -24,7 +24,7 @@ pub struct FoundTree {
     /// The ground, where there is one.
     pub ground: Option<Ground>,
     /// What became of the points.
-    pub tally: Tally,
+    pub tally: ScanTally,
 }
 
 /// Least points of a tree.
@@ -55,7 +55,7 @@ pub fn find_tree(
     if all.len() < FEWEST {
         return Err(ScanTreeError::TooFew(all.len(), FEWEST));
     }
-    let mut tally = Tally { points: all.len(), ..Tally::default() };
+    let mut tally = ScanTally { points: all.len(), ..ScanTally::default() };
     let ground = Ground::find(&all);
     run.cancel.check()?;
     let (above, height) = above_ground(&all, ground.as_ref());

@@ -23,7 +23,7 @@ impl Default for TreeScanSpec {
 
 /// What became of the points, and what was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct ScanTally {
     /// Usable points.
     pub points: usize,
     /// Of the ground.

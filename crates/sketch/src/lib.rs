@@ -16,11 +16,9 @@ mod fill;
 mod front;
 mod map;
 mod spec;
-mod template;
 
 pub use self::spec::{BranchDepth, FillSpec, LeafDepth, PullSet, ReliefSpec, SketchSpec, TaperSpec};
 pub use build::{Built, build, build_again};
 pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
 pub use fill::{GrownContour, KeptBodies};
 pub use map::PlantMap;
-pub use template::LeafForm;

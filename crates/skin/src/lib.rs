@@ -15,7 +15,7 @@
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
 //! | `needles` | shoots in needles, painted on cards |
-//! | `shoots` | [`Foliage`], [`Shoots`]: leaves as cards, several on one |
+//! | `shoots` | [`FoliageStyle`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
@@ -55,10 +55,10 @@ pub use copies::copies;
 pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
-pub use natural::{BarkKind, Venation};
+pub use natural::{BarkKind, VeinPattern};
 pub use organs::KeptShapes;
-pub use pictures::Pictures;
-pub use shoots::{Foliage, Shoots};
+pub use pictures::SurfacePictures;
+pub use shoots::{FoliageStyle, Shoots};
 pub use sway::{gust, sway};
 pub use texture::{LeafColours, swatch, vein_texture};
 pub use traced::Traced;
@@ -112,7 +112,7 @@ use crate::spec::Budget;
 /// # Ok::<(), base::Stopped>(())
 /// ```
 pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stopped> {
-    skin_again(plant, spec, Pictures::default(), None, run)
+    skin_again(plant, spec, SurfacePictures::default(), None, run)
 }
 
 /// As [`skin()`], again for a plant that changed a little: shapes that stayed are not triangulated anew. Organs and axes
@@ -125,7 +125,7 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stop
 pub fn skin_again(
     plant: &Plant,
     spec: &SkinSpec,
-    pictures: Pictures<'_>,
+    pictures: SurfacePictures<'_>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
@@ -139,7 +139,7 @@ pub fn skin_again(
 pub fn skin_laid_out(
     plant: &Plant,
     spec: &SkinSpec,
-    pictures: Pictures<'_>,
+    pictures: SurfacePictures<'_>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<(Model, Layout), Stopped> {

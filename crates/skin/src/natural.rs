@@ -53,7 +53,7 @@ impl BarkKind {
 /// How the veins of a leaf run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Venation {
+pub enum VeinPattern {
     /// A midrib with side veins, which end in the tips of lobes where there are any: oak, beech, lime.
     #[default]
     Pinnate,
@@ -67,7 +67,7 @@ pub enum Venation {
     Needle,
 }
 
-impl Venation {
+impl VeinPattern {
     /// Every kind.
     pub const ALL: [Self; 5] = [Self::Pinnate, Self::Palmate, Self::Parallel, Self::Compound, Self::Needle];
 }

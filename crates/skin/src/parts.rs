@@ -8,12 +8,12 @@ use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, 
 use plant::{Blade, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId};
 
 use crate::layout::{Layout, Piece};
-use crate::pictures::Pictures;
+use crate::pictures::SurfacePictures;
 use crate::texture::{
     GREEN, LEAF_ROUGHNESS, LeafInks, Leafage, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, atlas, bark,
     leaf, paint_material, painted_material, petal_inks, petals,
 };
-use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, Venation, Wearer, Worn};
+use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, VeinPattern, Wearer, Worn};
 
 /// What a part of the model is made of; one part and one material each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -164,14 +164,14 @@ impl Slot {
     fn surface(self, spec: &SkinSpec, plant: &Plant, old: bool, executor: &dyn Executor) -> Option<Surface> {
         let size = spec.texture_size.clamp(64, 4096);
         let leaves = |inks: &LeafInks, needled: bool| {
-            let venation = if needled { Some(Venation::Needle) } else { spec.venation };
+            let venation = if needled { Some(VeinPattern::Needle) } else { spec.venation };
             let mut leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
             let own = leaves.find_map(|o| blade(plant, o.shape).filter(|b| b.needles.is_some() == needled));
             if spec.cards(needled) {
                 let shoots = spec.shoots(needled);
                 let shown = shoots.map(|s| &s.leaf).or(own).cloned();
                 let what = Leafage {
-                    venation: venation.unwrap_or(Venation::Pinnate),
+                    venation: venation.unwrap_or(VeinPattern::Pinnate),
                     leaf: &shown.unwrap_or_else(any_blade),
                     shoots,
                     inks,
@@ -183,7 +183,7 @@ impl Slot {
                 Some(venation) => {
                     leaf(venation, &own.cloned().unwrap_or_else(any_blade), inks, size, executor)
                 }
-                None => leaf(Venation::Pinnate, &any_blade(), inks, size, executor),
+                None => leaf(VeinPattern::Pinnate, &any_blade(), inks, size, executor),
             }
         };
         Some(match self {
@@ -248,7 +248,7 @@ impl Slot {
 
     fn material(
         self,
-        (spec, pictures): (&SkinSpec, Pictures<'_>),
+        (spec, pictures): (&SkinSpec, SurfacePictures<'_>),
         plant: &Plant,
         old: bool,
         executor: &dyn Executor,
@@ -346,7 +346,7 @@ pub(crate) fn model(
     plant: &Plant,
     mut meshes: Vec<(Slot, TriMesh, Vec<Piece>)>,
     spec: &SkinSpec,
-    pictures: Pictures<'_>,
+    pictures: SurfacePictures<'_>,
     executor: &dyn Executor,
 ) -> (Model, Layout) {
     let mut model = Model { name: plant.name.clone(), ..Model::default() };

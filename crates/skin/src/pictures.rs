@@ -8,7 +8,7 @@ use crate::traced::Traced;
 
 /// Pictures that lie on the surfaces of a plant, in the place of painted textures.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Pictures<'a> {
+pub struct SurfacePictures<'a> {
     /// The photograph under a drawing.
     pub traced: Option<&'a Traced>,
     /// Of measured leaves, by the number of their form ([`plant::SplineBlade::form`]).

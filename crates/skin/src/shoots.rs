@@ -17,7 +17,7 @@ const WOOD_SEEN: f64 = 0.5;
 
 /// How leaves are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Foliage {
+pub enum FoliageStyle {
     /// By their outlines.
     #[default]
     Outlines,

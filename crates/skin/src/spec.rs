@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spec::Colour;
 
-use crate::natural::{BarkKind, Venation};
-use crate::shoots::{Foliage, Shoots};
+use crate::natural::{BarkKind, VeinPattern};
+use crate::shoots::{FoliageStyle, Shoots};
 use crate::{Wearer, Worn};
 
 /// How a plant is given its surface. Saved with the document.
@@ -46,7 +46,7 @@ pub struct SkinSpec {
     /// How the veins of its leaves run, which then have a surface of their own form. Saved with the tree, not here. Default
     /// none: pinnate, on a form that suits any.
     #[serde(skip)]
-    pub venation: Option<Venation>,
+    pub venation: Option<VeinPattern>,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
     pub petals: Option<PetalColor>,
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
@@ -66,7 +66,7 @@ pub struct SkinSpec {
     /// How leaves of a flat form are drawn; by their outlines where there are no textures, and where they wear a material.
     /// Shoots in needles are cards in any case where there are textures. Chosen for an export, not saved.
     #[serde(skip)]
-    pub foliage: Foliage,
+    pub foliage: FoliageStyle,
     /// Shoots that cards of leaves may be of. Not saved. Default none.
     #[serde(skip)]
     pub shoots: Option<Arc<Shoots>>,
@@ -95,7 +95,7 @@ impl Default for SkinSpec {
             wind: false,
             steady_m: None,
             crowd: None,
-            foliage: Foliage::default(),
+            foliage: FoliageStyle::default(),
             shoots: None,
             worn: Worn::default(),
             seed: Seed::default(),
@@ -106,7 +106,7 @@ impl Default for SkinSpec {
 impl SkinSpec {
     /// Whether leaves are cards, those that are shoots in needles or the others.
     pub(crate) fn cards(&self, needled: bool) -> bool {
-        let wanted = self.foliage == Foliage::Cards || needled;
+        let wanted = self.foliage == FoliageStyle::Cards || needled;
         wanted && self.textures && self.worn.kinds[Wearer::Leaf as usize].is_none()
     }
 

@@ -7,7 +7,7 @@ use leaf::{
     Leaf, LeafSpec, MarkRow, Marks, PalmateSpec, ParallelSpec, RayLeaf, Rays, SurfaceKind, ThicknessRule,
 };
 use plant::{Frame, Organ, OrganKind, Paint, Plant, Shape, SplineBlade, VeinShade};
-use skin::{KeptShapes, LeafMeshSpec, Pictures, ShapeMesh, SkinSpec, skin_again};
+use skin::{KeptShapes, LeafMeshSpec, ShapeMesh, SkinSpec, SurfacePictures, skin_again};
 
 const SHADE: VeinShade = VeinShade { vein: [0.5; 3], blade: [0.1; 3], reach_m: 0.002 };
 
@@ -30,8 +30,8 @@ fn meshed(blade: SplineBlade, leaf: LeafMeshSpec) -> ShapeMesh {
     assert_eq!(plant.validate().next(), None, "a sound plant");
     let mut kept = KeptShapes::default();
     let spec = SkinSpec { leaf, ..SkinSpec::default() };
-    let model =
-        skin_again(&plant, &spec, Pictures::default(), Some(&mut kept), &Run::plain()).expect("in budget");
+    let model = skin_again(&plant, &spec, SurfacePictures::default(), Some(&mut kept), &Run::plain())
+        .expect("in budget");
     assert_eq!(model.validate().next(), None, "a sound model");
     let names: Vec<&str> = model.parts.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["leaves", "veins"], "parts");

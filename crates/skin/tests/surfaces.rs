@@ -351,7 +351,7 @@ fn leaves_that_are_one_form_are_taken_out_once_each() {
     let spec = SkinSpec { textures: false, ..SkinSpec::default() };
     let run = Run::plain();
     let (model, layout) =
-        skin::skin_laid_out(&p, &spec, skin::Pictures::default(), None, &run).expect("a surface");
+        skin::skin_laid_out(&p, &spec, skin::SurfacePictures::default(), None, &run).expect("a surface");
     let (rest, copies) = skin::copies(&p, &model, &layout);
     assert!(!copies.is_empty() && copies.iter().all(|c| c.places.len() >= 8));
     let taken: usize = copies.iter().map(|c| c.places.len() * c.mesh.triangles.len()).sum();

@@ -13,7 +13,7 @@ use mesh::{Model, Texture};
 use plant::Plant;
 use reading::{KeptStrokes, Kind, Reading};
 use sketch::{Built, KeptBodies, SketchSpec};
-use skin::{KeptShapes, Layout, Pictures, SkinSpec, Traced};
+use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -372,7 +372,7 @@ impl Evaluator {
         let plant = coarse.as_ref().map(|(copy, _)| copy).or_else(|| self.plant());
         let drawn = coarse.as_ref().map_or(skin, |(_, coarser)| coarser);
         let meshed = plant.map(|plant| {
-            let pictures = Pictures { traced: traced.as_ref(), ..Pictures::default() };
+            let pictures = SurfacePictures { traced: traced.as_ref(), ..SurfacePictures::default() };
             let model = report.stage("mesh", run.clock, |_| {
                 skin::skin_laid_out(plant, drawn, pictures, Some(&mut shapes), run)
             });

@@ -3,7 +3,7 @@
 use base::{Report, Run, Seed, Stopped};
 use bloom::{FlowerSpec, GrowthLaw};
 use document::PlantEdit;
-use skin::{Pictures, SkinSpec};
+use skin::{SkinSpec, SurfacePictures};
 
 use crate::made::MadePlant;
 use crate::shaping::shaped;
@@ -41,8 +41,9 @@ pub fn make_flower(
     let steady_m = Some(spec.size_m());
     let worn = options.skin.worn.clone().always(options.skin.textures);
     let skin = SkinSpec { textures: false, variation: 0.0, steady_m, worn, ..options.skin.clone() };
-    let model = report
-        .stage("mesh", run.clock, |_| skin::skin_laid_out(&plant, &skin, Pictures::default(), None, run));
+    let model = report.stage("mesh", run.clock, |_| {
+        skin::skin_laid_out(&plant, &skin, SurfacePictures::default(), None, run)
+    });
     let mut made = MadePlant::new(plant, (model?, skin), (edits, &options.edits), &report);
     made.item.plant = Some(made.plant.measure());
     Ok(made)

@@ -8,7 +8,7 @@ use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafPaint, LeafSpec, Marks, MarksError, RaysError, ScanError};
 use mesh::{Texture, TriMesh};
 use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId, SplineBlade};
-use skin::{KeptShapes, LeafColours, LeafMeshSpec, Pictures, ShapeMesh, SkinSpec};
+use skin::{KeptShapes, LeafColours, LeafMeshSpec, ShapeMesh, SkinSpec, SurfacePictures};
 
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
@@ -155,7 +155,7 @@ pub(crate) fn finish(
     let skin = options.skin.clone();
     let worn = skin.worn.clone().always(skin.textures);
     let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, worn, ..skin };
-    let pictures = Pictures { leaves: textures, ..Pictures::default() };
+    let pictures = SurfacePictures { leaves: textures, ..SurfacePictures::default() };
     let model = report
         .stage("mesh", run.clock, |_| skin::skin_laid_out(&plant, &spec, pictures, Some(&mut kept), run));
     let model = model?;

@@ -81,7 +81,7 @@ pub use trees::{
 pub use venation::make_ray_leaf;
 
 pub use base::coded;
-pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
+pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {

@@ -8,7 +8,7 @@ use glam::DVec3;
 use ink::Drawing;
 use mesh::Model;
 use plant::{Flower, FlowerId, Organ, OrganKind, Paint, Plant, Shape};
-use skin::{KeptShapes, Layout, PetalColor, Pictures, SkinSpec};
+use skin::{KeptShapes, Layout, PetalColor, SkinSpec, SurfacePictures};
 
 use crate::evaluate::make_from_sketch;
 use crate::made::coarse;
@@ -146,7 +146,7 @@ impl OpeningPlant {
         }
         debug_assert_eq!(plant.validate().next(), None, "a sound plant");
         let (steady, kept) = (self.steady(), Some(&mut self.kept));
-        let (model, layout) = skin::skin_laid_out(&plant, &steady, Pictures::default(), kept, run)?;
+        let (model, layout) = skin::skin_laid_out(&plant, &steady, SurfacePictures::default(), kept, run)?;
         Ok(OpenedPlant { plant, model, layout, overlap })
     }
 

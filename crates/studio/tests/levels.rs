@@ -3,7 +3,7 @@
 use burgeon::glam::DVec3;
 use burgeon::mesh::{AlphaMode, MaterialKind, Model, Texture};
 use burgeon::render::{Background, Camera, PictureSpec, View, shot};
-use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::skin::{FoliageStyle, SkinSpec};
 use burgeon::{PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
 
 /// The area of what is of these kinds, one side, without what is cut out, square metres.
@@ -136,7 +136,7 @@ fn holds_of(first: usize) {
 #[test]
 fn cards_and_shoots_keep_the_foliage_too() {
     let options = TreeOptions {
-        skin: SkinSpec { texture_size: 64, foliage: Foliage::ByLevel, ..SkinSpec::default() },
+        skin: SkinSpec { texture_size: 64, foliage: FoliageStyle::ByLevel, ..SkinSpec::default() },
         lods: 3,
         impostor: Some(256),
         ..TreeOptions::default()

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use burgeon::document::{
-    self, Document, DocumentPlant, Editor, Maker, NewPlant, NewStroke, Photo, PhotoPlace, Picture,
-    PlantCommand, PlantId, SceneCommand, Settings, SketchCommand, StrokeId,
+    self, Document, DocumentPlant, Editor, Maker, NewPlant, NewStroke, Photo, PhotoPlace, PlantCommand,
+    PlantId, SceneCommand, Settings, SketchCommand, StrokeId, WornPicture,
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
@@ -406,7 +406,7 @@ impl Workspace {
         material: OrganMaterial,
         png: &[u8],
     ) -> Result<(), WorkspaceError> {
-        let picture = Picture::new(png.into())?;
+        let picture = WornPicture::new(png.into())?;
         let id = self.must()?;
         let worn =
             Some(OrganMaterial { pattern: Pattern::Picture, picture: Some(picture.name()), ..material });

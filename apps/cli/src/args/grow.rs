@@ -6,7 +6,7 @@ use burgeon::TreeSpec;
 use burgeon::formats::Packing;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
-use burgeon::skin::{Foliage, SkinSpec};
+use burgeon::skin::{FoliageStyle, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
@@ -185,11 +185,11 @@ pub(crate) enum FoliageWord {
 }
 
 impl FoliageWord {
-    pub(crate) const fn foliage(self) -> Foliage {
+    pub(crate) const fn foliage(self) -> FoliageStyle {
         match self {
-            Self::Outlines => Foliage::Outlines,
-            Self::Cards => Foliage::Cards,
-            Self::ByLevel => Foliage::ByLevel,
+            Self::Outlines => FoliageStyle::Outlines,
+            Self::Cards => FoliageStyle::Cards,
+            Self::ByLevel => FoliageStyle::ByLevel,
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{Command, CommandError, NewStroke, plant, set};
 use crate::event::Event;
 use crate::names::{NAME_LENGTH, shortened};
 use crate::state::{MAX_PLANTS, Placement, Settings, range_fault, sound};
-use crate::{Document, DocumentPlant, DocumentStroke, Picture, PlantId, StrokeId};
+use crate::{Document, DocumentPlant, DocumentStroke, PlantId, StrokeId, WornPicture};
 
 /// A plant that is to come in.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -171,7 +171,7 @@ pub enum PlantCommand {
     Wear(Wearer, Option<OrganMaterial>),
     /// Takes in a picture that materials may name.
     #[serde(skip)]
-    AddPicture(Picture),
+    AddPicture(WornPicture),
 }
 
 impl PlantCommand {

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 
 use base::{Unit, UpAxis};
 use glam::DVec3;
-use leaf::{Ray, Rays, ThicknessRule};
+use leaf::{ChiefVein, Rays, ThicknessRule};
 
 use super::fields::Fields;
 use super::{LeafFileError, MarksAxes};
@@ -85,7 +85,7 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
             return Err(file(FileFault::malformed(what, "number the veins from 1 without gaps")));
         }
         if vein == rays.len() + 1 {
-            rays.push(Ray::default());
+            rays.push(ChiefVein::default());
         }
         let ray = &mut rays[vein - 1];
         if mark != ray.points.len() + 1 {

@@ -6,7 +6,7 @@ use mesh::{MaterialId, Model, Part, TriMesh};
 
 use super::glb_write::INSTANCES;
 use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
-use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, unsupported};
+use super::gltf_bytes::{Bytes, MeshFault, broken, chunks, item, unsupported};
 use super::gltf_look::Pictures;
 use super::{MAX_ROWS, Names, Resolver, unit};
 use crate::ModelFormat;
@@ -60,7 +60,7 @@ pub(super) fn read(
         };
         ModelError::new(format, place, fault)
     })?;
-    let at = |(place, fault): Fault| ModelError::new(format, place, fault);
+    let at = |(place, fault): MeshFault| ModelError::new(format, place, fault);
     let bytes = Bytes::load(&root, bin, resolve).map_err(at)?;
     for extension in &root.extensions_required {
         if !HARMLESS.iter().any(|h| extension == h || (h.ends_with('_') && extension.starts_with(h))) {
@@ -120,7 +120,7 @@ fn local_matrix(node: &Node) -> DMat4 {
 }
 
 impl Reader<'_> {
-    fn scene(&mut self) -> Result<(), Fault> {
+    fn scene(&mut self) -> Result<(), MeshFault> {
         let root = self.root;
         let scene = root.scenes.get(root.scene.unwrap_or(0) as usize);
         let mut has_parent = vec![false; root.nodes.len()];
@@ -173,12 +173,12 @@ impl Reader<'_> {
 
     /// Where the instances of a node's mesh stand (`EXT_mesh_gpu_instancing`), and their colours; `None` of a node that has
     /// none.
-    fn places(&self, node: &Node, index: u32) -> Result<Option<Vec<Instance>>, Fault> {
+    fn places(&self, node: &Node, index: u32) -> Result<Option<Vec<Instance>>, MeshFault> {
         let Some(instances) = node.extensions.as_ref().and_then(|e| e.get(INSTANCES)) else {
             return Ok(None);
         };
         let place = || item("node", index);
-        let accessor = |key: &str| -> Result<Option<u32>, Fault> {
+        let accessor = |key: &str| -> Result<Option<u32>, MeshFault> {
             let Some(value) = instances.get("attributes").and_then(|a| a.get(key)) else { return Ok(None) };
             let row = value.as_u64().and_then(|v| u32::try_from(v).ok());
             row.map(Some).ok_or_else(|| broken(place(), format!("its {key} is no accessor")))
@@ -207,7 +207,7 @@ impl Reader<'_> {
     }
 
     /// Copies of a mesh in these places as one mesh.
-    fn copied(&mut self, mesh: &TriMesh, places: &[Instance], place: &Place) -> Result<TriMesh, Fault> {
+    fn copied(&mut self, mesh: &TriMesh, places: &[Instance], place: &Place) -> Result<TriMesh, MeshFault> {
         let each = mesh.positions.len().saturating_add(mesh.triangles.len());
         self.rows = self.rows.saturating_add(each.saturating_mul(places.len()));
         if self.rows > MAX_ROWS {
@@ -235,7 +235,7 @@ impl Reader<'_> {
         node: Option<&str>,
         world: DMat4,
         places: Option<&[Instance]>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), MeshFault> {
         let root = self.root;
         let mesh =
             root.meshes.get(index as usize).ok_or_else(|| broken(item("mesh", index), "it is not there"))?;
@@ -285,7 +285,7 @@ impl Reader<'_> {
     }
 
     /// The columns of a primitive; `None` for lines.
-    fn primitive(&mut self, p: &Primitive, place: &Place) -> Result<Option<TriMesh>, Fault> {
+    fn primitive(&mut self, p: &Primitive, place: &Place) -> Result<Option<TriMesh>, MeshFault> {
         let mode = p.mode.unwrap_or(TRIANGLES);
         if !matches!(mode, POINTS | TRIANGLES | STRIP | FAN) {
             return Ok(None);

@@ -236,10 +236,11 @@ pub(super) fn check_levels(levels: &[Level<'_>]) -> Result<(), WriteError> {
         for copies in level.copies {
             let fail = |fault| Err(WriteError::Model { part: copies.name.clone(), fault });
             if copies.material.index() >= level.model.materials.len() {
-                return fail(mesh::Fault::Material(copies.material.index()));
+                return fail(mesh::MeshFault::Material(copies.material.index()));
             }
             let bad = copies.mesh.validate();
-            let mut bad = bad.filter(|f| !matches!(f, mesh::Fault::Degenerate(_) | mesh::Fault::Normal(_)));
+            let mut bad =
+                bad.filter(|f| !matches!(f, mesh::MeshFault::Degenerate(_) | mesh::MeshFault::Normal(_)));
             if let Some(fault) = bad.next() {
                 return fail(fault);
             }

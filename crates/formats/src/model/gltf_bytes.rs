@@ -9,7 +9,7 @@ use super::meshopt::{decode_attributes, decode_triangles};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
-pub(super) type Fault = (Place, FileFault);
+pub(super) type MeshFault = (Place, FileFault);
 
 const EXPORT_AGAIN: &str = "export the model again, uncompressed, as .glb";
 
@@ -17,11 +17,11 @@ pub(super) fn item(kind: &str, index: impl core::fmt::Display) -> Place {
     Place::Item(format!("{kind} {index}"))
 }
 
-pub(super) fn broken(place: Place, what: impl Into<String>) -> Fault {
+pub(super) fn broken(place: Place, what: impl Into<String>) -> MeshFault {
     (place, FileFault::malformed(what, EXPORT_AGAIN))
 }
 
-pub(super) fn unsupported(place: Place, what: impl Into<String>) -> Fault {
+pub(super) fn unsupported(place: Place, what: impl Into<String>) -> MeshFault {
     (place, FileFault::unsupported(what, EXPORT_AGAIN))
 }
 
@@ -78,7 +78,7 @@ pub(super) struct Bytes<'a> {
 const MAX_UNPACKED: u64 = 1 << 30;
 
 impl<'a> Bytes<'a> {
-    pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, resolve: Resolver<'_>) -> Result<Self, Fault> {
+    pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, resolve: Resolver<'_>) -> Result<Self, MeshFault> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (i, buffer) in root.buffers.iter().enumerate() {
             // A buffer for readers without the extension has nothing that its compressed views would need.
@@ -103,12 +103,12 @@ impl<'a> Bytes<'a> {
         let mut room = MAX_UNPACKED;
         let views = root.buffer_views.iter().enumerate();
         bytes.unpacked =
-            views.map(|(i, view)| bytes.unpack(i, view, &mut room)).collect::<Result<_, Fault>>()?;
+            views.map(|(i, view)| bytes.unpack(i, view, &mut room)).collect::<Result<_, MeshFault>>()?;
         Ok(bytes)
     }
 
     /// What a compressed view holds; none of one that is not compressed.
-    fn unpack(&self, index: usize, view: &View, room: &mut u64) -> Result<Option<Vec<u8>>, Fault> {
+    fn unpack(&self, index: usize, view: &View, room: &mut u64) -> Result<Option<Vec<u8>>, MeshFault> {
         let Some(packed) = view.extensions.as_ref().and_then(|e| e.get(COMPRESSION)) else { return Ok(None) };
         let place = || item("bufferView", index);
         let number = |key: &str| packed.get(key).map_or(Some(0), serde_json::Value::as_u64);
@@ -142,7 +142,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// The bytes of a buffer view, and its stride.
-    pub(super) fn view(&self, root: &Root, index: u32) -> Result<(&[u8], Option<u64>), Fault> {
+    pub(super) fn view(&self, root: &Root, index: u32) -> Result<(&[u8], Option<u64>), MeshFault> {
         let place = || item("bufferView", index);
         let view = root.buffer_views.get(index as usize).ok_or_else(|| broken(place(), "it is not there"))?;
         if let Some(Some(held)) = self.unpacked.get(index as usize) {
@@ -159,12 +159,12 @@ impl<'a> Bytes<'a> {
         Ok((range.ok_or_else(|| broken(place(), "it reaches beyond its buffer"))?, view.byte_stride))
     }
 
-    fn accessor<'r>(&self, root: &'r Root, index: u32) -> Result<&'r Accessor, Fault> {
+    fn accessor<'r>(&self, root: &'r Root, index: u32) -> Result<&'r Accessor, MeshFault> {
         root.accessors.get(index as usize).ok_or_else(|| broken(item("accessor", index), "it is not there"))
     }
 
     /// Number of rows of an accessor, before anything is read.
-    pub(super) fn count(&self, root: &Root, index: u32) -> Result<usize, Fault> {
+    pub(super) fn count(&self, root: &Root, index: u32) -> Result<usize, MeshFault> {
         usize::try_from(self.accessor(root, index)?.count)
             .map_err(|e| broken(item("accessor", index), format!("its count is absurd: {e}")))
     }
@@ -176,7 +176,7 @@ impl<'a> Bytes<'a> {
         index: u32,
         components: usize,
         mut each: impl FnMut(&[u8]),
-    ) -> Result<(), Fault> {
+    ) -> Result<(), MeshFault> {
         let accessor = self.accessor(root, index)?;
         let place = || item("accessor", index);
         if accessor.sparse.is_some() {
@@ -209,7 +209,7 @@ impl<'a> Bytes<'a> {
 
     /// An accessor as rows of `N` floats; integers are scaled if the accessor says `normalized`.
     /// A `VEC4` may be read as three: its alpha is dropped.
-    pub(super) fn floats<const N: usize>(&self, root: &Root, index: u32) -> Result<Vec<[f32; N]>, Fault> {
+    pub(super) fn floats<const N: usize>(&self, root: &Root, index: u32) -> Result<Vec<[f32; N]>, MeshFault> {
         let accessor = self.accessor(root, index)?;
         let components =
             components(&accessor.shape).filter(|&c| c == N || (c == 4 && N == 3)).ok_or_else(|| {
@@ -229,7 +229,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// An accessor as indices.
-    pub(super) fn indices(&self, root: &Root, index: u32) -> Result<Vec<u32>, Fault> {
+    pub(super) fn indices(&self, root: &Root, index: u32) -> Result<Vec<u32>, MeshFault> {
         let accessor = self.accessor(root, index)?;
         if accessor.shape != "SCALAR" || !matches!(accessor.component_type, U8 | U16 | U32) {
             return Err(broken(item("accessor", index), "it holds no indices"));
@@ -272,7 +272,7 @@ fn number(raw: &[u8], kind: u32, scaled: bool) -> f32 {
 }
 
 /// The bytes that a `data:` URI holds or that `resolve` finds.
-pub(super) fn load_uri(uri: &str, resolve: Resolver<'_>, place: &Place) -> Result<Vec<u8>, Fault> {
+pub(super) fn load_uri(uri: &str, resolve: Resolver<'_>, place: &Place) -> Result<Vec<u8>, MeshFault> {
     if let Some(rest) = uri.strip_prefix("data:") {
         let data = rest.split_once(";base64,").map(|(_, data)| data);
         return data.and_then(base64).ok_or_else(|| broken(place.clone(), "its data URI is not base64"));

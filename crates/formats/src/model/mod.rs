@@ -197,11 +197,12 @@ pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
     for part in &model.parts {
         let fail = |fault| Err(WriteError::Model { part: part.name.clone(), fault });
         if part.material.index() >= model.materials.len() {
-            return fail(mesh::Fault::Material(part.material.index()));
+            return fail(mesh::MeshFault::Material(part.material.index()));
         }
         // Odd normals are mended on the way out.
         let bad = part.mesh.validate();
-        let mut bad = bad.filter(|f| !matches!(f, mesh::Fault::Degenerate(_) | mesh::Fault::Normal(_)));
+        let mut bad =
+            bad.filter(|f| !matches!(f, mesh::MeshFault::Degenerate(_) | mesh::MeshFault::Normal(_)));
         if let Some(fault) = bad.next() {
             return fail(fault);
         }

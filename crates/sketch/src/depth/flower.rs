@@ -3,7 +3,7 @@
 //! `FlowerReading -> cone (nested ones for inner whorls) -> petals, disc, stamens`
 
 use base::{Draw, ops};
-use geom::{Cone, FlowerCone, Sheet, flower_cone};
+use geom::{Cone, ConeSheet, FlowerCone, flower_cone};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
 use reading::{BladeReading, FlowerReading};
@@ -209,7 +209,7 @@ impl Organs<'_, '_> {
             let tip = corolla.centre + (petal.tip - flower.centre) * s;
             let even = rank.abs_diff(front).is_multiple_of(2);
             let sheet = if corolla.fit.cone.axis.z.abs() < SIDEWAYS {
-                if even { Sheet::Near } else { Sheet::Far }
+                if even { ConeSheet::Near } else { ConeSheet::Far }
             } else {
                 cone.sheet_for_tip(tip, height)
             };
@@ -227,7 +227,7 @@ impl Organs<'_, '_> {
         flower: &FlowerReading,
         petal: &BladeReading,
         corolla: &Corolla,
-        (cone, sheet): (Cone, Sheet),
+        (cone, sheet): (Cone, ConeSheet),
         lift: f64,
         key: u64,
     ) {
@@ -256,8 +256,8 @@ impl Organs<'_, '_> {
             let apex = to(cone.apex - root.extend(root3.z));
             let sheet = match (mirrored, sheet) {
                 (false, s) => s,
-                (true, Sheet::Near) => Sheet::Far,
-                (true, Sheet::Far) => Sheet::Near,
+                (true, ConeSheet::Near) => ConeSheet::Far,
+                (true, ConeSheet::Far) => ConeSheet::Near,
             };
             Lift::Cone { cone: Cone { apex, axis: to(cone.axis), half_angle: cone.half_angle }, sheet }
         } else {
@@ -327,7 +327,7 @@ impl Organs<'_, '_> {
             let mut path: Vec<DVec3> = Vec::with_capacity(line.len());
             for p in line.iter().filter(|p| usable(**p)) {
                 let xy = corolla.centre + (*p - flower.centre) * s;
-                let sheet = if fit.axis.z < 0.0 { Sheet::Far } else { Sheet::Near };
+                let sheet = if fit.axis.z < 0.0 { ConeSheet::Far } else { ConeSheet::Near };
                 let z = inner.depth(xy, sheet) - fit.apex.z;
                 let z = if z.is_finite() { z.clamp(-limit, limit) } else { 0.0 };
                 path.push(xy.extend(fit.apex.z + z));

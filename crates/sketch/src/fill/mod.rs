@@ -24,10 +24,10 @@ use std::collections::BTreeMap;
 
 use base::{Cancelled, Draw, Report, Run, Seed};
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, Paint, Phyllotaxis, Plant, Shape, ShapeId};
+use plant::{AxisId, AxisKind, BladeForm, Paint, Phyllotaxis, Plant, Shape, ShapeId};
 
 use crate::depth::drawn_light;
-use crate::{FillSpec, LeafForm, PlantMap, PullSet, SketchSpec};
+use crate::{FillSpec, PlantMap, PullSet, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
@@ -109,7 +109,7 @@ pub(crate) fn fill(
 ) -> Result<Vec<GrownContour>, Cancelled> {
     let mut grown = Vec::with_capacity(reading.regions.len());
     let mut bodies = KeptBodies::default();
-    let mut forms: Vec<(LeafForm, ShapeId)> = Vec::new();
+    let mut forms: Vec<(BladeForm, ShapeId)> = Vec::new();
     let drawn = foliage::measured(plant, ctx.templates);
     let natural = foliage::median_length(&drawn);
     let share = MOST_GROWN / reading.regions.len().max(1);
@@ -300,7 +300,7 @@ fn tame(spec: FillSpec) -> FillSpec {
 
 /// Chooses leaves: the user's, where leaves were drawn, else botanical forms.
 struct Look<'a> {
-    forms: &'a mut Vec<(LeafForm, ShapeId)>,
+    forms: &'a mut Vec<(BladeForm, ShapeId)>,
     drawn: &'a [(ShapeId, f64)],
     /// Length of the drawn leaves: their median.
     natural: Option<f64>,
@@ -312,7 +312,7 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    fn form(&mut self, plant: &mut Plant, form: LeafForm) -> (ShapeId, f64) {
+    fn form(&mut self, plant: &mut Plant, form: BladeForm) -> (ShapeId, f64) {
         if let Some((_, id)) = self.forms.iter().find(|(f, _)| *f == form) {
             return (*id, 1.0);
         }
@@ -332,10 +332,10 @@ impl Look<'_> {
         if let Some(natural) = self.natural {
             (length, cover) = (natural.clamp(diameter / 40.0, diameter / 6.0), LEAF_COVER);
         } else if conifer {
-            shapes.push(self.form(plant, LeafForm::Spray));
+            shapes.push(self.form(plant, BladeForm::Spray));
         } else {
-            const FORMS: [LeafForm; 4] =
-                [LeafForm::Ovate, LeafForm::Elliptic, LeafForm::Cordate, LeafForm::Lobed];
+            const FORMS: [BladeForm; 4] =
+                [BladeForm::Ovate, BladeForm::Elliptic, BladeForm::Cordate, BladeForm::Lobed];
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
@@ -362,7 +362,7 @@ impl Look<'_> {
         let room = 1.6 * volume.inradius;
         let length = self.natural.unwrap_or(leaves::DEFAULT_LENGTH * self.height_m).min(room);
         if shapes.is_empty() {
-            shapes.push(self.form(plant, LeafForm::Ovate));
+            shapes.push(self.form(plant, BladeForm::Ovate));
         }
         let leaves = leaves::leaves_for(volume.area, length, 0.64 * self.spec.density);
         let core = 0.5 * (volume.low() + volume.high());

@@ -64,7 +64,7 @@ pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>],
 }
 
 fn leaf_of(length: f64) -> Shape {
-    let mut blade = LeafForm::Ovate.blade();
+    let mut blade = BladeForm::Ovate.blade();
     blade.outline.iter_mut().chain(&mut blade.midrib).for_each(|p| *p *= length);
     Shape::Blade(blade)
 }

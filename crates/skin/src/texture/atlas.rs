@@ -12,13 +12,13 @@ use super::foliage::{LEAF_DEPTH, Plan};
 use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, byte, mix, shade};
 use crate::BladeChart;
-use crate::natural::Venation;
+use crate::natural::VeinPattern;
 use crate::needles::{Cut, SeenNeedle};
 use crate::shoots::{Shoots, Tile, chart_place, columns};
 
 /// What an atlas shows.
 pub(crate) struct Leafage<'a> {
-    pub(crate) venation: Venation,
+    pub(crate) venation: VeinPattern,
     pub(crate) leaf: &'a Blade,
     pub(crate) shoots: Option<&'a Shoots>,
     pub(crate) inks: &'a LeafInks,

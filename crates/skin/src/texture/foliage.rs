@@ -10,7 +10,7 @@ use super::noise::{Plates, gradient, octaves};
 use super::relief::{Sheet, Spot, Surface, surface};
 use super::{line, mix, shade, whole};
 use crate::BladeChart;
-use crate::natural::Venation;
+use crate::natural::VeinPattern;
 
 /// Roughness of the glossiest leaf material; those of a surface are shares of it.
 pub(crate) const LEAF_ROUGHNESS: f32 = 0.7;
@@ -20,7 +20,7 @@ pub(super) const LEAF_DEPTH: f64 = 0.010;
 
 /// The surface of a leaf: `size` pixels from root to tip, 64 to 4096, and as wide as the blade is.
 pub(crate) fn leaf(
-    venation: Venation,
+    venation: VeinPattern,
     blade: &Blade,
     inks: &LeafInks,
     size: u32,
@@ -81,7 +81,7 @@ struct Vein {
 
 /// Where the veins of a blade are.
 pub(super) struct Plan {
-    venation: Venation,
+    venation: VeinPattern,
     pub(super) chart: BladeChart,
     /// Of the chart, in units of the blade.
     pub(super) extent: DVec2,
@@ -102,7 +102,7 @@ struct Fields {
 const STEPS: usize = 64;
 
 impl Plan {
-    pub(super) fn new(venation: Venation, blade: &Blade, executor: &dyn Executor) -> Self {
+    pub(super) fn new(venation: VeinPattern, blade: &Blade, executor: &dyn Executor) -> Self {
         let chart = BladeChart::new(blade);
         let (from, to) = (chart.place(DVec2::new(0.0, 1.0)), chart.place(DVec2::new(1.0, 0.0)));
         let middle = chart.place(DVec2::new(0.5, 1.0)).x;
@@ -132,7 +132,7 @@ impl Plan {
 
     fn veins(&self, blade: &Blade) -> Vec<Vein> {
         let length = self.extent.y;
-        if matches!(self.venation, Venation::Needle) || blade.midrib.len() < 2 {
+        if matches!(self.venation, VeinPattern::Needle) || blade.midrib.len() < 2 {
             return Vec::new();
         }
         let mut veins = vec![Vein { points: blade.midrib.clone(), width: (0.011 * length, 0.002 * length) }];
@@ -144,7 +144,7 @@ impl Plan {
                     .iter()
                     .map(|v| Vein { points: v.clone(), width: (0.0058 * length, 0.0012 * length) }),
             ),
-            Venation::Pinnate => {
+            VeinPattern::Pinnate => {
                 let lobes = tips(blade, |p| p.x);
                 if lobes.len() >= 2 {
                     self.to_tips(&lobes, &mut veins);
@@ -152,12 +152,12 @@ impl Plan {
                     self.feathered(&mut veins);
                 }
             }
-            Venation::Compound => {
+            VeinPattern::Compound => {
                 let leaflets = tips(blade, |p| p.x);
                 self.to_tips(&leaflets, &mut veins);
                 self.branched(blade, 1, 5, &mut veins);
             }
-            Venation::Palmate => {
+            VeinPattern::Palmate => {
                 let lobes = tips(blade, |p| p.length());
                 for tip in lobes.into_iter().filter(|p| p.x > 0.05 * length) {
                     for side in [1.0, -1.0] {
@@ -168,7 +168,7 @@ impl Plan {
                 }
                 self.branched(blade, 0, 6, &mut veins);
             }
-            Venation::Parallel | Venation::Needle => {}
+            VeinPattern::Parallel | VeinPattern::Needle => {}
         }
         veins
     }
@@ -251,7 +251,7 @@ impl Plan {
         let (x, y) = (2.0 * u - 1.0, 1.0 - v);
         let mottle = octaves(5.0 * u, 8.0 * v, (5, 8), 7, 3);
         let fine = gradient(61.0 * u, 83.0 * v, (61, 83), 8);
-        if self.venation == Venation::Needle {
+        if self.venation == VeinPattern::Needle {
             // Streaks that fan out with the needles; light towards the tips, which are the youngest.
             let fan = x / (0.35 + 0.65 * y);
             let streak = gradient(14.0 * fan + 40.0, 3.0 * y, (97, 3), 9);
@@ -266,7 +266,7 @@ impl Plan {
         let swell = ops::smoothstep(0.0, 0.045, off);
         let aspect = self.extent.x / self.extent.y;
         let (mut cross, mut rib) = (0.0, 0.0);
-        if self.venation == Venation::Parallel {
+        if self.venation == VeinPattern::Parallel {
             let p = self.chart.place(DVec2::new(u, v));
             let across = p.x / self.half_at(p.y).max(1e-9 * self.extent.y);
             let phase = 9.0 * across;
@@ -439,7 +439,7 @@ mod tests {
 
     #[test]
     fn a_midrib_is_pale_and_thick_but_on_needles() {
-        for venation in Venation::ALL {
+        for venation in VeinPattern::ALL {
             let s = leaf(venation, &any_blade(), &GREEN, 256, &Serial);
             let (width, height) = (s.color.width, s.color.height);
             let column = |t: &mesh::Texture, x: u32, k: usize| {
@@ -451,7 +451,7 @@ mod tests {
             let (middle, beside) = (width / 2, width * 5 / 8);
             let paler = column(&s.color, middle, 1) > column(&s.color, beside, 1) + 15;
             let thicker = column(through, middle, 3) + 30 < column(through, beside, 3);
-            let veined = venation != Venation::Needle;
+            let veined = venation != VeinPattern::Needle;
             assert_eq!((paler, thicker), (veined, veined), "{venation:?}");
         }
     }
@@ -469,7 +469,7 @@ mod tests {
             .collect();
         assert_eq!(tips(&lobed, |p| p.x), [DVec2::new(0.32, 0.3), DVec2::new(0.3, 0.66)]);
         assert!(tips(&any_blade(), |p| p.x).len() < 2, "an ellipse has no lobes");
-        let plan = Plan::new(Venation::Pinnate, &lobed, &Serial);
+        let plan = Plan::new(VeinPattern::Pinnate, &lobed, &Serial);
         let ends: Vec<DVec2> = plan.veins(&lobed).iter().filter_map(|v| v.points.last().copied()).collect();
         for tip in [DVec2::new(0.32, 0.3), DVec2::new(-0.3, 0.66)] {
             assert!(ends.iter().any(|e| e.distance(tip) < 0.03), "{tip} among {ends:?}");

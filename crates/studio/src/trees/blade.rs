@@ -1,12 +1,10 @@
-//! Forms of tree leaves: those of the sketch maker's library, and some that only trees need.
+//! Leaves of trees: a shape with what a spec asks for.
 //!
 //! `BladeSpec -> Blade (length 1)`
 
-use base::ops::{self, PI};
 use glam::DVec2;
-use growth::{BladeForm, BladeSpec};
-use plant::{Blade, Needles, Relief};
-use sketch::LeafForm;
+use growth::BladeSpec;
+use plant::{Blade, BladeForm, Needles};
 
 /// The blade that a spec asks for, of length 1.
 pub fn tree_blade(spec: &BladeSpec) -> Blade {
@@ -35,100 +33,11 @@ fn width(spec: &BladeSpec) -> f64 {
 }
 
 fn form_blade(spec: &BladeSpec) -> Blade {
-    let own = |right: Vec<DVec2>, relief: Relief| Blade::mirrored(&right, relief);
-    let soft = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
-    match spec.form {
-        BladeForm::Ovate => LeafForm::Ovate.blade(),
-        BladeForm::Elliptic => LeafForm::Elliptic.blade(),
-        BladeForm::Lanceolate => LeafForm::Lanceolate.blade(),
-        BladeForm::Cordate => LeafForm::Cordate.blade(),
-        BladeForm::Lobed => own(lobed(), soft),
-        BladeForm::Leaflet => LeafForm::Leaflet.blade(),
-        BladeForm::Spray => {
-            let needles = Needles::of_length(spec.needle.unwrap_or(f64::NAN));
-            Blade::shoot(needles, spec.shoots.unwrap_or(3), width(spec))
-        }
-        BladeForm::Obovate => {
-            let right = (1..=8).map(|i| {
-                let v = f64::from(i) / 9.0;
-                DVec2::new(0.3 * ops::powf(v, 1.1) * ops::powf(1.0 - v, 0.55) / 0.362, v)
-            });
-            own(right.collect(), soft)
-        }
-        BladeForm::Deltoid => {
-            let right = [
-                (0.16, -0.01),
-                (0.3, 0.05),
-                (0.385, 0.16),
-                (0.36, 0.28),
-                (0.28, 0.44),
-                (0.18, 0.62),
-                (0.08, 0.82),
-            ];
-            own(right.map(|(x, y)| DVec2::new(x, y)).to_vec(), soft)
-        }
-        BladeForm::Palmate => own(palmate(), Relief { fold: 0.12, ..soft }),
-        BladeForm::Pinnate => own(pinnate(), Relief { bend_b: 0.25, fold: 0.25, ..Relief::default() }),
-        BladeForm::Needle => own(
-            vec![DVec2::new(0.02, 0.1), DVec2::new(0.024, 0.5), DVec2::new(0.015, 0.85)],
-            Relief { fold: 0.3, ..Relief::default() },
-        ),
-        BladeForm::Brush => own(brush(), Relief { fold: 0.5, bend_b: -0.06, ..Relief::default() }),
-        BladeForm::Tuft => own(tuft(), Relief { fold: 0.35, bend_b: 0.05, ..Relief::default() }),
+    if spec.form == BladeForm::Spray {
+        let needles = Needles::of_length(spec.needle.unwrap_or(f64::NAN));
+        return Blade::shoot(needles, spec.shoots.unwrap_or(3), width(spec));
     }
-}
-
-/// Four round lobes a side between narrow notches, the third the largest, on a wedge that widens upwards from small ears
-/// (Quercus robur).
-fn lobed() -> Vec<DVec2> {
-    const LOBES: f64 = 4.0;
-    const STEPS: u32 = 56;
-    (1..STEPS)
-        .map(|i| {
-            let v = f64::from(i) / f64::from(STEPS);
-            let hull = 0.33 * ops::powf(v, 0.8) * ops::powf(1.0 - v, 0.42) / 0.53;
-            let phase = LOBES * ops::powf((v - 0.03).max(0.0), 0.92) - 0.08;
-            let notch = ops::powf(0.5 + 0.5 * ops::cos(2.0 * PI * phase), 2.2);
-            // Shallow towards the tip, which is one blunt lobe.
-            let deep = 0.46 * (1.0 - ops::smoothstep(0.72, 0.95, v));
-            let ear = 0.045 * ops::powf((1.0 - (v - 0.035).abs() / 0.035).max(0.0), 0.5);
-            let wide = (hull * (1.0 - deep * notch) + ear).max(0.012);
-            // Lobes point forward.
-            DVec2::new(wide, v + 0.10 * hull * (1.0 - notch) * (1.0 - v))
-        })
-        .collect()
-}
-
-/// Half of five lobes around the end of the stalk, each drawn out to a point with a tooth or two beside it (Acer
-/// platanoides): two of each side, the middle one is the tip.
-fn palmate() -> Vec<DVec2> {
-    [
-        (0.1, -0.06),
-        (0.22, -0.11),
-        (0.36, -0.13),
-        (0.35, -0.06),
-        (0.45, -0.02),
-        (0.38, 0.04),
-        (0.33, 0.1),
-        (0.45, 0.13),
-        (0.58, 0.16),
-        (0.56, 0.23),
-        (0.67, 0.35),
-        (0.56, 0.36),
-        (0.55, 0.46),
-        (0.43, 0.4),
-        (0.3, 0.37),
-        (0.18, 0.39),
-        (0.2, 0.52),
-        (0.24, 0.64),
-        (0.34, 0.74),
-        (0.23, 0.74),
-        (0.18, 0.78),
-        (0.18, 0.87),
-        (0.09, 0.87),
-    ]
-    .map(|(x, y)| DVec2::new(x, y))
-    .to_vec()
+    spec.form.blade()
 }
 
 /// Teeth along the margin of a blade, which point forward; the foot of the blade has none.
@@ -178,52 +87,6 @@ fn curve(points: &[DVec2]) -> Vec<DVec2> {
     out.extend(points.last());
     out
 }
-
-/// Five leaflets a side.
-fn pinnate() -> Vec<DVec2> {
-    let mut right = Vec::with_capacity(25);
-    for i in 0..5 {
-        let v = 0.1 + 0.165 * f64::from(i);
-        let reach = 0.3 - 0.03 * f64::from(i);
-        right.extend([
-            DVec2::new(0.008, v),
-            DVec2::new(0.55 * reach, v + 0.1 * reach),
-            DVec2::new(reach, v + 0.55 * reach),
-            DVec2::new(0.5 * reach, v + 0.55 * reach),
-            DVec2::new(0.008, v + 0.07),
-        ]);
-    }
-    right.extend([DVec2::new(0.06, 0.9), DVec2::new(0.05, 0.96)]);
-    right
-}
-
-/// Three needles a side and one in the middle, which is the tip.
-fn tuft() -> Vec<DVec2> {
-    let mut right = Vec::with_capacity(6);
-    for (degrees, reach) in [(62.0, 0.86), (40.0, 0.94), (19.0, 0.98)] {
-        let (s, c) = ops::sin_cos(degrees * (PI / 180.0));
-        right.push(DVec2::new(reach * s, reach * c));
-        let (s, c) = ops::sin_cos((degrees - 10.5) * (PI / 180.0));
-        right.push(DVec2::new(0.12 * s, 0.12 * c));
-    }
-    right
-}
-
-/// Five needles a side, each from its place on the shoot, and one at the end, which is the tip.
-fn brush() -> Vec<DVec2> {
-    let mut right = Vec::with_capacity(11);
-    for i in 0..5 {
-        let v = 0.06 + 0.125 * f64::from(i);
-        let (s, c) = ops::sin_cos((58.0 - 7.0 * f64::from(i)) * (PI / 180.0));
-        right.push(DVec2::new(0.014, v));
-        right.push(DVec2::new(0.014 + BRUSH_NEEDLE * s, v + 0.03 + BRUSH_NEEDLE * c));
-    }
-    right.push(DVec2::new(0.014, 0.7));
-    right
-}
-
-/// Length of a needle over that of the brush.
-const BRUSH_NEEDLE: f64 = 0.34;
 
 #[cfg(test)]
 mod tests {

@@ -4,10 +4,10 @@
 
 use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
-use growth::{BladeForm, BlossomSpec, Grown, Look, Method, TreeSpec};
+use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
-use plant::{Blade, Plant};
-use skin::{Foliage, Layout, Pictures, SkinSpec};
+use plant::{Blade, BladeForm, Plant};
+use skin::{FoliageStyle, Layout, SkinSpec, SurfacePictures};
 
 use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
@@ -352,7 +352,7 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     // A leaf of one's own has veins of its own, or those of most leaves.
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
     // It has a texture of its own, too, which no atlas shows.
-    let foliage = if options.leaf.is_some() { Foliage::Outlines } else { options.skin.foliage };
+    let foliage = if options.leaf.is_some() { FoliageStyle::Outlines } else { options.skin.foliage };
     dressed(SkinSpec { seed, foliage, ..options.skin.clone() }, &spec.look, form)
 }
 
@@ -361,7 +361,7 @@ pub(super) fn skinned(
     (skin, look, leaf): &Skinned,
     run: &Run<'_>,
 ) -> Result<(Model, Layout), Stopped> {
-    let (mut model, layout) = skin::skin_laid_out(plant, skin, Pictures::default(), None, run)?;
+    let (mut model, layout) = skin::skin_laid_out(plant, skin, SurfacePictures::default(), None, run)?;
     paint(look, &mut model);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model, &skin.worn);

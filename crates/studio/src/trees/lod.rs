@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use growth::Obstacles;
 use plant::{AxisKind, FlowerId, NodeId, OrganKind, Plant};
-use skin::{Foliage, Shoots, SkinSpec};
+use skin::{FoliageStyle, Shoots, SkinSpec};
 
 /// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
 /// which is for half the size, half as many.
@@ -74,12 +74,13 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
 /// are many for the size at which it is seen. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
-/// become fewer. With [`Foliage::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
+/// become fewer. With [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
 /// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
     let level = level.min(6);
-    let shoots =
-        (skin.foliage == Foliage::ByLevel && level > 0).then(|| Shoots::of(plant).map(Arc::new)).flatten();
+    let shoots = (skin.foliage == FoliageStyle::ByLevel && level > 0)
+        .then(|| Shoots::of(plant).map(Arc::new))
+        .flatten();
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()
@@ -156,7 +157,8 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     if let Some(shoots) = whole_shoots {
         shoots.stand_in(&mut copy, 1 << (level - 2));
     }
-    let foliage = if level > 0 && skin.foliage == Foliage::ByLevel { Foliage::Cards } else { skin.foliage };
+    let foliage =
+        if level > 0 && skin.foliage == FoliageStyle::ByLevel { FoliageStyle::Cards } else { skin.foliage };
     let coarse =
         SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), foliage, shoots, ..skin.clone() };
     cover_as_much(&mut copy, &coarse, (plant, skin), |kind| kind == OrganKind::Leaf);

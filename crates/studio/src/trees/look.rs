@@ -5,10 +5,10 @@
 use base::ops;
 use base::{Draw, Seed};
 use glam::DVec3;
-use growth::{Bark, BladeForm, Look};
+use growth::{Bark, Look};
 use mesh::{MaterialKind, Model};
-use plant::{Organ, OrganKind, Paint, Plant};
-use skin::{BarkKind, BarkSpec, SkinSpec, Venation};
+use plant::{BladeForm, Organ, OrganKind, Paint, Plant};
+use skin::{BarkKind, BarkSpec, SkinSpec, VeinPattern};
 use spec::Colour;
 
 /// Colour towards which leaves are lighter when they unfold: they have their size before their chlorophyll.
@@ -146,13 +146,13 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
         Bark::Cane => BarkKind::Cane,
     };
     let venation = match form {
-        BladeForm::Palmate => Venation::Palmate,
-        BladeForm::Pinnate => Venation::Compound,
-        BladeForm::Leaflet => Venation::Parallel,
+        BladeForm::Palmate => VeinPattern::Palmate,
+        BladeForm::Pinnate => VeinPattern::Compound,
+        BladeForm::Leaflet => VeinPattern::Parallel,
         // What has canes is a grass.
-        BladeForm::Lanceolate if look.bark == Bark::Cane => Venation::Parallel,
-        BladeForm::Needle | BladeForm::Tuft | BladeForm::Spray | BladeForm::Brush => Venation::Needle,
-        _ => Venation::Pinnate,
+        BladeForm::Lanceolate if look.bark == Bark::Cane => VeinPattern::Parallel,
+        BladeForm::Needle | BladeForm::Tuft | BladeForm::Spray | BladeForm::Brush => VeinPattern::Needle,
+        _ => VeinPattern::Pinnate,
     };
     let bark = BarkSpec { kind, colour: look.bark_color, twig: look.twig_color };
     SkinSpec { bark: Some(bark), venation: Some(venation), ..skin }

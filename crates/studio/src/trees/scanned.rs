@@ -2,7 +2,8 @@
 
 use base::{Cancelled, Report, Run, Seed, Stopped};
 use glam::DVec3;
-use growth::{BladeForm, GrowthError, Look, Obstacles, TreeSpec, add_leaves};
+use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
+use plant::BladeForm;
 use scan::{FoundTree, ScanTreeError, TreeScanSpec, find_tree};
 use skin::SkinSpec;
 
