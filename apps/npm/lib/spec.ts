@@ -36,6 +36,16 @@ export const TREES = [
   'olive',
   'larch',
   'yew',
+  'ginkgo',
+  'eucalyptus',
+  'acacia',
+  'magnolia-tree',
+  'plum',
+  'juniper',
+  'date-palm',
+  'tree-fern',
+  'banana',
+  'maize',
 ] as const;
 
 /** The species of flowers. */
@@ -145,7 +155,7 @@ export type Bark =
   | /** Smooth and jointed: bamboo. */
   "cane";
 
-/** A botanical form. */
+/** The shape of a leaf blade, drawn by formula. */
 export type BladeForm =
   | /** Broadest below the middle, drawn-out tip: pear, birch, poplar. */
   "ovate"
@@ -163,8 +173,12 @@ export type BladeForm =
   "lobed"
   | /** Five pointed lobes from one place: maple, plane. */
   "palmate"
+  | /** A fan on a wedge, with a notch in the middle: ginkgo. */
+  "fan"
   | /** Leaflets in pairs along a midrib: ash, walnut, rowan. */
   "pinnate"
+  | /** A feather of many narrow leaflets, or one feather of a larger leaf: acacia, fern. */
+  "feather"
   | /** A long narrow leaflet: palm, grass. */
   "leaflet"
   | /** One needle. */
@@ -206,10 +220,14 @@ export type BlossomSpec = {
     | null;
   /** Across an open flower, metres, default 0.035. */
   diameter_m?: number;
+  /** How far the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; of a goblet about 30. */
+  open_deg?: number;
   /** Petals of a flower's whorl, 3 to 12, default 5. */
   petals?: number;
   /** Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers. */
   share?: number;
+  /** Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7. */
+  stalk?: number;
   /** Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's. */
   whorls?: number;
 };

@@ -49,9 +49,15 @@ pub struct BlossomSpec {
     /// Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's.
     #[schemars(range(min = 1, max = 6))]
     pub whorls: u32,
+    /// How far the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; of a goblet about 30.
+    #[schemars(range(min = 5.0, max = 90.0), extend("x-unit" = "deg"))]
+    pub open_deg: f64,
     /// Across an open flower, metres, default 0.035.
     #[schemars(range(min = 0.001, max = 1.0), extend("x-unit" = "m"))]
     pub diameter_m: f64,
+    /// Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7.
+    #[schemars(range(min = 0.02, max = 3.0))]
+    pub stalk: f64,
     /// Colour of petals, default a white.
     pub color: Colour,
     /// Colour towards which single flowers vary; default none.
@@ -61,7 +67,16 @@ pub struct BlossomSpec {
 impl Default for BlossomSpec {
     fn default() -> Self {
         let color = Colour([0xf8, 0xf2, 0xf0]);
-        Self { share: 0.0, petals: 5, whorls: 1, diameter_m: 0.035, color, color_to: None }
+        Self {
+            share: 0.0,
+            petals: 5,
+            whorls: 1,
+            open_deg: 76.0,
+            diameter_m: 0.035,
+            stalk: 0.7,
+            color,
+            color_to: None,
+        }
     }
 }
 

@@ -39,8 +39,12 @@ pub enum BladeForm {
     Lobed,
     /// Five pointed lobes from one place: maple, plane.
     Palmate,
+    /// A fan on a wedge, with a notch in the middle: ginkgo.
+    Fan,
     /// Leaflets in pairs along a midrib: ash, walnut, rowan.
     Pinnate,
+    /// A feather of many narrow leaflets, or one feather of a larger leaf: acacia, fern.
+    Feather,
     /// A long narrow leaflet: palm, grass.
     Leaflet,
     /// One needle.
@@ -55,7 +59,7 @@ pub enum BladeForm {
 
 impl BladeForm {
     /// Every form.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Ovate,
         Self::Elliptic,
         Self::Obovate,
@@ -64,7 +68,9 @@ impl BladeForm {
         Self::Deltoid,
         Self::Lobed,
         Self::Palmate,
+        Self::Fan,
         Self::Pinnate,
+        Self::Feather,
         Self::Leaflet,
         Self::Needle,
         Self::Tuft,
@@ -88,7 +94,9 @@ impl BladeForm {
             Self::Deltoid => (deltoid(), soft),
             Self::Lobed => (lobed(), soft),
             Self::Palmate => (palmate(), Relief { fold: 0.12, ..soft }),
+            Self::Fan => (fan(), Relief { fold: 0.15, ..soft }),
             Self::Pinnate => (pinnate(), stiff(0.25, 0.25)),
+            Self::Feather => (feather(), stiff(0.15, 0.2)),
             Self::Needle => (needle(), stiff(0.0, 0.3)),
             Self::Tuft => (tuft(), stiff(0.05, 0.35)),
             Self::Brush => (brush(), stiff(-0.06, 0.5)),
@@ -214,6 +222,46 @@ fn pinnate() -> Vec<DVec2> {
     }
     right.extend([DVec2::new(0.06, 0.9), DVec2::new(0.05, 0.96)]);
     right
+}
+
+/// Eight leaflets a side, the longest below the middle, each half as wide as its place on the midrib is long.
+fn feather() -> Vec<DVec2> {
+    const LEAFLETS: u32 = 8;
+    let mut right = Vec::with_capacity(26);
+    for i in 0..LEAFLETS {
+        let place = 0.88 / f64::from(LEAFLETS);
+        let v = 0.04 + place * f64::from(i);
+        let u = (f64::from(i) + 0.5) / f64::from(LEAFLETS);
+        let reach = 0.24 * ops::powf(u, 0.35) * ops::powf(1.0 - u, 0.45) / 0.52;
+        right.extend([
+            DVec2::new(0.01, v),
+            DVec2::new(0.9 * reach, v + 0.34 * reach),
+            DVec2::new(reach, v + 0.34 * reach + 0.32 * place),
+            DVec2::new(0.01, v + 0.58 * place),
+        ]);
+    }
+    right.push(DVec2::new(0.03, 0.95));
+    right
+}
+
+/// Straight sides, and a wavy edge that is notched in the middle (Ginkgo biloba).
+fn fan() -> Vec<DVec2> {
+    [
+        (0.05, 0.1),
+        (0.22, 0.3),
+        (0.42, 0.52),
+        (0.6, 0.74),
+        (0.64, 0.82),
+        (0.56, 0.92),
+        (0.49, 0.96),
+        (0.4, 1.05),
+        (0.3, 1.08),
+        (0.18, 1.15),
+        (0.08, 1.13),
+        (0.025, 1.07),
+    ]
+    .map(|(x, y)| DVec2::new(x, y))
+    .to_vec()
 }
 
 /// Three needles a side and one in the middle, which is the tip.

@@ -8,11 +8,8 @@ use glam::{DVec2, DVec3};
 use growth::{BlossomSpec, Obstacles};
 use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
 
-// The whorls of a flower open this far from its axis: the outermost, and the innermost of six.
-const OPEN: f64 = 76.0 * PI / 180.0;
+// The innermost of six whorls opens this far from the flower's axis.
 const CLOSED: f64 = 20.0 * PI / 180.0;
-// Mean length of a flower's stalk, in its diameters.
-const STALK: f64 = 0.7;
 
 /// The shapes that the flowers of a tree share.
 struct Shapes {
@@ -36,7 +33,7 @@ pub(super) fn add_blossom(spec: &BlossomSpec, plant: &mut Plant, obstacles: &Obs
     let shapes = Shapes {
         petal: push(plant, Shape::Blade(petal(0.5 * spec.diameter_m, spec.petals))),
         disc: push(plant, Shape::Blade(disc(0.15 * spec.diameter_m))),
-        stalk: push(plant, stalk(STALK * spec.diameter_m)),
+        stalk: push(plant, stalk(spec.stalk * spec.diameter_m)),
     };
     let both = |s: &Shape| [1.0, plant::DRAWN_WIDER].into_iter().flat_map(|w| s.corners(w)).collect();
     let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(both).collect();
@@ -59,13 +56,14 @@ fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Sha
     let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
     let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
     let longer = 0.7 + 0.6 * draw.uniform();
-    let centre = place.frame.origin + place.frame.along * (STALK * spec.diameter_m * longer);
+    let centre = place.frame.origin + place.frame.along * (spec.stalk * spec.diameter_m * longer);
     let scale = 0.85 + 0.3 * draw.uniform();
     let share = draw.uniform();
     let (from, to) = (spec.color.linear(), spec.color_to.unwrap_or(spec.color).linear());
     let id = FlowerId::new(plant.flowers.len());
+    let opened = spec.open_deg * PI / 180.0;
     let bearer = place.bearer;
-    plant.flowers.push(Flower { bearer, centre, axis, half_angle: OPEN, whorls: spec.whorls });
+    plant.flowers.push(Flower { bearer, centre, axis, half_angle: opened, whorls: spec.whorls });
     let across = axis.any_orthonormal_vector();
     let up = axis.cross(across);
     let turn = TAU * draw.uniform();
@@ -82,7 +80,7 @@ fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Sha
     };
     for whorl in 0..spec.whorls {
         let inner = f64::from(whorl) / f64::from(spec.whorls.max(2));
-        let open = ops::lerp(OPEN, CLOSED, inner) + 0.2 * (draw.uniform() - 0.5);
+        let open = ops::lerp(opened, CLOSED.min(opened), inner) + 0.2 * (draw.uniform() - 0.5);
         let (rise, out) = (ops::cos(open), ops::sin(open));
         for k in 0..spec.petals {
             let step = f64::from(k) + 0.5 * f64::from(whorl % 2);

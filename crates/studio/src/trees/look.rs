@@ -146,8 +146,8 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
         Bark::Cane => BarkKind::Cane,
     };
     let venation = match form {
-        BladeForm::Palmate => VeinPattern::Palmate,
-        BladeForm::Pinnate => VeinPattern::Compound,
+        BladeForm::Palmate | BladeForm::Fan => VeinPattern::Palmate,
+        BladeForm::Pinnate | BladeForm::Feather => VeinPattern::Compound,
         BladeForm::Leaflet => VeinPattern::Parallel,
         // What has canes is a grass.
         BladeForm::Lanceolate if look.bark == Bark::Cane => VeinPattern::Parallel,

@@ -59,6 +59,16 @@ presets![
     "olive",
     "larch",
     "yew",
+    "ginkgo",
+    "eucalyptus",
+    "acacia",
+    "magnolia-tree",
+    "plum",
+    "juniper",
+    "date-palm",
+    "tree-fern",
+    "banana",
+    "maize",
 ];
 
 impl Preset {

