@@ -14,11 +14,11 @@ use burgeon::document::{PlantId, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::skin::OrganMaterial;
-use burgeon::{Seed, bloom};
+use burgeon::{Refusal, Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, ExportRequest, PenStyle, Refusal, Workspace, WorkspaceError, packed};
+use workspace::{Column, ExportRequest, PenStyle, Workspace, WorkspaceError, packed};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
@@ -73,8 +73,7 @@ impl From<Refused> for JsValue {
 
 impl From<WorkspaceError> for Refused {
     fn from(error: WorkspaceError) -> Self {
-        let refusal = Refusal::of(&error);
-        Self(serde_json::to_string(&refusal).unwrap_or(refusal.message))
+        Self(Refusal::of(&error).into_json())
     }
 }
 

@@ -25,6 +25,7 @@ mod made;
 mod make;
 mod motion;
 mod opening;
+mod refusal;
 mod report;
 mod scanned;
 mod scene;
@@ -52,6 +53,7 @@ pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
+pub use refusal::Refusal;
     Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
     REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, StrokeReport, TimingsMs,
 };

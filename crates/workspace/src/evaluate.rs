@@ -6,11 +6,12 @@ use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
 use burgeon::{
-    Evaluator, ItemReport, LiteMap, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key,
+    Evaluator, ItemReport, LiteMap, MakeError, Refusal, Run, SceneError, Seed, SketchOptions, set_of,
+    sort_by_key,
 };
 
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
-use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, WarningView, Workspace, WorkspaceError};
+use crate::{Column, ObstacleView, PlantView, SceneView, WarningView, Workspace, WorkspaceError};
 
 /// Most trees that are looked at before they are made: of a wood the first are enough to see that it comes.
 const LOOKS: usize = 8;

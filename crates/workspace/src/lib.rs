@@ -15,7 +15,7 @@
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
 //! | `view` | what a shell shows of the plants |
-//! | `error` | [`WorkspaceError`], [`Refusal`] |
+//! | `error` | [`WorkspaceError`] |
 //!
 //! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
 
@@ -40,7 +40,7 @@ mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub use error::{Refusal, WorkspaceError};
+pub use error::WorkspaceError;
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture, TriMesh};
 use burgeon::skin::SkinSpec;
-use burgeon::{FrontView, ItemReport, SceneError, Warning, set_of};
+use burgeon::{FrontView, ItemReport, Refusal, SceneError, Warning, set_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::{ObstacleView, Refusal};
+use crate::ObstacleView;
 
 /// Share of the triangles while a stroke is drawn.
 pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
