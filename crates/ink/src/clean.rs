@@ -128,11 +128,6 @@ impl Ink {
         let plants = vec![(0..strokes.len()).collect()];
         Self { strokes, map, subjects: Subjects { plants, ..Subjects::default() }, ..Self::default() }
     }
-
-    /// The drawing shows several plants.
-    pub fn is_several(&self) -> bool {
-        self.subjects.plants.len() > 1
-    }
 }
 
 /// Cleans a drawing: He and Cheng (2021), section 3, Eq 1.
