@@ -374,7 +374,7 @@ fn on_rings(
             (free[row], if at_root { b.gap } else { b.nearest(centre).0 })
         };
         let rooted: Vec<(usize, DVec2)> = wheel.spokes.iter().map(rooted).collect();
-        // Roots in one place are the paper's.
+        // Roots in one place are those of He and Cheng (2021).
         let wide = rooted.iter().any(|(_, root)| root.distance(centre) > BANDWIDTH * usual);
         if !wide
             || bears_fronds(draft, centre, usual)
@@ -403,7 +403,7 @@ fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
         })
 }
 
-/// The paper's rule, more than 2, with what tells leaves on a branch from petals on a stem's end.
+/// The rule of He and Cheng (2021), more than 2, with what tells leaves on a branch from petals on a stem's end.
 fn is_flower(
     draft: &Draft<'_>,
     members: &[usize],

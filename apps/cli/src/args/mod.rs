@@ -90,7 +90,7 @@ pub(crate) enum Command {
     /// Grow the same oak by three methods and compare them
     ///
     /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
-    /// bytes, and what the paper printed.
+    /// bytes, and what Yang et al. (2019) printed.
     Compare(Box<CompareArgs>),
     /// Make a picture of a model
     ///
