@@ -14,6 +14,7 @@ mod habits;
 mod layers;
 mod made_drawings;
 mod made_strokes;
+mod names;
 mod native;
 mod npm;
 mod pixels;
@@ -51,8 +52,8 @@ cargo xtask COMMAND
   types          writes the schemas of specs and the TypeScript types of what travels between page and core
   habits         checks licences and versions of dependencies, spelling, numbers without a name, and that the crates could be
                  published
-  layers         checks that each crate uses only what ARCHITECTURE.md allows, no modules in a circle, and no test that is
-                 skipped unseen
+  layers         checks that each crate uses only what ARCHITECTURE.md allows, no modules in a circle, no two public
+                 types of one name, and no test that is skipped unseen
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets),
                  or whether they are read alike when they are drawn in another way (--changed)
@@ -85,7 +86,7 @@ fn main() -> ExitCode {
         Some("types") => types(),
         Some("habits") => habits::check(),
         Some("layers") => {
-            [layers::check, circles::check, skips::check].iter().try_for_each(|check| check())
+            [layers::check, circles::check, names::check, skips::check].iter().try_for_each(|check| check())
         }
         Some("train-kinds") => train_kinds::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
