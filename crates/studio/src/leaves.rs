@@ -238,7 +238,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
         surface: options.spec.surface.word().into(),
         rows: marks.rows.len() as u64,
         length_mm: 1e3 * geom::polyline_length3(&marks.midrib()),
-        area_mm2: 1e6 * area(&meshes.surface),
+        area_mm2: 1e6 * meshes.surface.area(),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
         fit_error: LeafFit::of(&distances),
@@ -252,12 +252,6 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
 /// Rings that the exact surface of the veins swallows; plain rings are not asked.
 pub(crate) fn swallowed(options: &LeafOptions, meshes: &ShapeMesh) -> Option<u64> {
     (options.spec.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
-}
-
-/// The area of a mesh, square metres.
-pub(crate) fn area(mesh: &TriMesh) -> f64 {
-    let p = |i: u32| mesh.position(i);
-    mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
 }
 
 base::coded!(LeafError {

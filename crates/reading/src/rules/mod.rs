@@ -22,10 +22,11 @@ mod whole_tree;
 
 use geom::contains;
 use glam::DVec2;
-use ink::{COMMON_GROUND, DRAWN_AGAIN, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+use ink::{COMMON_GROUND, DRAWN_AGAIN, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::{Draft, OneGo};
+use crate::near::openness;
 use crate::thresholds::STRAIGHT;
 
 pub(crate) use as_kind::take_for;
@@ -306,11 +307,6 @@ const WITHIN: f64 = 0.8;
 
 fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
     draft.class.iter().any(|c| classes.contains(c))
-}
-
-/// How far apart a stroke's ends are, as a share of its length.
-fn openness(s: &InkStroke) -> f64 {
-    s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }
 
 /// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.
