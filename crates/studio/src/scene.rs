@@ -112,7 +112,7 @@ impl ScenePlant<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
     wind: bool,
-    looking: bool,
+    previewing: bool,
     later: bool,
     plants: base::LiteMap<PlantId, Kept>,
     /// The last number that was given to a model.
@@ -202,14 +202,14 @@ impl Kept {
     /// What a plant is made with, and whether it was left half-way the last time.
     ///
     /// Until an update has succeeded it is no result, not even of what was before.
-    fn begin(&mut self, plant: &DocumentPlant, (looking, later): (bool, bool)) -> (&mut Made, bool) {
+    fn begin(&mut self, plant: &DocumentPlant, (previewing, later): (bool, bool)) -> (&mut Made, bool) {
         let word = plant.settings().maker.word();
         let made = Arc::make_mut(&mut self.made);
         if made.maker != word {
             // Of a document in which this number was another plant's.
             *made = Made { maker: word, ..Made::default() };
         }
-        (made.sketch.looking, made.tree.looking) = (looking, looking);
+        (made.sketch.previewing, made.tree.previewing) = (previewing, previewing);
         made.sketch.later = later;
         let before = made.from.take();
         (made, before.is_none())
@@ -222,10 +222,10 @@ impl SceneEvaluator {
         self.wind = wind;
     }
 
-    /// Whether updates are looks while a hand is at work: reports of trees and drawings then have no digest, which is a
+    /// Whether updates are previews while somebody shapes: reports of trees and drawings then have no digest, which is a
     /// third of what a large tree's meshes take. Default: no.
-    pub fn set_looking(&mut self, looking: bool) {
-        self.looking = looking;
+    pub fn set_previewing(&mut self, previewing: bool) {
+        self.previewing = previewing;
     }
 
     /// Whether how true a plant is to a drawing of very many strokes is left out of reports until [`Self::measure`] is asked,
@@ -258,7 +258,7 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(()) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
         let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
-        let (made, anew) = kept.begin(plant, (self.looking, self.later));
+        let (made, anew) = kept.begin(plant, (self.previewing, self.later));
         let done = made.update(plant, from, anew, run)?;
         // A drawing in which nothing changed but how its photograph shows keeps its model.
         if !done.is_empty() {
@@ -274,7 +274,7 @@ impl SceneEvaluator {
     ///
     /// # Errors
     /// [`SceneError`]; there is none of a plant that is not in the document.
-    pub fn look(
+    pub fn preview(
         &mut self,
         id: PlantId,
         document: &Document,
@@ -283,8 +283,8 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(None) };
         let Maker::Tree(tree) = &plant.settings().maker else { return Ok(None) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(None) };
-        let (made, _) = self.plants.entry(id).or_default().begin(plant, (self.looking, self.later));
-        Ok(made.tree.look(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
+        let (made, _) = self.plants.entry(id).or_default().begin(plant, (self.previewing, self.later));
+        Ok(made.tree.preview(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
     }
 
     /// What a plant is to be made from; none where it is made, of itself or of one like it.
@@ -299,10 +299,10 @@ impl SceneEvaluator {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let looking = self.looking;
+        let previewing = self.previewing;
         let from = MadeFrom::of(plant, leaf, self.wind);
         let is_it =
-            |k: &Kept| k.made.from.as_ref() == Some(&from) && (looking || !k.made.item.digest.is_empty());
+            |k: &Kept| k.made.from.as_ref() == Some(&from) && (previewing || !k.made.item.digest.is_empty());
         let own = self.plants.get(&id).is_some_and(is_it);
         let same = if own { None } else { self.plants.values().find(|k| is_it(k)) };
         let same = same.map(|k| Arc::clone(&k.made));

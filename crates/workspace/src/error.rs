@@ -47,7 +47,7 @@ pub enum WorkspaceError {
     /// There is nothing to export.
     #[error("there is no plant yet: draw at least one line, or add a tree, a leaf or a flower")]
     NothingMade,
-    /// A model that is only looked at is no plant and no drawing.
+    /// A model that is only shown is no plant and no drawing.
     #[error("models are not written as {0:?}")]
     Format(&'static str),
     /// The tool needs a plant.

@@ -7,11 +7,11 @@
 //! | `workspace` | [`Workspace`]: the document with its history, the plant that is chosen, the draft |
 //! | `files` | files in and out |
 //! | `export` | models and structures as files |
-//! | `exported` | exports that are looked at before they are written |
+//! | `exported` | exports that are shown before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
 //! | `levels`, `shown` | levels of detail for shells that draw little |
-//! | `record` | what hands did, as a file, and again |
+//! | `record` | gestures as a file, and their replay |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
 //! | `view` | what a shell shows of the plants |
@@ -23,12 +23,12 @@ mod copies;
 mod error;
 mod evaluate;
 mod export;
+mod export_preview;
 mod exported;
 mod files;
 mod held;
 mod kept;
 mod levels;
-mod looked;
 mod record;
 mod scatter;
 mod shaping;
