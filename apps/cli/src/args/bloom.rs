@@ -108,7 +108,7 @@ pub(crate) struct BloomRunArgs {
     /// or leaf is used.
     #[arg(long, value_name = "FILE")]
     pub(crate) petal: Option<PathBuf>,
-    /// Edits by hand on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
+    /// Hand edits on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
     #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
     /// The law that sets the pace [default: a straight line; for a flower its own].
