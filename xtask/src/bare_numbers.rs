@@ -22,7 +22,8 @@ const CORNERS: &str = "3";
 pub(crate) fn check() -> Outcome {
     let mut faults = Vec::new();
     let mut looked = 0;
-    for file in sources(&repository().join(FOLDER))? {
+    let files = sources(&repository().join(FOLDER))?;
+    for file in files.into_iter().filter(|f| f.file_name().is_none_or(|n| n != "tests.rs")) {
         let text = std::fs::read_to_string(&file).map_err(|e| format!("{}: {e}", file.display()))?;
         let place = file.strip_prefix(repository()).unwrap_or(&file).display().to_string();
         let seen = bare(&text).map_err(|e| format!("{place}: {e}"))?;
@@ -41,17 +42,26 @@ pub(crate) fn check() -> Outcome {
     ))
 }
 
-/// The sources of a folder and those below, without tests.
-fn sources(folder: &Path) -> Outcome<Vec<PathBuf>> {
+/// The folders of crates and shells.
+pub(crate) fn packages() -> Outcome<Vec<PathBuf>> {
+    let mut all = Vec::new();
+    for folder in ["crates", "apps"] {
+        let folder = repository().join(folder);
+        let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        all.extend(entries.filter_map(Result::ok).map(|e| e.path()));
+    }
+    Ok(all)
+}
+
+/// The sources of a folder and those below.
+pub(crate) fn sources(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let fault = |e: &dyn core::fmt::Display| format!("{}: {e}", folder.display());
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|e| fault(&e))? {
         let path = entry.map_err(|e| fault(&e))?.path();
         if path.is_dir() {
             found.extend(sources(&path)?);
-        } else if path.extension().is_some_and(|e| e == "rs")
-            && path.file_name().is_some_and(|n| n != "tests.rs")
-        {
+        } else if path.extension().is_some_and(|e| e == "rs") {
             found.push(path);
         }
     }

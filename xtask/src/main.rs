@@ -14,6 +14,7 @@ mod habits;
 mod layers;
 mod made_drawings;
 mod made_strokes;
+mod names;
 mod native;
 mod npm;
 mod pixels;
@@ -23,6 +24,7 @@ mod read_drawings;
 mod read_in_turn;
 mod scenes;
 mod shell;
+mod skips;
 mod species;
 mod studio;
 mod toolchain;
@@ -50,7 +52,8 @@ cargo xtask COMMAND
   types          writes the schemas of specs and the TypeScript types of what travels between page and core
   habits         checks licences and versions of dependencies, spelling, numbers without a name, and that the crates could be
                  published
-  layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
+  layers         checks that each crate uses only what ARCHITECTURE.md allows, no modules in a circle, no two public
+                 types of one name, and no test that is skipped unseen
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets),
                  or whether they are read alike when they are drawn in another way (--changed)
@@ -82,7 +85,9 @@ fn main() -> ExitCode {
         Some("flowers") => flowers::run(),
         Some("types") => types(),
         Some("habits") => habits::check(),
-        Some("layers") => layers::check().and_then(|()| circles::check()),
+        Some("layers") => {
+            [layers::check, circles::check, names::check, skips::check].iter().try_for_each(|check| check())
+        }
         Some("train-kinds") => train_kinds::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
         Some("read-drawings") => read_drawings::run(rest),

@@ -83,7 +83,7 @@ struct Row {
     /// As binary glTF with textures.
     bytes: u64,
     digest: String,
-    /// What the paper printed for this method, thousands and seconds.
+    /// What Yang et al. (2019), Table 2, printed for this method, thousands and seconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     paper: Option<PaperRow>,
 }
@@ -117,7 +117,8 @@ struct Comparison {
 
 const NOTES: &str = "All three stand at one height with one number of leaves of one form and size (the best lit of each, as many \
                      as the tree with fewest has), and with one thickness of trunks and twigs; crown is the mean width of \
-                     the branches. Seconds are growth, wood, leaves and meshes on this machine; the paper's are on its own.";
+                     the branches. Seconds are growth, wood, leaves and meshes on this machine; those of Yang et al. (2019) are \
+                     on theirs.";
 
 const GUIDED_NOTES: &str = "Both grow in the oak's envelope with internodes of one length, one perception, occupancy, angle, phyllotaxis, \
                             bias and number of rounds, stand at one height and keep one number of leaves. Guided growth makes \

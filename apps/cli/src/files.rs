@@ -11,7 +11,7 @@ use burgeon::formats::{
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{Report, Warning};
+use burgeon::{Report, Spec, Warning};
 use serde::Deserialize;
 
 use crate::args::{AxesArgs, PlantFormat, StructureFormat, UnitWord, UpWord};
@@ -182,6 +182,20 @@ pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
         let after = e.utf8_error().valid_up_to();
         Failure::at(path, format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"))
     })
+}
+
+/// Reads the settings of a file that a person wrote: JSON by its extension, otherwise TOML.
+pub(crate) fn read_spec<T: Spec>(path: &Path) -> Outcome<T> {
+    let text = read_text(path)?;
+    let json = extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    if !json {
+        return burgeon::spec::from_toml(&text).map_err(|e| Failure::at(path, e));
+    }
+    let value =
+        serde_json::from_str(&text).map_err(|e| Failure::at(path, format_args!("is not JSON: {e}")))?;
+    let spec = burgeon::spec::from_json(&value).map_err(|e| Failure::at(path, e))?;
+    burgeon::spec::check(&spec).map_err(|fault| Failure::at(path, fault))?;
+    Ok(spec)
 }
 
 /// Reads a project.

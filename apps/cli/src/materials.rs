@@ -24,16 +24,7 @@ pub(crate) struct Materials {
 impl Materials {
     /// Reads a file of materials (.toml or .json) and the pictures beside it.
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
-        let text = files::read_text(path)?;
-        let json = files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        let wear: Wear = if json {
-            let value = serde_json::from_str(&text)
-                .map_err(|e| Failure::at(path, format_args!("is not a file of materials: {e}")))?;
-            burgeon::spec::from_json(&value)
-        } else {
-            burgeon::spec::from_toml(&text)
-        }
-        .map_err(|e| Failure::at(path, e))?;
+        let wear: Wear = files::read_spec(path)?;
         let mut pictures = BTreeMap::new();
         for material in wear.materials() {
             let OrganMaterial { pattern, picture, .. } = material;

@@ -1,4 +1,4 @@
-//! `burgeon replay`: what hands did in a headset, done again without one.
+//! `burgeon replay`: gestures recorded in a headset, replayed without one.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -73,7 +73,7 @@ struct Job<'a> {
 
 impl<'a> Job<'a> {
     fn new(args: &'a SketchArgs, machine: &Machine) -> Outcome<Self> {
-        let spec = args.reading.spec.as_deref().map(read_spec).transpose()?;
+        let spec = args.reading.spec.as_deref().map(files::read_spec).transpose()?;
         let classes = args.reading.classes.as_deref().map(Classes::read).transpose()?.unwrap_or_default();
         let template = args.reading.leaf_template.as_deref();
         let leaf = template
@@ -605,14 +605,6 @@ fn names_folder(
         )),
         Some(_) => Ok(false),
     }
-}
-
-fn read_spec(path: &Path) -> Outcome<SketchSpec> {
-    let text = files::read_text(path)?;
-    let spec: SketchSpec = serde_json::from_str(&text)
-        .map_err(|e| Failure::at(path, format_args!("is not a sketch spec: {e}")))?;
-    burgeon::spec::check(&spec).map_err(|fault| Failure::at(path, fault))?;
-    Ok(spec)
 }
 
 fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {

@@ -1,6 +1,8 @@
 //! Files of people: what is read is never replaced, what is written is whole, and a refused command changes nothing.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../crates/base/tests/missing/mod.rs"]
+mod missing;
 mod tools;
 
 use std::collections::BTreeMap;
@@ -501,8 +503,7 @@ mod unix {
         let dir = folder("files-stdout");
         fs::write(dir.join("rose.svg"), FLOWER).unwrap();
         let Ok(full) = fs::File::options().write(true).open("/dev/full") else {
-            println!("skipped: there is no /dev/full");
-            return;
+            return missing::skipped("/dev/full");
         };
         for args in [
             &["sketch", "rose.svg", "-o", "x.obj", "--json"][..],

@@ -1,6 +1,8 @@
 //! What careless and hostile users do: one clear line, status 2, and nothing broken.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../crates/base/tests/missing/mod.rs"]
+mod missing;
 mod tools;
 
 use std::fs;
@@ -157,12 +159,23 @@ fn files_of_settings_are_checked() {
     fs::write(dir.join("low.json"), r#"{"height_m": -5}"#).unwrap();
     fs::write(dir.join("dense.json"), r#"{"fill": {"density": 1e300}}"#).unwrap();
     fs::write(dir.join("bytes.json"), b"{\"height_m\": \xff}").unwrap();
+    fs::write(dir.join("low.toml"), "seed = 1\n").unwrap();
+    fs::write(dir.join("thin.toml"), "read_as = \"tree\"\n\n[fill]\ndensity = 0.01\n").unwrap();
+    fs::write(dir.join("word.json"), r#"{"fill": {"densty": 1}}"#).unwrap();
+    fs::write(dir.join("list.json"), "[2]").unwrap();
+    fs::write(dir.join("half.json"), "{\"height_m\":").unwrap();
     fs::write(dir.join("good.json"), r#"{"height_m": 2}"#).unwrap();
+    fs::write(dir.join("good.toml"), "height_m = 2\n").unwrap();
     fs::File::create(dir.join("large.json")).unwrap().set_len(20 << 20).unwrap();
     let before = names(&dir);
     for (file, parts) in [
         ("low.json", ["height_m must be 0.001 to 1000 m", "not -5"]),
         ("dense.json", ["fill.density", "0.1 to 10"]),
+        ("low.toml", ["line 1", "unknown field `seed`"]),
+        ("thin.toml", ["line 4", "fill.density must be 0.1 to 10"]),
+        ("word.json", ["fill", "unknown field `densty`"]),
+        ("list.json", ["a spec is a JSON object", "a field for each"]),
+        ("half.json", ["is not JSON", "EOF"]),
         ("bytes.json", ["UTF-8", "save it again"]),
         ("large.json", ["larger than 16 MiB", "right one"]),
     ] {
@@ -177,8 +190,10 @@ fn files_of_settings_are_checked() {
         let info: Value = serde_json::from_str(&good(&dir, &["info", "x.glb", "--json"])).unwrap();
         info["model"]["size"][1].as_f64().unwrap()
     };
-    let ratio = info(&["--spec", "good.json"]) / info(&["--height", "1"]);
-    assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
+    for spec in ["good.json", "good.toml"] {
+        let ratio = info(&["--spec", spec]) / info(&["--height", "1"]);
+        assert!((ratio - 2.0).abs() < 1e-3, "{spec}: {ratio}");
+    }
 }
 
 #[test]
@@ -326,8 +341,7 @@ mod unix {
         let dir = folder("pipes");
         let made = Command::new("mkfifo").arg(dir.join("a.mtl")).status();
         if !made.is_ok_and(|s| s.success()) {
-            println!("skipped: there is no mkfifo");
-            return;
+            return missing::skipped("mkfifo");
         }
         fs::write(dir.join("a.obj"), "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         good(&dir, &["info", "a.obj"]);

@@ -1,6 +1,8 @@
 //! `burgeon leaf` as other programs call it.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../crates/base/tests/missing/mod.rs"]
+mod missing;
 mod tools;
 
 use std::fs;
@@ -225,12 +227,7 @@ fn chief_veins_that_start_together_make_a_leaf() {
 fn profiles_of_maize_become_leaves_of_their_length() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/leaves/maize_leaves.json");
     let Ok(text) = fs::read_to_string(&file) else {
-        // Past the capture of the tests that pass: people see it.
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: ../shared/data/leaves is not here\n"),
-        );
-        return;
+        return missing::skipped(file.display());
     };
     let dir = folder("leaf-profiles");
     let leaves: Vec<Value> = serde_json::from_str(&text).unwrap();

@@ -284,13 +284,15 @@ export type ReadingReport = {
   score: number;
 };
 
-/** Why something was not made: words for people, a code and fields for programs. */
+/** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
 export type Refusal = {
+  /** Those of the fields that are refusals themselves. */
+  causes?: Record<string, Refusal>;
   /** A word in kebab-case that never changes its meaning. */
   code: string;
   /** Names and values, as people read them. */
   fields: Record<string, string>;
-  /** The sentence. */
+  /** The sentence in English. */
   message: string;
 };
 

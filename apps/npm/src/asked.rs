@@ -1,10 +1,9 @@
 //! What is asked for in JSON; errors as JSON.
 
-use std::collections::BTreeMap;
 use std::fmt::Display;
 
 use burgeon::skin::SkinSpec;
-use burgeon::{Coded, Run, Slip, Spec, SpecFault, Told};
+use burgeon::{Coded, Refusal, Run, Slip, Spec, SpecFault};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -12,7 +11,6 @@ use serde_json::{Map, Value};
 use wasm_bindgen::prelude::*;
 
 use crate::host::with_budget;
-use crate::view::Refusal;
 
 /// A `Refusal` as JSON: what JavaScript catches.
 #[derive(Debug)]
@@ -27,36 +25,30 @@ impl From<Refused> for JsValue {
 impl Refused {
     /// In words alone.
     pub(crate) fn plain(code: &str, message: String) -> Self {
-        Self::of(Refusal { code: code.into(), fields: BTreeMap::new(), message })
+        Self::with(code, &[], message)
     }
 
     /// A word that is none of those that are known.
     pub(crate) fn choice(path: &str, name: &str, choices: &str) -> Self {
-        let fields = [("path", path), ("name", name), ("choices", choices)];
-        let fields = fields.into_iter().map(|(k, v)| (k.into(), v.into())).collect();
         let message = format!("{path}: {name:?} is not known; there are {choices}");
-        Self::of(Refusal { code: "spec-choice".into(), fields, message })
+        Self::with("spec-choice", &[("path", path), ("name", name), ("choices", choices)], message)
     }
 
-    fn of(refusal: Refusal) -> Self {
-        Self(serde_json::to_string(&refusal).unwrap_or(refusal.message))
+    fn with(code: &str, fields: &[(&str, &str)], message: String) -> Self {
+        Self(Refusal::plain(code, fields, message).into_json())
     }
 }
 
 /// An error of the core.
 pub(crate) fn refused(error: &(impl Coded + Display)) -> Refused {
-    let Told { code, fields, .. } = error.told();
-    let fields = fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-    Refused::of(Refusal { code: code.into(), fields, message: error.to_string() })
+    Refused(Refusal::of(error).into_json())
 }
 
 /// Reads what JavaScript says.
 pub(crate) fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
     burgeon::spec::through_json::from_text(text).map_err(|e| {
         let message = e.to_string();
-        let told = Slip::of(&message).told();
-        let fields = told.fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-        Refused::of(Refusal { code: told.code.into(), fields, message })
+        Refused(Refusal { message: message.clone(), ..Refusal::of(&Slip::of(&message)) }.into_json())
     })
 }
 
@@ -65,11 +57,9 @@ pub(crate) fn number(name: &str, value: f64, (min, max): (f64, f64)) -> Result<f
     if (min..=max).contains(&value) {
         return Ok(value);
     }
-    let fields =
-        [("field", name.to_owned()), ("value", value.to_string()), ("range", format!("{min} to {max}"))];
-    let fields = fields.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-    let message = format!("{name} must be {min} to {max}, not {value}");
-    Err(Refused::of(Refusal { code: "field-range".into(), fields, message }))
+    let (value, range) = (value.to_string(), format!("{min} to {max}"));
+    let message = format!("{name} must be {range}, not {value}");
+    Err(Refused::with("field-range", &[("field", name), ("value", &value), ("range", &range)], message))
 }
 
 /// What all makers are asked for.
@@ -150,4 +140,20 @@ impl Asked {
 fn put<T: Spec>(base: &T, fields: &Map<String, Value>) -> Result<T, Refused> {
     let put: Result<T, SpecFault> = burgeon::spec::with_fields(base, Value::Object(fields.clone()));
     put.map_err(|e| refused(&e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Programs look for the code of the slip itself, and its place is around it.
+    #[test]
+    fn an_error_inside_another_arrives_with_its_own_code() {
+        let Err(Refused(json)) = from_json::<TreeAsked>("{\n  \"preset\":") else {
+            panic!("the text ends early")
+        };
+        let refusal: Value = serde_json::from_str(&json).unwrap_or_default();
+        assert_eq!((&refusal["code"], &refusal["fields"]["line"]), (&"slip-at".into(), &"2".into()));
+        assert_eq!(refusal["causes"]["what"]["code"], "json-ends");
+    }
 }

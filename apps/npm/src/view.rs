@@ -1,21 +1,8 @@
 //! What JavaScript is told of a plant. `cargo xtask types` writes these types as TypeScript.
 
-use std::collections::BTreeMap;
-
 use burgeon::ItemReport;
 use schemars::JsonSchema;
 use serde::Serialize;
-
-/// Why something was not made: words for people, a code and fields for programs.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Refusal {
-    /// A word in kebab-case that never changes its meaning.
-    pub code: String,
-    /// Names and values, as people read them.
-    pub fields: BTreeMap<String, String>,
-    /// The sentence.
-    pub message: String,
-}
 
 /// A plant as it was made.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]

@@ -8,7 +8,8 @@ mod typescript;
 
 use std::fmt::Write as _;
 
-use burgeon_npm::{FlowerAsked, LeafAsked, PlantView, Refusal, SketchAsked, TreeAsked};
+use burgeon::Refusal;
+use burgeon_npm::{FlowerAsked, LeafAsked, PlantView, SketchAsked, TreeAsked};
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};

@@ -129,7 +129,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'look':
       return lookAtExport(s, request.request, request.level);
     case 'unlook':
-      return s.end_look();
+      return s.end_preview();
     case 'variant': {
       const view: PlantView = JSON.parse(s.variant(request.seed, request.detail));
       try {
@@ -196,7 +196,7 @@ function unsent(s: StudioSession, { materials }: PlantView): TexturePixels[] {
 
 /** The columns of an export, which is written and counted. */
 function lookAtExport(s: StudioSession, request: ExportRequest, level: number): SentExport {
-  const view: ExportView = JSON.parse(s.look_at_export(JSON.stringify(request), level));
+  const view: ExportView = JSON.parse(s.preview_export(JSON.stringify(request), level));
   const models = view.models.map(({ parts }, model) =>
     parts.map((_, part): ExportedArrays => {
       const [positions, normals, uvs, colors, wind, pivots] = [0, 1, 2, 3, 4, 5].map((c) =>
@@ -248,7 +248,7 @@ function given(kind: Request['kind'], value: unknown): Transferable[] {
 function look(s: StudioSession): boolean {
   looked = true;
   [toldShare, lookShare] = [0, 0];
-  const views: PlantView[] = JSON.parse(s.look());
+  const views: PlantView[] = JSON.parse(s.preview_trees());
   lookShare = toldShare;
   const fresh = views.map((view) => pack(s, view));
   if (fresh.length > 0) tell({ kind: 'coarse', fresh }, fresh.flatMap(buffers));

@@ -170,7 +170,7 @@ pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsErr
     Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
 }
 
-/// The paper's 1,300 markers a bud are more than the usual budget allows.
+/// The 1,300 markers a bud of the VR paper are more than the usual budget allows.
 fn without_budget() -> Run<'static> {
     Run { budget: Budget { times: 1000.0, ..Budget::default() }, ..Run::plain() }
 }

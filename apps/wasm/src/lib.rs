@@ -14,11 +14,11 @@ use burgeon::document::{PlantId, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::skin::OrganMaterial;
-use burgeon::{Seed, bloom};
+use burgeon::{Refusal, Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, ExportRequest, PenStyle, Refusal, Workspace, WorkspaceError, packed};
+use workspace::{Column, ExportRequest, PenStyle, Workspace, WorkspaceError, packed};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
@@ -73,8 +73,7 @@ impl From<Refused> for JsValue {
 
 impl From<WorkspaceError> for Refused {
     fn from(error: WorkspaceError) -> Self {
-        let refusal = Refusal::of(&error);
-        Self(serde_json::to_string(&refusal).unwrap_or(refusal.message))
+        Self(Refusal::of(&error).into_json())
     }
 }
 
@@ -378,12 +377,12 @@ impl StudioSession {
         samples.iter().flat_map(|p| [p.at.x, p.at.y, p.pressure.unwrap_or(f64::NAN)]).collect()
     }
 
-    /// Large trees that are going to be grown, much coarser: an array of `PlantView` as JSON. See [`Workspace::look`].
+    /// Large trees that are going to be grown, much coarser: an array of `PlantView` as JSON. See [`Workspace::preview_trees`].
     ///
     /// # Errors
     /// `cancelled`.
-    pub fn look(&mut self) -> Result<String, Refused> {
-        to_json(&page_run(|run| self.0.look(run))?)
+    pub fn preview_trees(&mut self) -> Result<String, Refused> {
+        to_json(&page_run(|run| self.0.preview_trees(run))?)
     }
 
     /// Brings the plants up to date: `SceneView` as JSON.
@@ -449,16 +448,16 @@ impl StudioSession {
         Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
     }
 
-    /// See [`Workspace::look_at_export`]: `ExportRequest` in, `ExportView` out, both JSON.
+    /// See [`Workspace::preview_export`]: `ExportRequest` in, `ExportView` out, both JSON.
     ///
     /// # Errors
     /// When there is nothing to export.
-    pub fn look_at_export(&mut self, request: &str, level: u32) -> Result<String, Refused> {
+    pub fn preview_export(&mut self, request: &str, level: u32) -> Result<String, Refused> {
         let request: ExportRequest = from_json(request)?;
-        to_json(&page_run(|run| self.0.look_at_export(&request, level, run))?)
+        to_json(&page_run(|run| self.0.preview_export(&request, level, run))?)
     }
 
-    /// A column of the export that is looked at: 0 positions, 1 normals, 2 texture coordinates, 3 colours, 4 wind,
+    /// A column of the export that is shown: 0 positions, 1 normals, 2 texture coordinates, 3 colours, 4 wind,
     /// 5 pivots.
     pub fn exported_column(&self, model: usize, part: usize, column: usize) -> Vec<f32> {
         use Column::{Colors, Normals, Pivots, Positions, Uvs, Wind};
@@ -466,13 +465,13 @@ impl StudioSession {
         column.map_or_else(Vec::new, |&c| self.0.exported_column(model, part, c).to_vec())
     }
 
-    /// Three indices a triangle of the export that is looked at.
+    /// Three indices a triangle of the export that is shown.
     pub fn exported_indices(&self, model: usize, part: usize) -> Vec<u32> {
         self.0.exported_indices(model, part).to_vec()
     }
 
-    /// See [`Workspace::end_look`].
-    pub fn end_look(&mut self) {
-        self.0.end_look();
+    /// See [`Workspace::end_preview`].
+    pub fn end_preview(&mut self) {
+        self.0.end_preview();
     }
 }

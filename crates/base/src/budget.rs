@@ -14,8 +14,8 @@ pub enum Counted {
     Joints,
     /// Steps, and places for leaves, along one shoot.
     Course,
-    /// Points that buds look at, each time that one does: what growth by markers takes time for.
-    Looks,
+    /// Points that buds ask for, each time that one does: what growth by markers takes time for.
+    MarkerQueries,
     /// Joints times the years that they live through: what self-organising growth takes time for.
     JointYears,
     /// Places for leaves.
@@ -40,7 +40,7 @@ impl Counted {
         Self::Points,
         Self::Joints,
         Self::Course,
-        Self::Looks,
+        Self::MarkerQueries,
         Self::JointYears,
         Self::Leaves,
         Self::Triangles,
@@ -57,7 +57,7 @@ impl Counted {
             Self::Points => "attraction points",
             Self::Joints => "joints",
             Self::Course => "steps or leaves along one shoot",
-            Self::Looks => "looks of buds at markers",
+            Self::MarkerQueries => "marker queries",
             Self::JointYears => "joints times years",
             Self::Leaves => "places for leaves",
             Self::Triangles => "triangles",
@@ -77,7 +77,7 @@ impl Counted {
             Self::Joints => 2_000_000,
             Self::Leaves | Self::Obstacles => 1_000_000,
             Self::Course => 100_000,
-            Self::Looks => 100_000_000,
+            Self::MarkerQueries => 100_000_000,
             Self::JointYears => 20_000_000,
             Self::Triangles => 16_000_000,
             Self::Strokes => 20_000,

@@ -11,7 +11,7 @@
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
 //! | `slip` | [`Slip`]: what readers say of a text, as codes |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
-//! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
+//! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats; [`escaped_xml`] |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
@@ -39,11 +39,11 @@ pub use budget::{Budget, Counted, OverBudget, grouped};
 pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
 pub use litemap::LiteMap;
-pub use quote::{brief, quoted};
+pub use quote::{brief, escaped_xml, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use slip::Slip;
-pub use sort::{Set, first_of, map_of, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
+pub use sort::{Set, first_of, map_of, median, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
 pub use srgb::{linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,

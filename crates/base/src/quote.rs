@@ -14,6 +14,27 @@ pub fn quoted(text: &str) -> String {
     cut(text, QUOTED)
 }
 
+/// Somebody's words as text or as an attribute of XML. What XML cannot hold becomes a space, or is left out.
+///
+/// ```
+/// assert_eq!(base::escaped_xml("a < \"b\"\u{1}& c"), "a &lt; &quot;b&quot; &amp; c");
+/// ```
+pub fn escaped_xml(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            '\u{fffe}' | '\u{ffff}' => {}
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 /// A message, which may be somebody else's, with everything that it quotes in backticks or double quotes cut as
 /// [`quoted`] does, and itself at most 1,500 characters long. Cost: linear.
 ///

@@ -58,6 +58,17 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_unstable_by(f64::total_cmp);
 }
 
+/// The middle one of numbers, of an even count the upper of the two; none of none.
+///
+/// ```
+/// assert_eq!(base::median(vec![3.0, 1.0, 9.0, 2.0]), Some(3.0));
+/// assert_eq!(base::median(vec![]), None);
+/// ```
+pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
+    sort_numbers(&mut numbers);
+    numbers.get(numbers.len() / 2).copied()
+}
+
 /// Puts the first `n` of rows in an order before the others, each part in some order, the last of the first in its place.
 ///
 /// As `select_nth_unstable_by`, one routine for all. `n`: 1 to the number of rows.

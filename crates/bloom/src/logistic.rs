@@ -437,7 +437,8 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
     }
 }
 
-/// Cramer's rule after scaling rows and columns to a unit diagonal.
+/// Cramer's rule after scaling rows and columns to a unit diagonal; not [`geom::solve_positive`], which rounds otherwise,
+/// and laws are compared to the last bit.
 fn solve3(a: [[f64; 3]; 3], b: [f64; 3]) -> Option<[f64; 3]> {
     let s = [0, 1, 2].map(|i| 1.0 / a[i][i].sqrt());
     if !s.iter().all(|s| s.is_finite()) {

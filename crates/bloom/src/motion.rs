@@ -13,8 +13,8 @@ use crate::{
 pub struct MotionSpec {
     /// Registration and lattice.
     pub register: RegisterSpec,
-    /// Control points move on straight lines, as in the paper, instead of turning with their organ. Default false:
-    /// an organ that swings by 40 degrees would shrink by 6 % half way.
+    /// Control points move on straight lines, as in Huai, Yang and Cai (2019), Algorithm 2, instead of turning with
+    /// their organ. Default false: an organ that swings by 40 degrees would shrink by 6 % half way.
     pub straight: bool,
 }
 

@@ -2,6 +2,8 @@
 
 use core::fmt::Write as _;
 
+use base::escaped_xml;
+
 use crate::{GrowthLaw, RegionLaw};
 
 const WIDTH: f64 = 300.0;
@@ -24,7 +26,7 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
          font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
          <text x=\"12\" y=\"22\" font-size=\"15\">{}: growth laws (mm by day)</text>\n",
-        escaped(&law.name)
+        escaped_xml(&law.name)
     );
     for (i, row) in law.laws.iter().enumerate() {
         let (x, y) = ((i % COLUMNS) as f64 * WIDTH, (i / COLUMNS) as f64 * HEIGHT + 34.0);
@@ -32,10 +34,6 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
     }
     s.push_str("</svg>\n");
     s
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
@@ -62,7 +60,7 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
          <text x=\"{left:.0}\" y=\"{:.0}\" fill=\"#555\">K {:.2} p0 {:.2} r {:.3} R2 {:.3}</text>\n\
          <path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#888\"/>\n",
         y0 + 14.0,
-        escaped(&row.organ),
+        escaped_xml(&row.organ),
         row.axis.word(),
         y0 + 29.0,
         row.law.k * 1e3,
@@ -92,4 +90,17 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
         let _ = writeln!(s, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3\" fill=\"#c2185b\"/>", px(d), py(v));
     }
     s.push_str("</g>\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// XML has no such characters: no program would open the picture.
+    #[test]
+    fn names_with_characters_that_xml_lacks_make_a_picture() {
+        let svg = plot_svg(&GrowthLaw::logistic("a\u{1}<b>\u{fffe}", 6.0, 0.9));
+        assert!(svg.contains("a &lt;b&gt;: growth laws"), "{svg}");
+        assert!(!svg.contains(|c: char| (c.is_control() && c != '\n') || c == '\u{fffe}'));
+    }
 }

@@ -2,6 +2,9 @@
 //! Jacobian, the best of 72 starts).
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use bloom::{Offset, fit_law, fit_logistic};
 
 fn numbers(text: &str) -> Vec<f64> {
@@ -118,12 +121,7 @@ const GROWTH: [(&str, [f64; 7]); 6] = [
 fn the_growth_tables_fit_as_scipy_fits_them() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/growth");
     if !folder.is_dir() {
-        // Past the capture of the tests that pass: people see it.
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: no growth tables beside the repository\n"),
-        );
-        return;
+        return missing::skipped(folder.display());
     }
     let cell = |w: &str| w.trim_matches('"').parse::<f64>().unwrap();
     for (name, want) in GROWTH {

@@ -1,6 +1,9 @@
 //! The growing tomato of the shared data: split, matched, and each day predicted from the others.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "tests; what they measure is told")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use base::{Run, Seed};
 use bloom::{
     CleanSpec, GrowthLaw, LawSpec, Motion, MotionSpec, Oddity, SegmentSpec, ShapeError, Stage, clean,
@@ -31,11 +34,7 @@ fn scan(folder: &Path, day: &str) -> Vec<DVec3> {
 fn stages() -> Option<Vec<Stage>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans/tomato_series");
     if !folder.is_dir() {
-        // Past the capture of the tests that pass: people see it.
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: no tomato series beside the repository\n"),
-        );
+        missing::skipped(folder.display());
         return None;
     }
     let run = Run::plain();

@@ -1,5 +1,8 @@
 //! Readers of drawings on whole files: real ones, large ones, wrong ones.
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use formats::{
     DrawingError, DrawingFormat, DrawingSummary, ReadDrawing, read_drawings, write_drawing, write_svg,
 };
@@ -144,12 +147,7 @@ fn a_style_sheet_of_many_rules_does_not_slow_each_element() {
 fn real_drawings_are_read() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/sketches");
     if !std::path::Path::new(folder).is_dir() {
-        // Past the capture of the tests that pass: people see it.
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {folder} is not there\n"),
-        );
-        return;
+        return missing::skipped(folder);
     }
     let mut counts = [0_usize; 2];
     for (row, sub) in ["quickdraw", "spg"].iter().enumerate() {

@@ -2,6 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a picture")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use std::path::Path;
 
 use base::Report;
@@ -88,8 +91,7 @@ fn a_measured_network_keeps_its_teeth_and_its_veins() {
     let file =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/leaves/zelkova_vein_graph.json");
     let Ok(bytes) = std::fs::read(&file) else {
-        println!("skipped: {} is not there", file.display());
-        return;
+        return missing::skipped(file.display());
     };
     let graph = formats::read_vein_graph(&bytes[..]).unwrap().graph;
     let margin = graph.margin().unwrap().expect("a margin");

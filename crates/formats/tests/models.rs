@@ -1,6 +1,9 @@
 //! What is written comes back the same.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use std::sync::Arc;
 
 use base::{Report, Unit, UpAxis};
@@ -454,10 +457,7 @@ fn the_summary_says_what_is_there() {
 fn a_real_scan_is_read() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/scans/tomato_series/03-10.ply");
     let Ok(bytes) = std::fs::read(path) else {
-        // Past the capture of the tests that pass: people see it.
-        let _ =
-            std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("skipped: {path} is not there\n"));
-        return;
+        return missing::skipped(path);
     };
     let m = read_model(
         &bytes[..],

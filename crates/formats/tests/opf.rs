@@ -1,6 +1,8 @@
 //! OPF files read back, and those of other people read by the same reader.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
 mod opf_reader;
 
 use std::path::Path;
@@ -153,8 +155,7 @@ fn a_deep_plant_is_no_deep_recursion() {
 fn files_of_other_people_are_read_by_the_same_reader() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/mtg/coffee.opf");
     let Ok(text) = std::fs::read_to_string(&file) else {
-        eprintln!("skipped: {} is not there", file.display());
-        return;
+        return missing::skipped(file.display());
     };
     let coffee = read(&text);
     let count = |class: &str| coffee.nodes.iter().filter(|n| n.class == class).count();

@@ -1,5 +1,8 @@
 //! Scans of real plants are read whole. Skips where the data is absent.
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use base::Report;
 use formats::{CloudFormat, ExportSpec, read_cloud};
 
@@ -7,12 +10,7 @@ use formats::{CloudFormat, ExportSpec, read_cloud};
 fn the_real_scans_are_read() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans");
     if !folder.is_dir() {
-        // Past the capture of the tests that pass: people see it.
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: no scans beside the repository\n"),
-        );
-        return;
+        return missing::skipped(folder.display());
     }
     for (name, want) in [
         ("tomato_series/03-05.xyz", 24_795),

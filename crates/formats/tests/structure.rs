@@ -6,6 +6,8 @@
     reason = "row numbers of tables are small"
 )]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
 mod mtg_reader;
 
 use std::path::Path;
@@ -226,11 +228,7 @@ fn the_reader_reads_real_plants() {
     let files = ["noylum2.mtg", "agraf.mtg", "rose/10.mtg", "rose/459.mtg", "rose/1017.mtg", "mtg1.mtg"];
     for name in files {
         let Ok(bytes) = std::fs::read(folder.join(name)) else {
-            // Past the capture of the tests that pass: people see it.
-            let _ = std::io::Write::write_fmt(
-                &mut std::io::stderr(),
-                format_args!("skipped: {name} is not there\n"),
-            );
+            missing::skipped(folder.join(name).display());
             continue;
         };
         let text: String = bytes.into_iter().map(char::from).collect();

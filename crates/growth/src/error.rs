@@ -73,7 +73,7 @@ pub enum GrowthError {
     },
     /// A mesh cannot bound anything.
     #[error("mesh: {0}")]
-    Mesh(#[from] MeshFault),
+    Mesh(#[from] SolidFault),
     /// The rules of an L-system are at fault.
     #[error(transparent)]
     Lsystem(#[from] LsystemError),
@@ -95,7 +95,7 @@ pub enum GrowthError {
 /// What is wrong with a mesh that should bound a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum MeshFault {
+pub enum SolidFault {
     /// No triangle with an area.
     #[error("it has no triangle with an area")]
     Empty,
@@ -329,7 +329,7 @@ base::coded!(GrowthError {
     Self::RootInObstacle { root, obstacle, name } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1, name },
     Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
-    Self::Mesh(why) => "mesh" { why => MeshFault },
+    Self::Mesh(why) => "mesh" { why => SolidFault },
     Self::NoRoom { found, wanted, .. } => "no-room" { found, wanted },
 } wraps {
     Self::Range(e) => e, spec::RangeFault;
@@ -338,7 +338,7 @@ base::coded!(GrowthError {
     Self::OverBudget(e) => e, base::OverBudget;
 });
 
-base::coded!(MeshFault {
+base::coded!(SolidFault {
     Self::Empty => "mesh-empty" {},
     Self::Index { triangle, vertex, vertices } => "mesh-index" { triangle, vertex, vertices },
     Self::Vertex { vertex } => "mesh-vertex" { vertex },

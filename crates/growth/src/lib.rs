@@ -53,7 +53,7 @@ pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, PointFate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
-pub use error::{GrowthError, LsystemError, MeshFault, RuleFault};
+pub use error::{GrowthError, LsystemError, RuleFault, SolidFault};
 pub use guided::{
     BrushStroke, Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, StartBud, guide, guide_from,
 };

@@ -5,7 +5,7 @@
 use base::ops::{self, PI};
 use glam::DVec3;
 
-use crate::error::{MeshFault, usable};
+use crate::error::{SolidFault, usable};
 
 /// Triangles per leaf of the tree.
 const LEAF: usize = 4;
@@ -37,15 +37,15 @@ struct Node {
 }
 
 impl Solid {
-    pub(crate) fn new(vertices: &[DVec3], indices: &[[u32; 3]]) -> Result<Self, MeshFault> {
+    pub(crate) fn new(vertices: &[DVec3], indices: &[[u32; 3]]) -> Result<Self, SolidFault> {
         if let Some(vertex) = vertices.iter().position(|&v| !usable(v)) {
-            return Err(MeshFault::Vertex { vertex });
+            return Err(SolidFault::Vertex { vertex });
         }
         let mut triangles = Vec::with_capacity(indices.len());
         for (triangle, corners) in indices.iter().enumerate() {
             let mut t = [DVec3::ZERO; 3];
             for (to, &vertex) in t.iter_mut().zip(corners) {
-                *to = *vertices.get(vertex as usize).ok_or(MeshFault::Index {
+                *to = *vertices.get(vertex as usize).ok_or(SolidFault::Index {
                     triangle,
                     vertex,
                     vertices: vertices.len(),
@@ -57,7 +57,7 @@ impl Solid {
         let whole = sealed(&triangles);
         triangles.retain(|t| area(t).length_squared() > 0.0);
         if triangles.is_empty() || triangles.len() > u32::MAX as usize {
-            return Err(MeshFault::Empty);
+            return Err(SolidFault::Empty);
         }
         let ray = whole.then(|| emptiest_axis(&triangles));
         let mut solid = Self { nodes: Vec::with_capacity(2 * triangles.len() / LEAF + 1), triangles, ray };
@@ -521,12 +521,12 @@ pub(crate) mod tests {
     #[test]
     fn broken_meshes_are_named() {
         let (mut v, t) = cube();
-        assert_eq!(Solid::new(&v, &[]).err(), Some(MeshFault::Empty));
-        assert_eq!(Solid::new(&v, &[[0, 0, 1]]).err(), Some(MeshFault::Empty));
-        let missing = MeshFault::Index { triangle: 0, vertex: 99, vertices: 8 };
+        assert_eq!(Solid::new(&v, &[]).err(), Some(SolidFault::Empty));
+        assert_eq!(Solid::new(&v, &[[0, 0, 1]]).err(), Some(SolidFault::Empty));
+        let missing = SolidFault::Index { triangle: 0, vertex: 99, vertices: 8 };
         assert_eq!(Solid::new(&v, &[[0, 99, 1]]).err(), Some(missing));
         v[3] = DVec3::NAN;
-        assert_eq!(Solid::new(&v, &t).err(), Some(MeshFault::Vertex { vertex: 3 }));
+        assert_eq!(Solid::new(&v, &t).err(), Some(SolidFault::Vertex { vertex: 3 }));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! `Drawing -> Ink`
 
 use base::{Report, ops};
+use geom::polyline_length;
 use glam::DVec2;
 
 use crate::again::drawn_again;
@@ -128,11 +129,6 @@ impl Ink {
         let plants = vec![(0..strokes.len()).collect()];
         Self { strokes, map, subjects: Subjects { plants, ..Subjects::default() }, ..Self::default() }
     }
-
-    /// The drawing shows several plants.
-    pub fn is_several(&self) -> bool {
-        self.subjects.plants.len() > 1
-    }
 }
 
 /// Cleans a drawing: He and Cheng (2021), section 3, Eq 1.
@@ -168,7 +164,7 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
         if stroke.hidden {
             continue;
         }
-        let length = length(&raw);
+        let length = polyline_length(&raw);
         if length < 1e-9 {
             notes.skipped.push((index, raw.len()));
             ink.skipped.push(index);
@@ -205,7 +201,7 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
 /// Resamples and smooths strokes of which `raw` is known. `before`: strokes that were, some of them the same.
 fn even(strokes: &mut [InkStroke], before: &[InkStroke]) {
     for stroke in strokes.iter_mut() {
-        stroke.length = length(&stroke.raw);
+        stroke.length = polyline_length(&stroke.raw);
     }
     let total: f64 = strokes.iter().map(|s| s.length).sum();
     let step = STEP.max(total / MAX_POINTS);
@@ -218,7 +214,7 @@ fn even(strokes: &mut [InkStroke], before: &[InkStroke]) {
             continue;
         }
         stroke.points = smooth(&resample(&stroke.raw, stroke.length, stroke.step), stroke.step);
-        stroke.length = length(&stroke.points);
+        stroke.length = polyline_length(&stroke.points);
     }
 }
 
@@ -297,10 +293,6 @@ fn ink_map(drawing: &Drawing, kept: &[Vec<usize>]) -> Option<InkMap> {
     }
     let scale = 1.0 / ops::hypot(hi.x - lo.x, hi.y - lo.y);
     (lo.is_finite() && scale.is_finite() && scale > 0.0).then_some(InkMap { origin: lo, scale })
-}
-
-fn length(points: &[DVec2]) -> f64 {
-    points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
 fn mean_pressure(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -503,7 +495,7 @@ mod tests {
         let ink = clean(&lines(&[line]), &mut Report::default());
         let s = &ink.strokes[0];
         let roughness = |p: &[DVec2]| p.windows(3).map(|w| (w[0] + w[2] - 2.0 * w[1]).length()).sum::<f64>();
-        let before = roughness(&resample(&s.raw, length(&s.raw), s.step));
+        let before = roughness(&resample(&s.raw, polyline_length(&s.raw), s.step));
         assert!(roughness(&s.points) < 0.5 * before, "{} of {before}", roughness(&s.points));
         assert_eq!((s.points[0], s.points[s.points.len() - 1]), (s.raw[0], s.raw[s.raw.len() - 1]));
         let corner = s.points.iter().map(|p| p.distance(s.raw[100])).fold(1.0, f64::min);

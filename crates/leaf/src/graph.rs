@@ -643,9 +643,7 @@ pub(crate) fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
 }
 
 pub(crate) fn median_near(radii: &[f64], k: usize) -> f64 {
-    let mut part: Vec<f64> = radii[k.saturating_sub(3)..(k + 4).min(radii.len())].to_vec();
-    base::sort_numbers(&mut part);
-    part.get(part.len() / 2).copied().unwrap_or(1e-5)
+    base::median(radii[k.saturating_sub(3)..(k + 4).min(radii.len())].to_vec()).unwrap_or(1e-5)
 }
 
 base::coded!(GraphError {

@@ -4,7 +4,7 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
+//! | `marks` | [`Marks`]: what was measured, what is missing, the rule of Wang et al. (2011) for missing thickness |
 //! | `margin` | [`MarginPoint`]: a margin of the leaf's own, that goes where the blade goes |
 //! | `form` | [`LeafForm`]: a few numbers -> marks |
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |

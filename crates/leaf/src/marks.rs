@@ -219,8 +219,8 @@ impl Marks {
 
     /// Fills in what was not measured.
     ///
-    /// Along a side vein thickness runs evenly from the vein's own at the midrib to that of the margin (paper
-    /// 004, section 1.3: `r2 = (2 d + r4) / 3`, `r3 = (d + 2 r4) / 3`), left as right. What a whole row lacks
+    /// Along a side vein thickness runs evenly from the vein's own at the midrib to that of the margin (Wang et
+    /// al. 2011, section 1.3: `r2 = (2 d + r4) / 3`, `r3 = (d + 2 r4) / 3`), left as right. What a whole row lacks
     /// is interpolated between its neighbours along the midrib. A midrib that was measured nowhere is 1.8 % of its length
     /// thick at the base and a twelfth of that at the tip. A margin that was measured nowhere is 2.6 % of
     /// the veins' mean thickness; side veins that were measured nowhere are half as thick as the midrib. Each

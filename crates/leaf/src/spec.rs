@@ -24,7 +24,7 @@ pub enum SurfaceKind {
 }
 
 impl SurfaceKind {
-    /// All kinds, in the paper's order.
+    /// All kinds, in the order of Wang et al. (2011).
     pub const ALL: [Self; 4] = [Self::Bezier, Self::Approximate, Self::Interpolate, Self::Nurbs];
 
     /// The word used in files, options and reports.

@@ -2,6 +2,9 @@
 
 #![expect(clippy::expect_used, reason = "tests")]
 
+#[path = "../../base/tests/missing/mod.rs"]
+mod missing;
+
 use std::fs;
 use std::path::Path;
 
@@ -32,8 +35,7 @@ fn area(leaf: &ScanLeaf) -> f64 {
 fn half_and_a_quarter_of_the_points_are_the_same_leaf() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans/single_leaves");
     let Ok(files) = fs::read_dir(&folder) else {
-        println!("skipped: {} is not there", folder.display());
-        return;
+        return missing::skipped(folder.display());
     };
     let mut files: Vec<_> = files.filter_map(|f| Some(f.ok()?.path())).collect();
     files.retain(|f| f.extension().is_some_and(|e| e == "txt"));

@@ -210,6 +210,12 @@ impl TriMesh {
         b
     }
 
+    /// The area of all triangles, square metres.
+    pub fn area(&self) -> f64 {
+        let p = |i: u32| self.position(i);
+        self.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
+    }
+
     /// Everything that is wrong. Cost: linear.
     pub fn validate(&self) -> impl Iterator<Item = MeshFault> + '_ {
         let n = self.positions.len();
@@ -368,6 +374,17 @@ mod tests {
         assert_eq!(blown.validate().collect::<Vec<_>>(), [MeshFault::NotFinite(1), MeshFault::Wind(2)]);
         blown.wind.pop();
         assert_eq!(blown.validate().next(), Some(MeshFault::Ragged("wind")));
+    }
+
+    #[test]
+    fn area_is_that_of_the_triangles() {
+        let square = TriMesh {
+            positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [2.0, 0.0, 3.0], [0.0, 0.0, 3.0]],
+            triangles: vec![[0, 1, 2], [2, 3, 0], [1, 1, 2]],
+            ..TriMesh::default()
+        };
+        assert!((square.area() - 6.0).abs() < 1e-12);
+        assert!(TriMesh::default().area().abs() < 1e-12);
     }
 
     #[test]

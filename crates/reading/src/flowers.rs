@@ -150,7 +150,7 @@ fn slender(outline: &[DVec2]) -> bool {
 
 /// A palm in one stroke: the piece that points straight down, the longest of all, is the trunk.
 fn trunk_piece(draft: &mut Draft<'_>, pieces: &mut Vec<Sheetlet>) {
-    let usual = median(pieces.iter().map(|p| p.size)).unwrap_or(0.0);
+    let usual = base::median(pieces.iter().map(|p| p.size).collect()).unwrap_or(0.0);
     let floor = pieces.iter().flat_map(|p| &p.outline).map(|p| p.y).fold(f64::INFINITY, f64::min);
     let found = pieces.iter().position(|p| {
         let Some(root) = p.root else { return false };
@@ -239,7 +239,7 @@ pub(crate) fn gather(
     let mut roots: Vec<Option<DVec2>> = draft.blades.iter().map(|b| b.root).collect();
     // Of no flower: what is surely a leaf, too.
     let mut taken: Vec<bool> = draft.blades.iter().map(|b| b.leaf).collect();
-    let usual = median(draft.blades.iter().map(|b| b.size)).unwrap_or(0.1);
+    let usual = base::median(draft.blades.iter().map(|b| b.size).collect()).unwrap_or(0.1);
 
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     off_disc(draft, &mut flowers, &mut roots, &mut taken);
@@ -374,7 +374,7 @@ fn on_rings(
             (free[row], if at_root { b.gap } else { b.nearest(centre).0 })
         };
         let rooted: Vec<(usize, DVec2)> = wheel.spokes.iter().map(rooted).collect();
-        // Roots in one place are the paper's.
+        // Roots in one place are those of He and Cheng (2021).
         let wide = rooted.iter().any(|(_, root)| root.distance(centre) > BANDWIDTH * usual);
         if !wide
             || bears_fronds(draft, centre, usual)
@@ -403,7 +403,7 @@ fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
         })
 }
 
-/// The paper's rule, more than 2, with what tells leaves on a branch from petals on a stem's end.
+/// The rule of He and Cheng (2021), more than 2, with what tells leaves on a branch from petals on a stem's end.
 fn is_flower(
     draft: &Draft<'_>,
     members: &[usize],
@@ -660,10 +660,4 @@ fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
 fn mean(points: impl Iterator<Item = DVec2>) -> DVec2 {
     let (sum, n) = points.fold((DVec2::ZERO, 0.0), |(s, n), p| (s + p, n + 1.0));
     if n > 0.0 { sum / n } else { sum }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    base::sort_numbers(&mut values);
-    values.get(values.len() / 2).copied()
 }

@@ -9,7 +9,7 @@ use glam::DVec2;
 use ink::{Ink, InkStroke};
 
 use crate::grid::{Grid, Hole};
-use crate::near::bounds;
+use crate::near::{bounds, openness};
 use crate::thresholds::ROUNDING;
 
 /// Bands into which the height is cut.
@@ -113,10 +113,6 @@ fn share(part: f64, whole: f64) -> f64 {
 
 fn to_f64(n: usize) -> f64 {
     n as f64
-}
-
-fn openness(s: &InkStroke) -> f64 {
-    share(s.points[0].distance(s.points[s.points.len() - 1]), s.length)
 }
 
 /// The drawing in its box.

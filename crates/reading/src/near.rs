@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use ink::InkStroke;
 
 use crate::thresholds::ROUNDING;
 
@@ -210,6 +211,11 @@ impl Boxes {
         };
         self.cells[Self::row(Self::key(p))].iter().filter(within).copied()
     }
+}
+
+/// How far apart a stroke's ends are, as a share of its length.
+pub(crate) fn openness(s: &InkStroke) -> f64 {
+    s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }
 
 /// Lower left and upper right corner; `None` for no points.

@@ -41,12 +41,7 @@ pub(crate) struct LeafHabit {
 /// The middle one; `or` where there is none.
 fn median(mut values: Vec<f64>, or: f64) -> f64 {
     values.retain(|v| v.is_finite());
-    if values.is_empty() {
-        return or;
-    }
-    let middle = values.len() / 2;
-    base::sort_numbers(&mut values);
-    values[middle]
+    base::median(values).unwrap_or(or)
 }
 
 impl Habit {

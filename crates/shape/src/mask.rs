@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3};
 use crate::edit::{Mirror, ViewPlane};
 use crate::outcome::Why;
 
-/// The longer side of the mask, pixels. R of the paper is in pixels: 10 of 48 give a crown about 0.4 as deep as broad.
+/// The longer side of the mask, pixels. R of the VR paper is in pixels: 10 of 48 give a crown about 0.4 as deep as broad.
 const SIDE: usize = 48;
-/// The paper's R and k: radius of a marker's ball far inside, and how fast it falls towards the edge.
+/// Its R and k: radius of a marker's ball far inside, and how fast it falls towards the edge.
 const RADIUS_PX: f64 = 10.0;
 const FALL: f64 = 0.4;
 
@@ -111,7 +111,7 @@ impl Mask {
     /// A marker for every masked pixel, `density` of them in the mean, each uniform in a ball around the pixel's middle
     /// of radius `r(n) = 2 R / (1 + e^(k n))`, n the unmasked pixels of the 5 x 5 around it.
     ///
-    /// Those that would be seen outside the outline are drawn again, at last set on the pixel: the paper's balls stand
+    /// Those that would be seen outside the outline are drawn again, at last set on the pixel: the VR paper's balls stand
     /// out beyond the line that was drawn.
     pub(crate) fn markers(&self, density: f64, depth: f64, seed: Seed) -> Vec<DVec3> {
         let mut markers = Vec::new();

@@ -76,8 +76,8 @@ pub struct Evaluator {
     preview: bool,
     /// Of a preview: what the drawing was taken for before this stroke, if it was taken for something.
     taken: Option<Taken>,
-    /// See [`crate::SceneEvaluator::set_looking`].
-    pub(crate) looking: bool,
+    /// See [`crate::SceneEvaluator::set_previewing`].
+    pub(crate) previewing: bool,
     /// See [`crate::SceneEvaluator::set_measuring_later`].
     pub(crate) later: bool,
 }
@@ -89,7 +89,7 @@ const MANY: usize = 512;
 const SEEN_AT_ONCE: usize = 2_500;
 
 /// A coarser copy of a plant of very many organs, and how to skin it: for a preview.
-fn coarse_look(plant: &Plant, skin: &SkinSpec) -> Option<(Plant, SkinSpec)> {
+fn coarse_preview(plant: &Plant, skin: &SkinSpec) -> Option<(Plant, SkinSpec)> {
     let level = plant.organs.len().div_ceil(SEEN_AT_ONCE).next_power_of_two().ilog2();
     (level > 0).then(|| coarser(plant, skin, level))
 }
@@ -139,14 +139,14 @@ fn taken(reading: &Reading) -> Option<Taken> {
 }
 
 impl Evaluator {
-    /// An evaluator for a stroke that is still being drawn: faster, and no more than a look. Strokes keep the class that
+    /// An evaluator for a stroke that is still being drawn: faster, and no more than a preview. Strokes keep the class that
     /// they had, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
     pub fn previewing() -> Self {
         Self { preview: true, shapes: KeptShapes::loose(), ..Self::default() }
     }
 
     /// Takes over what another evaluator found in this drawing, if that is what it made last: strokes have the class there
-    /// that a look keeps. Whether it did.
+    /// that a preview keeps. Whether it did.
     pub fn follow(&mut self, other: &Self, drawing: &Drawing) -> bool {
         let same = other.strokes.as_ref().is_some_and(|k| k.from.strokes == drawing.strokes);
         if same {
@@ -368,7 +368,7 @@ impl Evaluator {
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
         let mut shapes = core::mem::take(&mut self.shapes);
-        let coarse = self.plant().filter(|_| self.preview).and_then(|plant| coarse_look(plant, skin));
+        let coarse = self.plant().filter(|_| self.preview).and_then(|plant| coarse_preview(plant, skin));
         let plant = coarse.as_ref().map(|(copy, _)| copy).or_else(|| self.plant());
         let drawn = coarse.as_ref().map_or(skin, |(_, coarser)| coarser);
         let meshed = plant.map(|plant| {
@@ -439,7 +439,7 @@ impl Evaluator {
             timings_ms: TimingsMs::from_report(&report),
             fidelity: plant.value.1.unwrap_or_default(),
             readings: ReadingReport::of(&reading.value),
-            digest: if self.preview || self.looking { String::new() } else { shown.digest_hex() },
+            digest: if self.preview || self.previewing { String::new() } else { shown.digest_hex() },
             edits: told.to_vec(),
             ..ItemReport::default()
         }
@@ -576,22 +576,22 @@ mod tests {
     #[test]
     fn a_preview_keeps_classes_and_ends_in_the_same_plant() {
         let (mut d, o) = (drawing(), SketchOptions::default());
-        let mut look = Evaluator::previewing();
+        let mut preview = Evaluator::previewing();
         let run = Run::plain();
-        look.update(&d, &o, Seed::new(1), &run).unwrap();
+        preview.update(&d, &o, Seed::new(1), &run).unwrap();
         d.strokes.push(d.strokes[1].clone());
         for p in &mut d.strokes[2].samples {
             p.at = DVec2::new(-p.at.x, p.at.y + 3.0);
         }
-        let item = look.update(&d, &o, Seed::new(1), &run).unwrap();
+        let item = preview.update(&d, &o, Seed::new(1), &run).unwrap();
         assert_eq!((item.strokes.len(), item.digest.as_str()), (3, ""));
         let mut full = Evaluator::default();
         let whole = full.update(&d, &o, Seed::new(1), &run).unwrap();
         assert_eq!(item.counts.leaves, whole.counts.leaves);
-        assert_eq!(look.front(), full.front());
+        assert_eq!(preview.front(), full.front());
         // Another first stroke is unknown again.
         d.strokes[0].samples.truncate(20);
-        assert!(look.update(&d, &o, Seed::new(1), &run).is_ok());
+        assert!(preview.update(&d, &o, Seed::new(1), &run).is_ok());
     }
 
     #[test]

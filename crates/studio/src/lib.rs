@@ -25,9 +25,11 @@ mod made;
 mod make;
 mod motion;
 mod opening;
+mod refusal;
 mod report;
 mod scanned;
 mod scene;
+mod schemas;
 mod seedling;
 mod shaping;
 mod shoot;
@@ -51,16 +53,17 @@ pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
+pub use refusal::Refusal;
 pub use report::{
     Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
     REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, StrokeReport, TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    PlantLevel, SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema,
-    material_schema, scene_model, sketch_schema, skin_schema, standing, standing_at, tree_settings,
-    tree_spec,
+    PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,
+    tree_settings, tree_spec,
 };
+pub use schemas::{flower_schema, leaf_schema, material_schema, sketch_schema, skin_schema};
 pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};

@@ -8,7 +8,7 @@ use glam::DVec3;
 use leaf::{LeafPaint, LeafSpec, ScanLeaf, ScanSpec};
 use plant::{AxisKind, NodeId, Plant, Shape, Sheet, Vein, Venation};
 
-use crate::leaves::{LeafError, LeafOptions, add_leaf, area, finish};
+use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 
@@ -65,7 +65,7 @@ pub fn make_leaf_from_scan(
         surface: "scan".into(),
         rows: rows as u64,
         length_mm: 1e3 * geom::polyline_length3(&line),
-        area_mm2: 1e6 * area(blade),
+        area_mm2: 1e6 * blade.area(),
         veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
         blade: FaceCounts { vertices: blade.positions.len() as u64, faces: mesh.blade_faces as u64 },
         fit_error: LeafFit { explained: found.explained, ..LeafFit::of(&found.distances) },

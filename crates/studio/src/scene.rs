@@ -2,132 +2,35 @@
 //!
 //! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
 
+mod error;
+
 use std::ops::Range;
 use std::sync::Arc;
 
-use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
-use bloom::FlowerSpec;
+use base::{Cancelled, Report, Run, Seed};
 use document::{
     Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
     SketchCommand, SketchSettings, TreeSettings,
 };
-use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
+use formats::{MarksAxes, read_marks, read_vein_graph};
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{Copies, MaterialId, Model, Standing};
 use plant::{AxisId, Plant};
-use sketch::SketchSpec;
-use skin::{Layout, OrganMaterial, SkinSpec, Worn};
-use spec::Spec;
+use skin::{Layout, SkinSpec, Worn};
 
+pub use self::error::SceneError;
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower};
 use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
 use crate::made::{MadePlant, coarse};
-use crate::make::{MakeError, SketchOptions, worn};
-use crate::opening::{OpeningError, OpeningPlant};
+use crate::make::{SketchOptions, worn};
+use crate::opening::OpeningPlant;
 use crate::report::ItemReport;
 use crate::template::LeafTemplate;
-use crate::trees::{TreeError, TreeEvaluator, TreeOptions};
-
-/// Why a plant of a scene could not be made.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SceneError {
-    /// The drawing makes no plant.
-    #[error(transparent)]
-    Sketch(#[from] MakeError),
-    /// Its flowers do not open.
-    #[error(transparent)]
-    Opening(#[from] OpeningError),
-    /// The tree does not grow.
-    #[error(transparent)]
-    Tree(TreeError),
-    /// The leaf's file cannot be read.
-    #[error(transparent)]
-    File(#[from] LeafFileError),
-    /// The leaf's veins make no marks.
-    #[error(transparent)]
-    Graph(#[from] leaf::GraphError),
-    /// The marks make no leaf.
-    #[error(transparent)]
-    Leaf(LeafError),
-    /// The plant whose leaf is borne has no leaf.
-    #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
-    Lender(String),
-    /// A coarser copy was asked for of what is not made.
-    #[error("the plant \"{0}\" has not been made yet")]
-    NotMade(String),
-    /// The plants that are shown already take as many bytes as they may.
-    #[error(
-        "there is no room for it: the plants of this scene already take {} MB of memory; hide or delete some of them",
-        .0 >> 20
-    )]
-    NoRoom(usize),
-    /// The user asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// It would have been too much.
-    #[error(transparent)]
-    OverBudget(#[from] OverBudget),
-}
-
-impl SceneError {
-    /// Whether it is no fault: the person asked to stop.
-    pub fn is_cancelled(&self) -> bool {
-        matches!(
-            self,
-            Self::Cancelled(_)
-                | Self::Sketch(MakeError::Cancelled(_))
-                | Self::Opening(OpeningError::Make(MakeError::Cancelled(_)))
-                | Self::Tree(TreeError::Cancelled(_))
-                | Self::Leaf(LeafError::Cancelled(_))
-        )
-    }
-
-    /// Whether there is nothing to be made yet: an empty sheet.
-    pub fn is_bare(&self) -> bool {
-        matches!(self, Self::Sketch(MakeError::NoStrokes { .. }))
-    }
-}
-
-impl From<TreeError> for SceneError {
-    fn from(e: TreeError) -> Self {
-        if let TreeError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Tree(e) }
-    }
-}
-
-impl From<Stopped> for SceneError {
-    fn from(stopped: Stopped) -> Self {
-        match stopped {
-            Stopped::Cancelled(c) => Self::Cancelled(c),
-            Stopped::OverBudget(o) => Self::OverBudget(o),
-        }
-    }
-}
-
-impl From<LeafError> for SceneError {
-    fn from(e: LeafError) -> Self {
-        if let LeafError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Leaf(e) }
-    }
-}
-
-base::coded!(SceneError {
-    Self::Lender(name) => "lender-without-leaf" { name },
-    Self::NotMade(name) => "plant-not-made" { name },
-    Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
-} wraps {
-    Self::Sketch(e) => e, MakeError;
-    Self::Opening(e) => e, OpeningError;
-    Self::Tree(e) => e, TreeError;
-    Self::File(e) => e, LeafFileError;
-    Self::Graph(e) => e, leaf::GraphError;
-    Self::Leaf(e) => e, LeafError;
-    Self::Cancelled(e) => e, Cancelled;
-    Self::OverBudget(e) => e, OverBudget;
-});
+use crate::trees::{TreeEvaluator, TreeOptions};
 
 /// What was made of one plant.
 #[derive(Clone, Copy, Debug)]
@@ -209,7 +112,7 @@ impl ScenePlant<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
     wind: bool,
-    looking: bool,
+    previewing: bool,
     later: bool,
     plants: base::LiteMap<PlantId, Kept>,
     /// The last number that was given to a model.
@@ -299,14 +202,14 @@ impl Kept {
     /// What a plant is made with, and whether it was left half-way the last time.
     ///
     /// Until an update has succeeded it is no result, not even of what was before.
-    fn begin(&mut self, plant: &DocumentPlant, (looking, later): (bool, bool)) -> (&mut Made, bool) {
+    fn begin(&mut self, plant: &DocumentPlant, (previewing, later): (bool, bool)) -> (&mut Made, bool) {
         let word = plant.settings().maker.word();
         let made = Arc::make_mut(&mut self.made);
         if made.maker != word {
             // Of a document in which this number was another plant's.
             *made = Made { maker: word, ..Made::default() };
         }
-        (made.sketch.looking, made.tree.looking) = (looking, looking);
+        (made.sketch.previewing, made.tree.previewing) = (previewing, previewing);
         made.sketch.later = later;
         let before = made.from.take();
         (made, before.is_none())
@@ -319,10 +222,10 @@ impl SceneEvaluator {
         self.wind = wind;
     }
 
-    /// Whether updates are looks while a hand is at work: reports of trees and drawings then have no digest, which is a
+    /// Whether updates are previews while somebody shapes: reports of trees and drawings then have no digest, which is a
     /// third of what a large tree's meshes take. Default: no.
-    pub fn set_looking(&mut self, looking: bool) {
-        self.looking = looking;
+    pub fn set_previewing(&mut self, previewing: bool) {
+        self.previewing = previewing;
     }
 
     /// Whether how true a plant is to a drawing of very many strokes is left out of reports until [`Self::measure`] is asked,
@@ -355,7 +258,7 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(()) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
         let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
-        let (made, anew) = kept.begin(plant, (self.looking, self.later));
+        let (made, anew) = kept.begin(plant, (self.previewing, self.later));
         let done = made.update(plant, from, anew, run)?;
         // A drawing in which nothing changed but how its photograph shows keeps its model.
         if !done.is_empty() {
@@ -371,7 +274,7 @@ impl SceneEvaluator {
     ///
     /// # Errors
     /// [`SceneError`]; there is none of a plant that is not in the document.
-    pub fn look(
+    pub fn preview(
         &mut self,
         id: PlantId,
         document: &Document,
@@ -380,8 +283,8 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(None) };
         let Maker::Tree(tree) = &plant.settings().maker else { return Ok(None) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(None) };
-        let (made, _) = self.plants.entry(id).or_default().begin(plant, (self.looking, self.later));
-        Ok(made.tree.look(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
+        let (made, _) = self.plants.entry(id).or_default().begin(plant, (self.previewing, self.later));
+        Ok(made.tree.preview(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
     }
 
     /// What a plant is to be made from; none where it is made, of itself or of one like it.
@@ -396,10 +299,10 @@ impl SceneEvaluator {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let looking = self.looking;
+        let previewing = self.previewing;
         let from = MadeFrom::of(plant, leaf, self.wind);
         let is_it =
-            |k: &Kept| k.made.from.as_ref() == Some(&from) && (looking || !k.made.item.digest.is_empty());
+            |k: &Kept| k.made.from.as_ref() == Some(&from) && (previewing || !k.made.item.digest.is_empty());
         let own = self.plants.get(&id).is_some_and(is_it);
         let same = if own { None } else { self.plants.values().find(|k| is_it(k)) };
         let same = same.map(|k| Arc::clone(&k.made));
@@ -693,44 +596,6 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
         obstacles,
         ..TreeSettings::default()
     }
-}
-
-/// The JSON Schema of what can be set of a measured leaf.
-pub fn leaf_schema() -> &'static serde_json::Value {
-    LeafSpec::schema()
-}
-
-/// The JSON Schema of what can be set of a drawing.
-pub fn sketch_schema() -> &'static serde_json::Value {
-    SketchSpec::schema()
-}
-
-/// The JSON Schema of what can be set of the surface of a plant.
-pub fn skin_schema() -> &'static serde_json::Value {
-    SkinSpec::schema()
-}
-
-/// The JSON Schema of a material of leaves, petals or sepals.
-pub fn material_schema() -> &'static serde_json::Value {
-    static PART: std::sync::OnceLock<serde_json::Value> = std::sync::OnceLock::new();
-    PART.get_or_init(|| {
-        // What it refers to lies beside it in the schema of a file of materials.
-        let mut part = OrganMaterial::schema().pointer(OrganMaterial::PART).cloned().unwrap_or_default();
-        part["$defs"] = OrganMaterial::schema()["$defs"].clone();
-        if let Some(parts) = part["$defs"].as_object_mut() {
-            parts.retain(|name, _| name != "OrganMaterial" && name != "StrokeWear");
-        }
-        part
-    })
-}
-
-/// The JSON Schema of what can be set of a flower.
-///
-/// ```
-/// assert_eq!(burgeon::flower_schema()["properties"]["opening_days"]["x-unit"], "d");
-/// ```
-pub fn flower_schema() -> &'static serde_json::Value {
-    FlowerSpec::schema()
 }
 
 /// The marks of a leaf of a document, and how it is made.

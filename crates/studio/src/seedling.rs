@@ -10,7 +10,7 @@ use mesh::{Model, TriMesh};
 use plant::{AxisKind, NodeId, Plant, Shape};
 use serde::Serialize;
 
-use crate::leaves::{LeafError, LeafOptions, add_leaf, area, finish};
+use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::scanned::sheet_of;
 
@@ -164,7 +164,7 @@ fn add_organ(
     };
     fit.blade_mm = 1e3 * geom::polyline_length3(&found.midrib());
     fit.width_mm = 1e3 * found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
-    fit.area_mm2 = 1e6 * area(&mesh);
+    fit.area_mm2 = 1e6 * mesh.area();
     if let Some((sheet, frame)) = sheet.framed() {
         let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
         add_leaf(plant, shape, frame, bearer, options.leaf.paint([1.0; 3]), key);

@@ -5,7 +5,7 @@ use leaf::{RayLeaf, Rays};
 use plant::{Paint, Plant, VeinShade};
 use skin::LeafColours;
 
-use crate::leaves::{LeafError, LeafOptions, area, bear, finish};
+use crate::leaves::{LeafError, LeafOptions, bear, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 
@@ -61,7 +61,7 @@ pub fn make_ray_leaf(
         surface: options.spec.surface.word().into(),
         rows: rays.rays.len() as u64,
         length_mm: 1e3 * rays.length(),
-        area_mm2: 1e6 * area(&meshes.surface),
+        area_mm2: 1e6 * meshes.surface.area(),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
         fit_error: LeafFit::of(&distances),

@@ -1,13 +1,8 @@
 //! Why something was not done.
 
-use core::fmt::Display;
-use std::collections::BTreeMap;
-
 use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
-use burgeon::{Coded, SceneError, Slip, SplitError, Stopped, Told, TreeError};
-use schemars::JsonSchema;
-use serde::Serialize;
+use burgeon::{SceneError, Slip, SplitError, Stopped, TreeError};
 
 /// Why a workspace refused; it is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +47,7 @@ pub enum WorkspaceError {
     /// There is nothing to export.
     #[error("there is no plant yet: draw at least one line, or add a tree, a leaf or a flower")]
     NothingMade,
-    /// A model that is only looked at is no plant and no drawing.
+    /// A model that is only shown is no plant and no drawing.
     #[error("models are not written as {0:?}")]
     Format(&'static str),
     /// The tool needs a plant.
@@ -173,39 +168,3 @@ burgeon::coded!(WorkspaceError {
     Self::Write(e) => e, WriteError;
     Self::Archive(e) => e, ArchiveError;
 });
-
-/// Why something was not done, for a shell: words for people in English, and what another language needs for its own.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Refusal {
-    /// A word in kebab-case that never changes its meaning.
-    pub code: String,
-    /// Names and values, as people read them.
-    pub fields: BTreeMap<String, String>,
-    /// Those of the fields that are refusals themselves.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
-    pub causes: BTreeMap<String, Self>,
-    /// The sentence in English.
-    pub message: String,
-}
-
-/// Not collected, which would sort them first.
-fn in_order<V>(rows: impl Iterator<Item = (String, V)>) -> BTreeMap<String, V> {
-    let mut map = BTreeMap::new();
-    map.extend(rows);
-    map
-}
-
-impl Refusal {
-    /// Of any error with a code.
-    pub fn of(error: &(impl Coded + Display)) -> Self {
-        Self::told(error.told(), error.to_string())
-    }
-
-    fn told(Told { code, fields, causes }: Told, message: String) -> Self {
-        let sentence = |name| fields.get(name).cloned().unwrap_or_default();
-        let causes = causes.into_iter().map(|(name, told)| (name.into(), Self::told(told, sentence(name))));
-        let causes = in_order(causes);
-        let fields = in_order(fields.into_iter().map(|(name, value)| (name.into(), value)));
-        Self { code: code.into(), fields, causes, message }
-    }
-}

@@ -6,14 +6,15 @@ use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
 use burgeon::{
-    Evaluator, ItemReport, LiteMap, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key,
+    Evaluator, ItemReport, LiteMap, MakeError, Refusal, Run, SceneError, Seed, SketchOptions, set_of,
+    sort_by_key,
 };
 
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
-use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, WarningView, Workspace, WorkspaceError};
+use crate::{Column, ObstacleView, PlantView, SceneView, WarningView, Workspace, WorkspaceError};
 
-/// Most trees that are looked at before they are made: of a wood the first are enough to see that it comes.
-const LOOKS: usize = 8;
+/// Most trees that are previewed before they are made: of a wood the first are enough to see that it comes.
+const MOST_PREVIEWED: usize = 8;
 
 impl Workspace {
     /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
@@ -36,25 +37,25 @@ impl Workspace {
                 run.cancel.forget();
                 let outcome = if drawn && Some(id) == current {
                     self.previewed = true;
-                    let look = self.preview.get_or_insert_with(Evaluator::previewing);
+                    let evaluator = self.preview.get_or_insert_with(Evaluator::previewing);
                     let mut drawing = plant.drawing();
                     // With each stroke anew: what came before may be understood otherwise by now.
                     let now = Some((id, self.editor.revision()));
                     if self.followed != now
-                        && self.scene.evaluator(id).is_some_and(|whole| look.follow(whole, &drawing))
+                        && self.scene.evaluator(id).is_some_and(|whole| evaluator.follow(whole, &drawing))
                     {
                         self.followed = now;
                     }
                     drawing.strokes.extend(self.draft.clone());
-                    let looked = preview(look, plant, &drawing, run);
-                    looked.map(|item| self.preview_item = Some(item)).map_err(SceneError::from)
+                    let item = preview(evaluator, plant, &drawing, run);
+                    item.map(|item| self.preview_item = Some(item)).map_err(SceneError::from)
                 } else if drawn && self.outcomes.contains_key(&id) {
                     continue; // the pen goes first
                 } else if let Some((_, shaped)) = gesture.as_ref().filter(|(held, _)| *held == id) {
-                    self.scene.set_looking(self.held.as_ref().is_some_and(|h| h.large));
-                    let looked = self.scene.update(id, shaped, run);
-                    self.scene.set_looking(false);
-                    looked
+                    self.scene.set_previewing(self.held.as_ref().is_some_and(|h| h.large));
+                    let updated = self.scene.update(id, shaped, run);
+                    self.scene.set_previewing(false);
+                    updated
                 } else if self.scene.get(id).is_none() && self.kept_bytes() > self.kept.most {
                     Err(SceneError::NoRoom(self.kept_bytes()))
                 } else {
@@ -101,11 +102,11 @@ impl Workspace {
     /// Trees that [`Workspace::evaluate`] is going to grow, much coarser, if they are large: they are seen long before the
     /// whole is there. Their columns can be asked for until the next evaluation, which grows nothing again.
     ///
-    /// They are in no document, file or report. Empty while a hand draws or shapes, which has previews of its own.
+    /// They are in no document, file or report. Empty while somebody draws or shapes, which has previews of its own.
     ///
     /// # Errors
     /// [`WorkspaceError::Cancelled`]. What else is wrong with a plant, [`Workspace::evaluate`] says.
-    pub fn look(&mut self, run: &Run<'_>) -> Result<Vec<PlantView>, WorkspaceError> {
+    pub fn preview_trees(&mut self, run: &Run<'_>) -> Result<Vec<PlantView>, WorkspaceError> {
         self.coarse.clear();
         if self.guest.is_some() || self.draft.is_some() || self.held.is_some() {
             return Ok(Vec::new());
@@ -115,10 +116,10 @@ impl Workspace {
         for plant in document.plants().iter().filter(|p| !p.settings().hidden) {
             let id = plant.id();
             let full = self.scene.get(id).is_none() && self.kept_bytes() > self.kept.most;
-            if full || views.len() == LOOKS {
+            if full || views.len() == MOST_PREVIEWED {
                 continue;
             }
-            let model = match self.scene.look(id, document, run) {
+            let model = match self.scene.preview(id, document, run) {
                 Ok(Some(model)) => model,
                 Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
                 Ok(None) | Err(_) => continue,
@@ -144,7 +145,7 @@ impl Workspace {
             let id = plant.id();
             let previewed = self.previewed && self.current() == Some(id);
             let model = self.model(id);
-            // None for what the page shows nothing of, or a look: whatever comes next is new to it.
+            // None for what the page shows nothing of, or a preview: whatever comes next is new to it.
             let shown = !previewed && model.is_some();
             let revision = self.scene.get(id).map(|p| self.levels.name(id, p.revision)).filter(|_| shown);
             let mut seen =
@@ -236,7 +237,7 @@ impl Workspace {
         self.textures.get(number).map_or(&[], |t| &t.pixels)
     }
 
-    /// Makes the current plant of another seed for a look, a drawing with fewer triangles;
+    /// Makes the current plant of another seed for a preview, a drawing with fewer triangles;
     /// [`Workspace::end_variant`] goes back.
     ///
     /// # Errors
@@ -265,7 +266,7 @@ impl Workspace {
     }
 
     /// Pairs of points of the current plant's axes: x, y, z and order of each; then of its blades, from root to tip,
-    /// with "order" 100 (leaves) or 101 (petals). Empty while a model file is looked at.
+    /// with "order" 100 (leaves) or 101 (petals). Empty while a model file is shown.
     pub fn skeleton(&self) -> Vec<f32> {
         let id = self.current().filter(|&id| self.guest.is_none() && self.model(id).is_some());
         let previewed = self.preview.as_ref().filter(|_| self.previewed).and_then(Evaluator::plant);
@@ -337,7 +338,7 @@ impl Workspace {
 
 /// The plant of a stroke that is still being drawn.
 fn preview(
-    look: &mut Evaluator,
+    evaluator: &mut Evaluator,
     plant: &DocumentPlant,
     drawing: &Drawing,
     run: &Run<'_>,
@@ -345,5 +346,5 @@ fn preview(
     let mut options = SketchOptions::of_plant(plant);
     // Fast while the pen is down, fine when it is lifted.
     options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
-    look.update(drawing, &options, plant.settings().seed, run)
+    evaluator.update(drawing, &options, plant.settings().seed, run)
 }

@@ -1,4 +1,4 @@
-//! An export that is looked at before it is written: its meshes at one level of detail, and figures that were counted.
+//! An export that is shown before it is written: its meshes at one level of detail, and figures that were counted.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::export::{Level, MOST_LEVELS, chosen, made, packed, scene_files, written};
-use crate::looked::Looked;
+use crate::export_preview::ExportPreview;
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
 
@@ -61,63 +61,63 @@ pub struct ExportedPlant {
 
 impl Workspace {
     /// What [`Workspace::export`] would write of one level (0 to 3), to be seen and counted. `wanted.levels` is not read.
-    /// Its meshes stay until the next look or [`Workspace::end_look`].
+    /// Its meshes stay until the next preview or [`Workspace::end_preview`].
     ///
     /// # Cost
     /// That of the export: the file is written, counted and thrown away.
     ///
     /// # Errors
     /// As [`Workspace::export`]; [`WorkspaceError::Format`] for a format that holds no models.
-    pub fn look_at_export(
+    pub fn preview_export(
         &mut self,
         wanted: &ExportRequest,
         level: u32,
         run: &Run<'_>,
     ) -> Result<ExportView, WorkspaceError> {
         let (format, spec) = (wanted.format.model()?, wanted.spec());
-        let mut looked = std::mem::take(&mut self.looked).unwrap_or_default();
-        looked.models.clear();
+        let mut preview = std::mem::take(&mut self.export_preview).unwrap_or_default();
+        preview.models.clear();
         let level = level.min(MOST_LEVELS - 1);
         if let Some(model) = &self.guest {
             let files = written(model, format, "plant", &spec)?;
             let bytes = packed(wanted.format, files)?.len();
-            looked.models.push(model.clone());
-            return self.counted(looked, (0, bytes), format, &[(GUEST, 0)]);
+            preview.models.push(model.clone());
+            return self.counted(preview, (0, bytes), format, &[(GUEST, 0)]);
         }
         let only = if wanted.whole { None } else { Some(self.must()?) };
         let document = self.editor.document();
         let scene = if wanted.blown() {
             let now = self.editor.revision();
-            if looked.blown.as_ref().is_none_or(|(then, _)| *then != now) {
+            if preview.blown.as_ref().is_none_or(|(then, _)| *then != now) {
                 let mut aside = self.scene.aside(document.plants().iter().filter(chosen(only)));
                 aside.set_wind(true);
-                looked.blown = Some((now, aside));
+                preview.blown = Some((now, aside));
             }
-            looked.blown.as_mut().map_or(&mut self.scene, |(_, aside)| aside)
+            preview.blown.as_mut().map_or(&mut self.scene, |(_, aside)| aside)
         } else {
-            looked.blown = None;
+            preview.blown = None;
             &mut self.scene
         };
         let plants = made(scene, document, only, run)?;
         let at = Level::of(scene, document, &plants, level, run)?;
         let standing = at.standing(&plants, only.is_some());
-        let files = scene_files(document.name(), &standing, format, "plant", &spec, &mut looked.pngs)?;
+        let files = scene_files(document.name(), &standing, format, "plant", &spec, &mut preview.pngs)?;
         let bytes = packed(wanted.format, files)?.len();
         let rows: Vec<_> = plants.iter().zip(&at.rows).map(|(p, &row)| (p.id(), row)).collect();
-        looked.models = at.models;
-        self.counted(looked, (level, bytes), format, &rows)
+        preview.models = at.models;
+        self.counted(preview, (level, bytes), format, &rows)
     }
 
-    /// The figures, and the views of the models that were looked at.
+    /// The figures, and the views of the models that are shown.
     fn counted(
         &mut self,
-        mut looked: Looked,
+        mut preview: ExportPreview,
         (level, file): (u32, usize),
         format: ModelFormat,
         rows: &[(PlantId, usize)],
     ) -> Result<ExportView, WorkspaceError> {
         let mut textures = Vec::new();
-        let models = looked.models.iter().flat_map(|m| &m.materials);
+        let models = preview.models.iter().flat_map(|m| &m.materials);
         for texture in models.flat_map(|m| pictures(m, format)) {
             if !textures.contains(&texture) {
                 textures.push(texture);
@@ -125,12 +125,12 @@ impl Workspace {
         }
         let mut texture_bytes = 0;
         for texture in &textures {
-            texture_bytes += looked.pngs.png(texture)?.len() as u64;
+            texture_bytes += preview.pngs.png(texture)?.len() as u64;
         }
         let count = u32::try_from(textures.len()).unwrap_or(u32::MAX);
-        let (parts, draws) = figures(&looked.models, rows, format);
-        let models = looked.models.iter().map(|m| PlantView::of(GUEST, m, &mut self.textures)).collect();
-        self.looked = Some(looked);
+        let (parts, draws) = figures(&preview.models, rows, format);
+        let models = preview.models.iter().map(|m| PlantView::of(GUEST, m, &mut self.textures)).collect();
+        self.export_preview = Some(preview);
         Ok(ExportView {
             level,
             file_bytes: file as u64,
@@ -143,21 +143,21 @@ impl Workspace {
         })
     }
 
-    /// A column of a mesh of the last look at an export; empty for what is not there.
+    /// A column of a mesh of the last preview of an export; empty for what is not there.
     pub fn exported_column(&self, model: usize, part: usize, column: Column) -> &[f32] {
-        let model = self.looked.as_ref().and_then(|l| l.models.get(model));
+        let model = self.export_preview.as_ref().and_then(|l| l.models.get(model));
         model.and_then(|m| m.parts.get(part)).map_or(&[], |p| column.of(&p.mesh))
     }
 
-    /// Three indices a triangle of a mesh of the last look at an export.
+    /// Three indices a triangle of a mesh of the last preview of an export.
     pub fn exported_indices(&self, model: usize, part: usize) -> &[u32] {
-        let model = self.looked.as_ref().and_then(|l| l.models.get(model));
+        let model = self.export_preview.as_ref().and_then(|l| l.models.get(model));
         model.and_then(|m| m.parts.get(part)).map_or(&[], |p| p.mesh.triangles.as_flattened())
     }
 
-    /// Forgets the export that was looked at.
-    pub fn end_look(&mut self) {
-        self.looked = None;
+    /// Forgets the export that was shown.
+    pub fn end_preview(&mut self) {
+        self.export_preview = None;
     }
 }
 
@@ -268,7 +268,7 @@ mod tests {
         let mut before = [u64::MAX; 5];
         for (wind, level) in [(false, 0), (true, 0), (true, 1), (true, 2)] {
             let wanted = ExportRequest { whole: true, wind, levels: level + 1, ..ExportRequest::default() };
-            let view = s.look_at_export(&wanted, level, &Run::plain()).unwrap();
+            let view = s.preview_export(&wanted, level, &Run::plain()).unwrap();
             let files = s.export(&wanted, &Run::plain()).unwrap();
             let (_, file) = &files[level as usize];
             assert_eq!(told(&view), held(file), "wind {wind}, level {level}");
@@ -286,13 +286,13 @@ mod tests {
             }
             before = now;
         }
-        s.end_look();
+        s.end_preview();
         assert!(s.exported_column(0, 0, Column::Positions).is_empty());
         // Hidden plants are not written; one plant alone is.
         s.run(PlantCommand::Hide(true).of(bush)).unwrap();
         let all = ExportRequest { whole: true, ..ExportRequest::default() };
-        assert_eq!(s.look_at_export(&all, 0, &Run::plain()).unwrap().plants.len(), 3);
-        let one = s.look_at_export(&ExportRequest::default(), 0, &Run::plain()).unwrap();
+        assert_eq!(s.preview_export(&all, 0, &Run::plain()).unwrap().plants.len(), 3);
+        let one = s.preview_export(&ExportRequest::default(), 0, &Run::plain()).unwrap();
         assert_eq!(one.plants.len(), 1);
     }
 
@@ -305,7 +305,7 @@ mod tests {
         s.run(SceneCommand::Duplicate(lily, DVec3::X)).unwrap();
         let mut look = |format, wind| {
             let wanted = ExportRequest { format, wind, whole: true, ..ExportRequest::default() };
-            let view = s.look_at_export(&wanted, 0, &Run::plain()).unwrap();
+            let view = s.preview_export(&wanted, 0, &Run::plain()).unwrap();
             let saved = packed(format, s.export(&wanted, &Run::plain()).unwrap()).unwrap();
             assert_eq!(view.file_bytes, saved.len() as u64, "{format:?}");
             view
@@ -320,6 +320,6 @@ mod tests {
         assert_eq!(vertices(&stl), 3 * told(&stl)[0]);
         assert_eq!(vertices(&ply), vertices(&glb));
         let mtg = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
-        assert!(matches!(s.look_at_export(&mtg, 0, &Run::plain()), Err(WorkspaceError::Format("mtg"))));
+        assert!(matches!(s.preview_export(&mtg, 0, &Run::plain()), Err(WorkspaceError::Format("mtg"))));
     }
 }

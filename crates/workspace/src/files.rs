@@ -27,7 +27,7 @@ pub enum FileKind {
     Project,
     /// Took the document's place.
     Drawing,
-    /// Is looked at.
+    /// Is shown.
     Model,
     /// Marks that went to a leaf.
     Leaf,
@@ -63,7 +63,7 @@ const OFFERED: usize = 1000;
 
 impl Workspace {
     /// Opens any file that is read. A project or drawing takes the document's place (one step of undo, or none with
-    /// `fresh`), a model is only looked at. `row` picks a drawing of an ndjson file.
+    /// `fresh`), a model is only shown. `row` picks a drawing of an ndjson file.
     ///
     /// # Errors
     /// [`WorkspaceError`]: what is wrong with the file and what to do.
@@ -105,7 +105,7 @@ impl Workspace {
             self.run(FlowerCommand::SetLaw(Some(Arc::new(law))).of(self.must()?))?;
             Ok(Opened::new(FileKind::Law, stem))
         } else if let Some(format) = model {
-            self.look_at(format, stem, bytes)
+            self.show_model(format, stem, bytes)
         } else if let Some(format) = drawing.or_else(|| DrawingFormat::sniff(bytes)) {
             let (drawing, opened) = pick(bytes, format, stem, row)?;
             let document = Document::from_drawing(&drawing);
@@ -157,7 +157,12 @@ impl Workspace {
         Ok(())
     }
 
-    fn look_at(&mut self, format: ModelFormat, stem: &str, bytes: &[u8]) -> Result<Opened, WorkspaceError> {
+    fn show_model(
+        &mut self,
+        format: ModelFormat,
+        stem: &str,
+        bytes: &[u8],
+    ) -> Result<Opened, WorkspaceError> {
         let mut report = Report::default();
         let model = read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut report)?;
         let warnings = report.warnings.iter().map(ToString::to_string).collect();

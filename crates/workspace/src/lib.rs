@@ -7,15 +7,15 @@
 //! | `workspace` | [`Workspace`]: the document with its history, the plant that is chosen, the draft |
 //! | `files` | files in and out |
 //! | `export` | models and structures as files |
-//! | `exported` | exports that are looked at before they are written |
+//! | `exported` | exports that are shown before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
 //! | `levels`, `shown` | levels of detail for shells that draw little |
-//! | `record` | what hands did, as a file, and again |
+//! | `record` | gestures as a file, and their replay |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
 //! | `view` | what a shell shows of the plants |
-//! | `error` | [`WorkspaceError`], [`Refusal`] |
+//! | `error` | [`WorkspaceError`] |
 //!
 //! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
 
@@ -23,12 +23,12 @@ mod copies;
 mod error;
 mod evaluate;
 mod export;
+mod export_preview;
 mod exported;
 mod files;
 mod held;
 mod kept;
 mod levels;
-mod looked;
 mod record;
 mod scatter;
 mod shaping;
@@ -40,7 +40,7 @@ mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub use error::{Refusal, WorkspaceError};
+pub use error::WorkspaceError;
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};

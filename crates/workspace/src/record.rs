@@ -147,7 +147,7 @@ impl GestureRecord {
 }
 
 impl Workspace {
-    /// Does again what hands did. `saw` is told of each step once it is done.
+    /// Replays what was recorded. `saw` is told of each step once it is done.
     ///
     /// Guaranteed: the document that the same requests made, if plants were made again where the record says so. A gesture
     /// that the record does not end is let go without an edit. That the plant is the one of the record is for the caller to

@@ -7,13 +7,13 @@ use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::shape::ToolKind;
 use burgeon::skin::{OrganMaterial, Wearer};
-use burgeon::{Budget, Run, Seed, SketchOptions, formats};
+use burgeon::{Budget, Refusal, Run, Seed, SketchOptions, formats};
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::{
-    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, NewMaker, Refusal, Scatter, ShapeInput,
-    ShapeReach, ShapeStep, Workspace, WorkspaceError, packed,
+    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, NewMaker, Scatter, ShapeInput, ShapeReach,
+    ShapeStep, Workspace, WorkspaceError, packed,
 };
 
 mod hands;

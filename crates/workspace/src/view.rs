@@ -6,16 +6,16 @@ use std::sync::Arc;
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture, TriMesh};
 use burgeon::skin::SkinSpec;
-use burgeon::{FrontView, ItemReport, SceneError, Warning, set_of};
+use burgeon::{FrontView, ItemReport, Refusal, SceneError, Warning, set_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::{ObstacleView, Refusal};
+use crate::ObstacleView;
 
 /// Share of the triangles while a stroke is drawn.
 pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
 
-/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is looked at, another seed.
+/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is shown, another seed.
 pub const GUEST: PlantId = PlantId(u32::MAX);
 
 /// A column of vertices.
@@ -53,7 +53,7 @@ impl Column {
 pub struct SceneView {
     /// Of the document when it was made.
     pub revision: u64,
-    /// A model that is looked at instead.
+    /// A model that is shown instead.
     pub guest: Option<PlantView>,
     /// In the document's order.
     pub plants: Vec<PlantView>,
@@ -66,7 +66,7 @@ pub struct PlantView {
     pub id: PlantId,
     /// Its meshes are others than those of the last view.
     pub fresh: bool,
-    /// The name of its meshes: plants that have the same share them. None for what is only a look.
+    /// The name of its meshes: plants that have the same share them. None for what is only a preview.
     pub mesh: Option<u64>,
     /// Why it could not be made; what was made before stays.
     pub error: Option<Refusal>,

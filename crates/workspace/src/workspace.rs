@@ -15,9 +15,9 @@ use burgeon::{Evaluator, ItemReport, LiteMap, Preset, Run, SceneEvaluator, tree_
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::export_preview::ExportPreview;
 use crate::held::Held;
 use crate::kept::Kept;
-use crate::looked::Looked;
 use crate::shown::Levels;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
@@ -57,7 +57,7 @@ pub enum Action {
         /// The drawing.
         plant: PlantId,
     },
-    /// Looks at the scene again, not at a model.
+    /// Shows the scene again, not a model.
     CloseModel,
     /// Copies of a plant in many places.
     Scatter(Scatter),
@@ -101,21 +101,21 @@ pub struct Workspace {
     pub(crate) draft: Option<Stroke>,
     /// The current plant while a stroke is drawn.
     pub(crate) preview: Option<Evaluator>,
-    /// The plant and the revision whose classes the looks at a draft began with.
+    /// The plant and the revision whose classes the previews of a draft began with.
     pub(crate) followed: Option<(PlantId, u64)>,
     pub(crate) preview_item: Option<ItemReport>,
     pub(crate) previewed: bool,
-    /// A model file that is looked at instead of the scene.
+    /// A model file that is shown instead of the scene.
     pub(crate) guest: Option<Model>,
-    /// Another plant of the same description, looked at for a moment.
+    /// Another plant of the same description, shown for a moment.
     pub(crate) variant: Option<Model>,
     /// Trees that are still being made, much coarser.
     pub(crate) coarse: LiteMap<PlantId, Model>,
-    /// An export that is looked at before it is written.
-    pub(crate) looked: Option<Looked>,
+    /// An export that is shown before it is written.
+    pub(crate) export_preview: Option<ExportPreview>,
     /// What came of each plant at the last evaluation.
     pub(crate) outcomes: LiteMap<PlantId, Outcome>,
-    /// What each plant's meshes were made of in the last view: a revision, or a look.
+    /// What each plant's meshes were made of in the last view: a revision, or a preview.
     pub(crate) meshes: LiteMap<PlantId, Option<u64>>,
     pub(crate) kept: Kept,
     /// What is shown coarser than it was made.
@@ -476,7 +476,7 @@ impl Workspace {
         plant.strokes().get(plant.row(id)?).map(|s| &*s.stroke)
     }
 
-    /// The document changed, or another plant is looked at: what was held is let go.
+    /// The document changed, or another plant is shown: what was held is let go.
     pub(crate) fn let_go(&mut self) {
         self.held = None;
     }

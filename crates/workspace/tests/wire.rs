@@ -6,14 +6,14 @@ mod typescript;
 
 use std::fmt::Write as _;
 
-use burgeon::Coded;
 use burgeon::document::Command;
 use burgeon::shape::ToolKind;
 use burgeon::skin::OrganMaterial;
+use burgeon::{Coded, Refusal};
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use workspace::{
-    Action, DocumentState, ExportRequest, ExportView, GestureRecord, Opened, PenStyle, Refusal, SceneView,
+    Action, DocumentState, ExportRequest, ExportView, GestureRecord, Opened, PenStyle, SceneView,
     ShapeAnswer, ShapeInput, ShapeReach, WorkspaceError,
 };
 

@@ -108,7 +108,7 @@ pub(crate) struct BloomRunArgs {
     /// or leaf is used.
     #[arg(long, value_name = "FILE")]
     pub(crate) petal: Option<PathBuf>,
-    /// Edits by hand on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
+    /// Hand edits on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
     #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
     /// The law that sets the pace [default: a straight line; for a flower its own].
@@ -130,7 +130,7 @@ pub(crate) struct BloomRunArgs {
     #[arg(long, value_name = "D", allow_hyphen_values = true)]
     pub(crate) end_day: Option<f64>,
     /// Measure the shape of --day against a scan of that day, in the unit and with the up axis of the stages: mean over x,
-    /// y and z (the paper's error) and Euclidean distances both ways, in millimetres.
+    /// y and z (the error of Huai, Yang and Cai 2019) and Euclidean distances both ways, in millimetres.
     #[arg(long, value_name = "SCAN", requires = "day")]
     pub(crate) compare: Option<PathBuf>,
     /// Coordinates of the result: of the scanner, in which the plant is moved and turned as it was between scans, or of the

@@ -40,7 +40,7 @@ pub(crate) struct GrowArgs {
     pub(crate) points: PointsArgs,
     #[command(flatten)]
     pub(crate) surface: TreeSurfaceArgs,
-    /// Write each form of leaf once, and where its copies stand (`EXT_mesh_gpu_instancing`): a smaller .glb that is drawn
+    /// Write each leaf shape once, and where its copies stand (`EXT_mesh_gpu_instancing`): a smaller .glb that is drawn
     /// faster, for programs that know it.
     #[arg(long, help_heading = "Surface", conflicts_with_all = ["wind", "sway"])]
     pub(crate) instances: bool,

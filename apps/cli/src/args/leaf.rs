@@ -66,7 +66,7 @@ pub(crate) struct LeafArgs {
     /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) lods: u32,
-    /// Edits by hand on a whole plant (--plant), a JSON file; `burgeon shape --template` prints one.
+    /// Hand edits on a whole plant (--plant), a JSON file; `burgeon shape --template` prints one.
     #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
     /// Also make a picture.
@@ -175,7 +175,7 @@ pub(crate) struct LookArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Plant")]
 pub(crate) struct PlantArgs {
-    /// A plant with the leaves on one stem: the first file is the form of the lowest leaves.
+    /// A plant with the leaves on one stem: the first file is the shape of the lowest leaves.
     #[arg(long, conflicts_with = "days")]
     pub(crate) plant: bool,
     /// Number of leaves of the plant, 1 to 200.

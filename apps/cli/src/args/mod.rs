@@ -80,17 +80,17 @@ pub(crate) enum Command {
     /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays
     /// as it is.
     Shape(Box<ShapeArgs>),
-    /// Do again what hands did in a headset: a record that the Studio wrote
+    /// Replay gestures recorded in a headset: a record that the Studio wrote
     ///
-    /// The same tools, without a hand: the document that the hands left, a picture of it, or an animated picture of all
-    /// that they did.
+    /// The same tools, without a headset: the document in which the record ends, a picture of it, or an animated picture
+    /// of every step.
     Replay(Box<ReplayArgs>),
     /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
     Presets(PresetsArgs),
     /// Grow the same oak by three methods and compare them
     ///
     /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
-    /// bytes, and what the paper printed.
+    /// bytes, and what Yang et al. (2019) printed.
     Compare(Box<CompareArgs>),
     /// Make a picture of a model
     ///

@@ -19,7 +19,7 @@ pub(crate) struct ReplayArgs {
     /// A record that the Studio wrote in a headset (burgeon.gestures/1).
     #[arg(value_name = "RECORD.json")]
     pub(crate) record: PathBuf,
-    /// Save the document that the hands left as a project.
+    /// Save the document in which the record ends as a project.
     #[arg(long, value_name = "PROJECT.burgeon")]
     pub(crate) save: Option<PathBuf>,
     /// Make a picture of the plant that was worked on last.

@@ -68,7 +68,7 @@ pub(crate) struct SkinArgs {
 }
 
 impl SkinArgs {
-    /// What was asked for, in the place of what was there.
+    /// What was asked for, instead of what was there.
     pub(crate) fn set(&self, skin: &mut SkinSpec) {
         skin.detail = self.detail.unwrap_or(skin.detail);
         skin.sides = self.sides.unwrap_or(skin.sides);

@@ -111,8 +111,8 @@ pub(crate) struct ReadingArgs {
     /// model of one leaf (.glb, .obj, .ply, .stl) with its root at the origin.
     #[arg(long, value_name = "FILE")]
     pub(crate) leaf_template: Option<PathBuf>,
-    /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
-    #[arg(long, value_name = "FILE.json")]
+    /// All settings of the sketch maker as TOML or JSON (what is missing keeps its default); options above win over it.
+    #[arg(long, value_name = "FILE")]
     pub(crate) spec: Option<PathBuf>,
 }
 

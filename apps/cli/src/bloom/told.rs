@@ -168,7 +168,7 @@ pub(super) fn tell(
         item.warnings.iter().for_each(|w| say::warning(w));
         if let Some(e) = &report.error {
             say::line(&format!(
-                "error: {:.3} mm (mean over x, y, z as the paper has it); Euclidean, scan to model: {:.3} mm mean, {:.3} \
+                "error: {:.3} mm (mean over x, y, z, as in Huai, Yang and Cai 2019); Euclidean, scan to model: {:.3} mm mean, {:.3} \
                  RMS, {:.3} 95 %, {:.3} max, {:.1} % within 2 mm; model to scan: {:.3} mean, {:.3} RMS, {:.3} max",
                 e.paper_mm,
                 e.mean_mm,

@@ -38,7 +38,7 @@ export const en = {
   'step.rename': 'rename',
   'step.seed': 'another seed',
   'step.sketch': 'plant settings',
-  'step.skin': 'looks',
+  'step.skin': 'appearance',
   'step.open': 'open',
   dice: 'Roll another plant of the same description',
   'dice.seed': 'Seed {seed}',

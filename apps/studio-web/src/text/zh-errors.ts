@@ -194,7 +194,7 @@ export const zhWords: Record<string, string> = {
   joints: '个节',
   'joints times years': '节×年',
   'steps or leaves along one shoot': '个步或叶（同一枝上）',
-  'looks of buds at markers': '次芽的查看',
+  'marker queries': '次标记点查询',
   'places for leaves': '个叶位',
   triangles: '个三角形',
   'triangles of obstacles and envelopes': '个障碍物和轮廓的三角形',

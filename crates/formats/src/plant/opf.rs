@@ -53,7 +53,7 @@ pub fn write_opf(
     let mut writer = Writer { plant, spec, out, areas, looks: Vec::new(), next: 1 };
     writer.head(shapes)?;
     writer.open("topology", "Plant", 1)?;
-    let name = escaped(&plant.name);
+    let name = base::escaped_xml(&plant.name).trim().to_owned();
     writer.say("Name", if name.is_empty() { "plant" } else { &name })?;
     for (id, _) in numbered(plant).filter(|(id, _)| plant.axis(*id).bearer.is_none()) {
         writer.tree(id, &borne)?;
@@ -67,21 +67,6 @@ pub fn write_opf(
     }
     writer.close("topology")?;
     Ok(writeln!(writer.out, "</opf>")?)
-}
-
-/// Text as XML has it; what XML cannot hold is left out.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
-            c => out.push(c),
-        }
-    }
-    out.trim().to_owned()
 }
 
 /// The class of an organ, its name and its colour before its paint.

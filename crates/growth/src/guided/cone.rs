@@ -2,7 +2,7 @@
 //!
 //! `cone -> pool of markers -> (turned) -> cells -> how many of others are where one's own are`
 //!
-//! A bud's own markers lie by chance, as those of the paper do, and are summed up beforehand. Others' are told by far fewer
+//! A bud's own markers lie by chance, as those of the VR paper do, and are summed up beforehand. Others' are told by far fewer
 //! that lie evenly.
 //!
 //! What is done for each marker runs over columns of numbers of 32 bits, which compilers make run four abreast. Sums are

@@ -471,7 +471,7 @@ impl Growing {
         }
         let all = u64::from(self.spec.markers) * awake.len() as u64;
         run.budget.check(Counted::Points, all, TOO_MANY)?;
-        run.budget.check(Counted::Looks, self.looks() + all, TOO_MANY)?;
+        run.budget.check(Counted::MarkerQueries, self.looks() + all, TOO_MANY)?;
         let stand = |&b: &u32| {
             let bud = &self.buds[b as usize];
             let at = self.skeleton.position[bud.joint as usize];

@@ -123,7 +123,7 @@ fn buds_that_all_look_at_one_another_are_refused() {
     let run = Run { budget, ..Run::plain() };
     let got = guide(&[DVec3::ZERO], &Obstacles::none(), &spec, Seed::new(1), &run, &mut Report::default());
     let Err(GrowthError::OverBudget(over)) = got else { panic!("refused") };
-    assert!(matches!(over.what, Counted::Looks | Counted::Points), "{over}");
+    assert!(matches!(over.what, Counted::MarkerQueries | Counted::Points), "{over}");
 }
 
 /// Rounds by hand, with these changes, each before its round.

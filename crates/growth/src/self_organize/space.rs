@@ -76,7 +76,11 @@ impl Space {
         self.sum.clear();
         self.sum.resize(grove.len() * self.stride, DVec3::ZERO);
         for j in 0..grove.len() {
-            budget.check(Counted::Looks, self.looks, "lower light.perception, light.markers or years")?;
+            budget.check(
+                Counted::MarkerQueries,
+                self.looks,
+                "lower light.perception, light.markers or years",
+            )?;
             if grove.main[j] == NONE {
                 self.claim(grove.skeleton.position[j], grove.heading[j], j * self.stride);
             }

@@ -39,12 +39,12 @@ macro_rules! columns {
 }
 
 columns! {
-    /// Distance of the two ends over length: the paper's first feature.
+    /// Distance of the two ends over length: the first feature of He and Cheng (2021), section 4.1.
     gap,
-    /// Square root of the smaller over the larger eigenvalue of the points' covariance: the paper's second, turned
-    /// over so that it stays in \[0, 1\].
+    /// Square root of the smaller over the larger eigenvalue of the points' covariance: their second
+    /// feature, turned over so that it stays in \[0, 1\].
     slim,
-    /// Root of the area of the principal box over length: the paper's third, made scale-free.
+    /// Root of the area of the principal box over length: their third feature, made scale-free.
     box_area,
     /// Area enclosed when the ends are joined, over that of a circle of the same length.
     round,
@@ -328,7 +328,7 @@ fn slimness(points: &[DVec2]) -> (f64, DVec2) {
     (slim, DVec2::new(cos, sin))
 }
 
-/// The paper's features 2 and 3.
+/// Features 2 and 3 of He and Cheng (2021), section 4.1.
 fn principal(s: &Shape, f: &mut StrokeFeatures) {
     let (slim, u) = slimness(&s.points);
     let v = u.perp();

@@ -22,10 +22,11 @@ mod whole_tree;
 
 use geom::contains;
 use glam::DVec2;
-use ink::{COMMON_GROUND, DRAWN_AGAIN, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+use ink::{COMMON_GROUND, DRAWN_AGAIN, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::{Draft, OneGo};
+use crate::near::openness;
 use crate::thresholds::STRAIGHT;
 
 pub(crate) use as_kind::take_for;
@@ -46,10 +47,22 @@ pub struct Rule {
     pub name: &'static str,
     /// What it holds to be true of drawings, in a sentence for people.
     pub why: &'static str,
-    /// Drawings of more strokes are left as they are: nobody draws one such plant with so many, and rules compare pairs.
-    most_strokes: usize,
-    /// The classes that it gives to strokes of a drawing half understood.
-    applies: fn(&Draft<'_>) -> Findings,
+    applied: Applied,
+}
+
+/// Where a rule is applied.
+#[derive(Clone, Copy, Debug)]
+enum Applied {
+    /// In turn with the others of the table.
+    Here {
+        /// Drawings of more strokes are left as they are: nobody draws one such plant with so many, and rules compare
+        /// pairs.
+        most_strokes: usize,
+        /// The classes that it gives to strokes of a drawing half understood.
+        finds: fn(&Draft<'_>) -> Findings,
+    },
+    /// At another step, which knows what the table does not.
+    Elsewhere,
 }
 
 /// What a rule found.
@@ -84,10 +97,14 @@ impl Findings {
 const fn rule(
     name: &'static str,
     most_strokes: usize,
-    applies: fn(&Draft<'_>) -> Findings,
+    finds: fn(&Draft<'_>) -> Findings,
     why: &'static str,
 ) -> Rule {
-    Rule { name, why, most_strokes, applies }
+    Rule { name, why, applied: Applied::Here { most_strokes, finds } }
+}
+
+const fn elsewhere(name: &'static str, why: &'static str) -> Rule {
+    Rule { name, why, applied: Applied::Elsewhere }
 }
 
 /// A drawing of any number of strokes.
@@ -101,34 +118,23 @@ const FEW: usize = 40;
 
 /// The rules, in the order in which they are applied: those that others build on first.
 pub const RULES: &[Rule] = &[
-    rule(
+    // `ink::classify` applies it, because a preview keeps its class.
+    elsewhere(
         LONE_LINE,
-        1,
-        |_| Findings::default(), // `ink::classify` applies it, because a preview keeps its class
         "A line by itself is a stem: crowns and trunks are recognised by what stands around them.",
     ),
-    rule(
-        COMMON_GROUND,
-        ANY,
-        |_| Findings::default(), // `ink::classify` applies it, because it judges each plant by itself
-        "A low, flat line on which several plants stand is their ground.",
-    ),
-    rule(
-        DRAWN_AGAIN,
-        MANY,
-        |_| Findings::default(), // `ink::clean` finds them, and `read` leaves them to the lines that they follow
-        "What follows another line all the way is that line, drawn again.",
-    ),
-    rule(
+    // `ink::classify` applies it, because it judges each plant by itself.
+    elsewhere(COMMON_GROUND, "A low, flat line on which several plants stand is their ground."),
+    // `ink::clean` finds them, and `read` leaves them to the lines that they follow.
+    elsewhere(DRAWN_AGAIN, "What follows another line all the way is that line, drawn again."),
+    // `read` applies it, because it compares what stands beside one another.
+    elsewhere(
         crate::BESIDE_THE_PLANT,
-        MANY,
-        |_| Findings::default(), // `read` applies it, because it compares what stands beside one another
         "What hangs in the air apart from a plant and needs ground, or looks like no plant, is left out.",
     ),
-    rule(
+    // `read` applies it, because it compares whole readings.
+    elsewhere(
         READ_AS,
-        MANY,
-        |_| Findings::default(), // `read` applies it, because it compares whole readings
         "What a stroke is follows from the kind of plant that explains the whole drawing best, or that was asked for.",
     ),
     rule(
@@ -239,16 +245,11 @@ pub const RULES: &[Rule] = &[
         grass::grass,
         "Several single lines and nothing that a trunk could carry are stalks of grass.",
     ),
-    rule(
-        VEINS_IN_BLADES,
-        ANY,
-        |_| Findings::default(), // `veins::collect` applies it, because it must know where the blades end
-        "A line in a blade is a vein, and one that lies in no blade is a stem.",
-    ),
-    rule(
+    // `veins::collect` applies it, because it must know where the blades end.
+    elsewhere(VEINS_IN_BLADES, "A line in a blade is a vein, and one that lies in no blade is a stem."),
+    // `Draft::green_leaves` applies it, because it is about blades that are closed.
+    elsewhere(
         GREEN_LEAVES,
-        ANY,
-        |_| Findings::default(), // `Draft::green_leaves` applies it, because it is about blades that are closed
         "What is green beside petals of another colour is a leaf, however it stands round their middle.",
     ),
 ];
@@ -256,9 +257,13 @@ pub const RULES: &[Rule] = &[
 /// Applies all rules but those that are switched `off`.
 pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
     let count = draft.class.len();
-    for rule in RULES.iter().filter(|r| count <= r.most_strokes && !off.contains(&r.name)) {
-        let found = (rule.applies)(draft);
-        take(draft, found, rule.name);
+    for rule in RULES.iter().filter(|r| !off.contains(&r.name)) {
+        if let Applied::Here { most_strokes, finds } = rule.applied
+            && count <= most_strokes
+        {
+            let found = finds(draft);
+            take(draft, found, rule.name);
+        }
     }
 }
 
@@ -302,11 +307,6 @@ const WITHIN: f64 = 0.8;
 
 fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
     draft.class.iter().any(|c| classes.contains(c))
-}
-
-/// How far apart a stroke's ends are, as a share of its length.
-fn openness(s: &InkStroke) -> f64 {
-    s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }
 
 /// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.

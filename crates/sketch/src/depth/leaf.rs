@@ -16,7 +16,7 @@ const TILT_ALONG: f64 = 35.0 * (ops::PI / 180.0);
 const TILT_ACROSS: f64 = 25.0 * (ops::PI / 180.0);
 /// Least slope along it, 8 degrees: or the plant is a card when seen from the side.
 const TILT_LEAST: f64 = 8.0 * (ops::PI / 180.0);
-/// The paper's disturbance, uniform within 30 degrees.
+/// The disturbance of He and Cheng (2021), section 5.3: uniform within 30 degrees.
 const DISTURBED: f64 = 30.0 * (ops::PI / 180.0);
 
 /// A drawn outline in its own frame, metres: root at the origin, tip on +y.

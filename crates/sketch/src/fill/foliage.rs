@@ -132,7 +132,5 @@ pub(super) fn measured(plant: &Plant, shapes: &[ShapeId]) -> Vec<(ShapeId, f64)>
 
 /// The middle of the lengths of [`measured`] shapes.
 pub(super) fn median_length(shapes: &[(ShapeId, f64)]) -> Option<f64> {
-    let mut lengths: Vec<f64> = shapes.iter().map(|(_, l)| *l).collect();
-    base::sort_numbers(&mut lengths);
-    lengths.get(lengths.len() / 2).copied()
+    base::median(shapes.iter().map(|(_, l)| *l).collect())
 }

@@ -126,10 +126,10 @@ impl Turned {
     }
 }
 
-/// Grows from `from` by Eq 2 as it is meant in the paper: at each step towards the attraction point of the contour that
+/// Grows from `from` by Eq 2 as He and Cheng (2021) mean it: at each step towards the attraction point of the contour that
 /// is nearest then, until the contour is `near`. `out` starts with `from`.
 ///
-/// As there, the bearer pulls all the way. Every step is `step` long: the paper's rate r over the length of the sum.
+/// As there, the bearer pulls all the way. Every step is `step` long: their rate r over the length of the sum.
 pub(super) fn grow_to_contour(
     volume: &Volume,
     spec: &FillSpec,

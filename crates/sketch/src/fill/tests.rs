@@ -288,7 +288,7 @@ fn branch_contours_grow_twigs_and_leaf_contours_leaves() {
     let lines = [line((0.5, 0.0), (0.5, 0.9), 60), line((0.5, 0.4), (0.9, 0.85), 40)];
     let twigs = grown(ring.clone(), RegionKind::Twigs, &lines, &SketchSpec::default());
     check_inside(&twigs, "twigs");
-    // The paper's own branch contours hold about eleven twigs (Table 1, sketches a and f).
+    // The branch contours of He and Cheng (2021) hold about eleven twigs (Table 1, sketches a and f).
     assert!((8..40).contains(&twigs.plant.axes.len()), "{}", twigs.plant.axes.len());
     assert_eq!((twigs.plant.validate().next(), twigs.plant.organs.len()), (None, 0));
     let leaves = grown(ring, RegionKind::Leaves, &lines, &SketchSpec::default());

@@ -27,9 +27,9 @@ pub(super) struct Twigs<'a> {
     pub(super) salt: u64,
 }
 
-/// Room of one twig, as the edge of a square over the height of its plant. Table 1 of the paper: sketch (a) grows 45
-/// twigs in four contours, sketch (f) 11 in one. In our drawings of them these enclose 0.303 and 0.085 of the plant's
-/// squared height: a twig for each 1/144.
+/// Room of one twig, as the edge of a square over the height of its plant. Table 1 of He and Cheng (2021): sketch (a)
+/// grows 45 twigs in four contours, sketch (f) 11 in one. In our drawings of them these enclose 0.303 and 0.085 of the
+/// plant's squared height: a twig for each 1/144.
 const ROOM: f64 = 1.0 / 12.0;
 
 /// Attraction points on a contour: 2.6 degrees of a circle apart.

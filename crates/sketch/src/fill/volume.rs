@@ -487,6 +487,7 @@ pub(super) fn above(outline: &[DVec2], y: f64) -> Vec<DVec2> {
     out
 }
 
+/// Not [`geom::signed_area`], which is relative to a corner: that rounds otherwise, and plants are told by the last bit.
 fn shoelace(outline: &[DVec2]) -> f64 {
     let n = outline.len();
     0.5 * (0..n).map(|i| outline[i].perp_dot(outline[(i + 1) % n])).sum::<f64>()

@@ -49,11 +49,11 @@ pub struct TreeEvaluator {
     inside: Option<Inside>,
     /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
     stale: bool,
-    /// Times of what a look made already, of the update that follows it.
+    /// Times of what a preview made already, of the update that follows it.
     begun: Report,
     done: Vec<&'static str>,
-    /// See [`crate::SceneEvaluator::set_looking`].
-    pub(crate) looking: bool,
+    /// See [`crate::SceneEvaluator::set_previewing`].
+    pub(crate) previewing: bool,
 }
 
 /// What growth made.
@@ -79,9 +79,9 @@ struct Shaped {
     told: Vec<EditReport>,
 }
 
-/// A tree of no more nodes and organs needs no coarse look: the whole is there as soon.
+/// A tree of no more nodes and organs needs no coarse preview: the whole is there as soon.
 const SMALL: usize = 4_000;
-/// How coarse a look is: a quarter of the leaves, which cover as much, and the longer half of the axes. With an eighth,
+/// How coarse a preview is: a quarter of the leaves, which cover as much, and the longer half of the axes. With an eighth,
 /// crowns of small leaves are bare.
 const LOOK_LEVEL: u32 = 2;
 
@@ -105,7 +105,7 @@ impl TreeEvaluator {
     ) -> Result<ItemReport, TreeError> {
         let (mut report, obstacles) = self.shaped(spec, seed, options, run)?;
         if self.mesh(spec, seed, options, &mut report, run)? {
-            let model = self.model().filter(|_| !self.looking);
+            let model = self.model().filter(|_| !self.previewing);
             self.inside = model.and_then(|m| Inside::of(m, &obstacles));
         }
         Ok(self.item(spec, options, &report))
@@ -116,7 +116,7 @@ impl TreeEvaluator {
     ///
     /// # Errors
     /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
-    pub fn look(
+    pub fn preview(
         &mut self,
         spec: &TreeSpec,
         seed: Seed,
@@ -303,7 +303,7 @@ impl TreeEvaluator {
                 ..Counts::of_plant(plant)
             },
             timings_ms: TimingsMs::from_report(report),
-            digest: if self.looking { String::new() } else { plant.digest_hex() },
+            digest: if self.previewing { String::new() } else { plant.digest_hex() },
             growth: Some(growth),
             edits: edits.map_or_else(Vec::new, |s| s.told.clone()),
             ..ItemReport::default()

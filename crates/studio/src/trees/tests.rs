@@ -444,8 +444,8 @@ fn a_look_has_no_digest_and_what_follows_it_has() {
     let edit = shape::HandEdit::Prune { axis: shape::AxisKey::Path(vec![0]), at: 0.5 };
     for plant in editor.document().plants()[1..].iter().map(document::DocumentPlant::id).collect::<Vec<_>>() {
         let mut scene = crate::SceneEvaluator::default();
-        let mut digest = |editor: &Editor, looking: bool| {
-            scene.set_looking(looking);
+        let mut digest = |editor: &Editor, previewing: bool| {
+            scene.set_previewing(previewing);
             scene.update(plant, editor.document(), &Run::plain()).expect("sound");
             scene.get(plant).expect("made").report().digest
         };

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use base::escaped_xml;
 use glam::DVec2;
 use ink::{Drawing, Layer, Stroke, StrokeMode};
 
@@ -50,7 +51,7 @@ pub fn write_svg(drawing: &Drawing, mut out: impl Write) -> Result<(), WriteErro
         0.0 - high.y,
         size.x,
         size.y,
-        escaped(&drawing.name),
+        escaped_xml(&drawing.name),
         PEN * diagonal
     )?;
     let known = |s: &&Stroke| drawing.layers.iter().any(|l| Some(&l.name) == s.layer.as_ref());
@@ -66,7 +67,7 @@ pub fn write_svg(drawing: &Drawing, mut out: impl Write) -> Result<(), WriteErro
             out,
             "<g id=\"layer-{}\" inkscape:groupmode=\"layer\" inkscape:label=\"{}\"{hidden}{locked}>",
             row + 1,
-            escaped(&layer.name)
+            escaped_xml(&layer.name)
         )?;
         for stroke in drawing.strokes.iter().filter(|s| s.layer.as_ref() == Some(&layer.name)) {
             path(stroke, Some(layer), &mut out)?;
@@ -87,7 +88,7 @@ fn path(stroke: &Stroke, layer: Option<&Layer>, out: &mut impl Write) -> Result<
     }
     out.write_all(b"<path")?;
     if let Some(id) = &stroke.id {
-        write!(out, " id=\"{}\"", escaped(id))?;
+        write!(out, " id=\"{}\"", escaped_xml(id))?;
     }
     // The name of the layer or of the stroke may sound like a mode.
     let named = stroke.id.as_deref().and_then(mode_in).or_else(|| mode_in(&layer?.name));
@@ -110,22 +111,4 @@ fn path(stroke: &Stroke, layer: Option<&Layer>, out: &mut impl Write) -> Result<
     }
     out.write_all(b"\"/>\n")?;
     Ok(())
-}
-
-/// As text or as an attribute.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            // Not a character of XML.
-            '\u{fffe}' | '\u{ffff}' => {}
-            c => out.push(c),
-        }
-    }
-    out
 }

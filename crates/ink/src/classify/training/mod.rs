@@ -18,7 +18,7 @@ mod table;
 
 /// The classes: chosen by cross-validation among 1 to 100.
 const CLASSES: RbfLearner = RbfLearner { cost: 10.0, gamma: 0.3 };
-/// Closed outline or line, by the paper's three features.
+/// Closed outline or line, by the three features of He and Cheng (2021), section 4.1.
 const CLOSED: RbfLearner = RbfLearner { cost: 10.0, gamma: 3.0 };
 /// Drawings are dealt into this many folds.
 const FOLDS: usize = 10;
@@ -72,7 +72,7 @@ pub struct StrokeFigures {
     pub grouped: f64,
     /// Share of them that were not taken for the other group.
     pub not_swapped: f64,
-    /// Share of them that the machine with the paper's three features alone puts right.
+    /// Share of them that the machine with the three features of He and Cheng (2021) alone puts right.
     pub three_features: f64,
     /// Label, found, for every clear stroke of SPG, by kind of drawing.
     pub parts: Vec<(String, StrokeClass, StrokeClass)>,
@@ -110,12 +110,12 @@ fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
     })
 }
 
-/// The paper's three features (section 4.1), each in \[0, 1\].
+/// The three features of He and Cheng (2021), section 4.1, each in \[0, 1\].
 fn three(row: &StrokeRow) -> Vec<f64> {
     vec![row.features.gap, row.features.slim, row.features.box_area]
 }
 
-/// The paper's own machine: closed outline (1) or line (0) by the three features alone. It is here to measure by.
+/// The machine of He and Cheng (2021) itself: closed outline (1) or line (0) by the three features alone. It is here to measure by.
 fn train_three(rows: &[&StrokeRow]) -> Result<Svm, SvmError> {
     let clear = rows.iter().filter(|r| r.is_clear());
     let (values, sides): (Vec<Vec<f64>>, Vec<i32>) =
