@@ -210,19 +210,26 @@ def _json(value: Any) -> bytes:
 
 
 def _claim(out: str, recipe: "Mapping[str, Any]") -> None:
-    """The folder is this data set's, from now on."""
-    path = os.path.join(out, "recipe.json")
-    try:
-        with open(path, encoding="utf-8") as file:
-            there = json.load(file)
-    except FileNotFoundError:
-        if any(name.endswith(".tar") for name in os.listdir(out)):
-            raise ValueError(f"{out} holds shards of something else; choose another folder") from None
+    """The folder is this data set's, from now on. A recipe of which no shard was made gives way: it may have been wrong."""
+    there = _claimed(out)
+    if there == recipe:
+        return
+    if not any(name.endswith(".tar") for name in os.listdir(out)):
         write_whole(out, [("recipe.json", _json(recipe))])
         return
-    if there != recipe:
-        differ = [k for k in recipe if there.get(k) != recipe[k]]
-        raise ValueError(f"{out} holds another data set ({', '.join(differ)} differ); choose another folder or delete it")
+    if there is None:
+        raise ValueError(f"{out} holds shards of something else; choose another folder")
+    differ = [k for k in recipe if there.get(k) != recipe[k]]
+    raise ValueError(f"{out} holds another data set ({', '.join(differ)} differ); choose another folder or delete it")
+
+
+def _claimed(out: str) -> "Optional[Dict[str, Any]]":
+    """The recipe of the folder's data set."""
+    try:
+        with open(os.path.join(out, "recipe.json"), encoding="utf-8") as file:
+            return json.load(file)
+    except FileNotFoundError:
+        return None
 
 
 def _sha256_of(path: str) -> "Optional[str]":
@@ -274,6 +281,9 @@ def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
         "sha256": hashlib.sha256(data).hexdigest(),
         "digests": digests,
     }
+    # Another call may have taken the folder before it held a shard; data sets are not mixed.
+    if _claimed(out) != recipe:
+        raise ValueError(f"{out} was taken by another data set meanwhile; choose another folder")
     # What says that the shard is there comes after it: the first of the list is renamed last.
     write_whole(out, [(f"{_name(k)}.json", _json(entry)), (f"{_name(k)}.tar", data)])
     return k

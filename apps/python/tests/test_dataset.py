@@ -78,6 +78,31 @@ def test_a_folder_holds_one_data_set(made):
         dataset.generate("hazel", 9, made[0], seed=2, **HOW)
 
 
+@pytest.mark.parametrize("wrong", [{"fields": {"age": 3, "leave": {}}}, {"vary": {"age": ["old"]}}, {"cloud": {"points": 0}}])
+def test_a_recipe_that_made_nothing_gives_way_to_the_corrected_one(tmp_path, wrong):
+    how = dict(formats=("mtg", "cloud"), fields={"age": 3}, cloud={"points": 50}, shard=1, workers=1, progress=False)
+    with pytest.raises(ValueError):
+        dataset.generate("grass", 1, tmp_path, **{**how, **wrong})
+    assert dataset.generate("grass", 1, tmp_path, **how)["plants"] == 1
+    dataset.verify(tmp_path)
+
+
+def test_a_folder_that_was_taken_meanwhile_is_left_alone(tmp_path, monkeypatch):
+    how = dict(formats="mtg", fields={"age": 3}, shard=1, workers=1, progress=False)
+    real = dataset.make_plant
+
+    def slow(recipe, index):
+        if recipe["seed"] == 1:
+            dataset.generate("grass", 1, tmp_path, seed=2, **how)
+        return real(recipe, index)
+
+    monkeypatch.setattr(dataset, "make_plant", slow)
+    with pytest.raises(ValueError, match="taken by another data set"):
+        dataset.generate("grass", 1, tmp_path, seed=1, **how)
+    dataset.verify(tmp_path)
+    assert [p["seed"] for p in dataset.read(tmp_path)] == [dataset.plant_seed(2, 0)]
+
+
 def test_specs_of_files_go_along(tmp_path):
     (tmp_path / "mine.toml").write_text('name = "mine"\n[leaves]\nleaf_keep = 0.3\n')
     how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 3}, shard=1, progress=False)
