@@ -34,7 +34,8 @@ impl Refused {
     pub(crate) fn choice(path: &str, name: &str, choices: &str) -> Self {
         let fields = [("path", path), ("name", name), ("choices", choices)];
         let fields = fields.into_iter().map(|(k, v)| (k.into(), v.into())).collect();
-        let message = format!("{path}: {name:?} is not known; there are {choices}");
+        let hint = burgeon::meant(name, choices.split(", "));
+        let message = format!("{path}: {name:?} is not known; there are {choices}{hint}");
         Self::of(Refusal { code: "spec-choice".into(), fields, message })
     }
 

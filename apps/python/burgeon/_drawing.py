@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Tuple
 from . import _burgeon
 from ._burgeon import PARTS
 from ._files import write_whole
+from ._given import wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +68,7 @@ class Drawing(NamedTuple):
         """Writes ``.svg``, whole or not at all."""
         folder, name = os.path.split(os.fspath(path))
         if not name.lower().endswith(".svg"):
-            raise ValueError(f"drawings are written as .svg, not {name!r}")
+            raise wrong(f"drawings are written as .svg, not {name!r}", "path", name, "a name that ends with .svg")
         write_whole(folder, [(name, self.to_svg())])
 
 

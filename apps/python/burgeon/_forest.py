@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import keys, number, table, whole
+from ._given import beyond, keys, number, table, whole, wrong
 from .makers import SpecText, grow
 from .model import Cloud, Model, seen
 from .plant import Plant
@@ -68,7 +68,7 @@ class Forest:
         columns = {}
         for name, kind in kinds.items():
             if name not in given:
-                raise ValueError(f"places has no {name!r}")
+                raise wrong(f"places has no {name!r}", f"places.{name}", "none", "a column")
             column = np.asarray(given[name])
             # No texts, truths, times or complex numbers; rows of plants are whole.
             if column.dtype.kind not in ("iu" if name == "plant" else "iuf") and column.size:
@@ -78,10 +78,11 @@ class Forest:
         for name, column in columns.items():
             shape = (count, 3) if name == "position" else (count,)
             if column.shape != shape:
-                raise ValueError(f"places[{name!r}] must be of shape {shape}, not {column.shape}")
+                raise beyond(f"places[{name!r}]", column.shape, f"of shape {shape}")
             column.setflags(write=False)
         if (columns["plant"] < 0).any():
-            raise ValueError("places['plant'] are rows of the plants, 0 and more")
+            line = "places['plant'] are rows of the plants, 0 and more"
+            raise wrong(line, "places['plant']", int(columns["plant"].min()), "0 and more")
         self.places = columns
         self.seed = seed
         rows = zip(*(column.tolist() for column in columns.values()))
@@ -193,7 +194,7 @@ def forest(
     """
     sides = area if isinstance(area, (tuple, list)) else (area, area)
     if len(sides) != 2:
-        raise ValueError(f"area must be metres along x and z, not {area!r}")
+        raise beyond("area", repr(area), "metres along x and z")
     area = (number("area[0]", sides[0], 0.1, 1000, "m"), number("area[1]", sides[1], 0.1, 1000, "m"))
     kinds = whole("kinds", kinds, 1, 100)
     seed = whole("seed", seed, 0, 2**64 - 1)
@@ -201,7 +202,7 @@ def forest(
     mixed = _shares(species)
     found = _burgeon.places(area, spacing, vary, seed)
     if not found:
-        raise ValueError(f"no tree has room: spacing is {spacing}, area {area}")
+        raise wrong(f"no tree has room: spacing is {spacing}, area {area}", "spacing", spacing, "less than area")
     total = sum(share for _, share in mixed)
     plants: "List[Plant]" = []
     rows: "Dict[Tuple[int, int], int]" = {}
@@ -237,7 +238,7 @@ def _shares(species: Any) -> "List[Tuple[Species, float]]":
         mixed = [(species, 1.0)]
     for name, share in mixed:
         if isinstance(share, bool) or not isinstance(share, (int, float)) or not 0 < share < 1e9:
-            raise ValueError(f"species: the share of {name!r} must be above 0, not {share!r}")
+            raise wrong(f"species: the share of {name!r} must be above 0, not {share!r}", f"species[{name!r}]", share, "above 0")
     if not mixed:
-        raise ValueError("species: give one")
+        raise wrong("species: give one", "species", species, "one or more")
     return mixed

@@ -21,7 +21,7 @@ import tarfile
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import write_whole
-from ._given import keys, table
+from ._given import beyond, keys, table, whole, wrong
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
@@ -138,11 +138,9 @@ def _recipe(
     """All that decides what the data set holds, checked: it goes into the manifest."""
     from . import __version__
 
-    for name, value, least, most in (("n", n, 1, 10**9), ("shard", shard, 1, 10**6), ("seed", seed, 0, 2**64 - 1)):
-        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
-            raise ValueError(f"{name} must be a whole number, {least} to {most}, not {value!r}")
+    n, shard, seed = whole("n", n, 1, 10**9), whole("shard", shard, 1, 10**6), whole("seed", seed, 0, 2**64 - 1)
     if not isinstance(maker, str) or maker not in MAKERS:
-        raise ValueError(f"maker must be one of {', '.join(MAKERS)}, not {maker!r}")
+        raise beyond("maker", repr(maker), f"one of {', '.join(MAKERS)}")
     if isinstance(formats, str):
         formats = (formats,)
     if not isinstance(formats, (list, tuple)):
@@ -154,7 +152,7 @@ def _recipe(
     known = ("glb", "cloud", "laz") if maker == "forest" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
-        raise ValueError(f"formats are {', '.join(known)}, not {unknown or 'none'}")
+        raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
     if isinstance(spec, (str, os.PathLike)) and os.fspath(spec).endswith(".toml"):
         # A cluster's machines need not have the file.
         spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}
@@ -164,9 +162,10 @@ def _recipe(
             raise TypeError(f"vary: {name} must be (least, most) or a list of choices, not {range_!r}")
         range_ = list(range_) if isinstance(range_, tuple) else {"choice": list(range_)}
         if isinstance(range_, list) and (len(range_) != 2 or not range_[0] <= range_[1]):
-            raise ValueError(f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}")
+            line = f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}"
+            raise wrong(line, f"vary.{name}", tuple(range_), "(least, most) or a list of choices")
         if isinstance(range_, dict) and not range_["choice"]:
-            raise ValueError(f"vary: {name} has no choices")
+            raise wrong(f"vary: {name} has no choices", f"vary.{name}", [], "a list of choices")
         ranges[name] = range_
     recipe = {
         "schema": RECIPE,
@@ -256,11 +255,16 @@ def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":
         return None
 
 
-def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
-    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
+def make_shard_alone(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """Makes one shard in a process of its own: there are as many of these as cores, so each computes with one thread."""
     from . import set_threads
 
     set_threads(1)
+    return make_shard(recipe, out, k)
+
+
+def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
     first = k * recipe["shard"]
     last = min(first + recipe["shard"], recipe["n"])
     tar, digests = io.BytesIO(), []
@@ -373,7 +377,7 @@ def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[in
         done, failed = set(), False
         with ProcessPoolExecutor(min(workers or os.cpu_count() or 1, len(left)), mp_context=context) as pool:
             with _without_main():
-                jobs = {pool.submit(make_shard, recipe, out, k): k for k in left}
+                jobs = {pool.submit(make_shard_alone, recipe, out, k): k for k in left}
             try:
                 for job in as_completed(jobs):
                     try:
@@ -400,7 +404,7 @@ def _with_ray(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", w
     if not ray.is_initialized():
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
     # A worker that is killed is replaced, and its shard made again.
-    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard)
+    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard_alone)
     jobs = [task.remote(recipe, out, k) for k in missing]
     try:
         while jobs:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequenc
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import flag, keys, number, whole, word
+from ._given import flag, keys, number, whole, word, wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -143,7 +143,8 @@ class Cloud(NamedTuple):
             from ._las import las
 
             return las(self._asdict(), extension == "laz")
-        raise ValueError(f"clouds are written as .npz, .las or .laz, not .{extension}")
+        line = f"clouds are written as .npz, .las or .laz, not .{extension}"
+        raise wrong(line, "path", f".{extension}", ".npz, .las or .laz")
 
 
 def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
-from ._given import flag, number, whole, word
+from ._given import flag, number, whole, word, wrong
 from .model import Cloud, Masks, Model, array, look, seen
 
 if TYPE_CHECKING:
@@ -449,7 +449,7 @@ class Plant:
         if extension in ("mtg", "opf", "qsm", "burgeon"):
             asked = [word for word, value in form.items() if value not in (0, False, None)]
             if asked:
-                raise ValueError(f"{asked[0]} is of models, not of .{extension} files")
+                raise wrong(f"{asked[0]} is of models, not of .{extension} files", asked[0], "given", "left out")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
             files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})

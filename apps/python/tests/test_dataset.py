@@ -14,6 +14,7 @@ import pytest
 
 import burgeon as bg
 from burgeon import dataset
+from conftest import python
 
 HOW = dict(
     formats=("glb", "mtg", "cloud", "picture"),
@@ -101,6 +102,18 @@ def test_a_folder_that_was_taken_meanwhile_is_left_alone(tmp_path, monkeypatch):
         dataset.generate("grass", 1, tmp_path, seed=1, **how)
     dataset.verify(tmp_path)
     assert [p["seed"] for p in dataset.read(tmp_path)] == [dataset.plant_seed(2, 0)]
+
+
+def test_the_threads_of_the_program_stay_as_they_are(tmp_path):
+    """Of the program that asks: its own process computes with as many as it has set."""
+    pytest.importorskip("psutil")
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 3}, workers=1, progress=False)
+    code = (
+        "import burgeon as bg, numpy, psutil; bg.set_threads(3); before = psutil.Process().num_threads()\n"
+        f"bg.dataset.generate('hazel', 2, {str(tmp_path)!r}, **{how!r})\n"
+        "print(psutil.Process().num_threads() - before)"
+    )
+    assert python(code) == "3"
 
 
 def test_specs_of_files_go_along(tmp_path):
