@@ -1,4 +1,4 @@
-/** In Node: the core computes in this thread. */
+/** In Node, in this thread: nothing else goes on in it while a plant is made, and a signal stops only what waits. */
 import { readFile } from 'node:fs/promises';
 import init, * as core from './core/burgeon_npm.js';
 import { here } from './engine.js';

@@ -157,13 +157,24 @@ test('what is wrong is named: field, value and range', async () => {
     range: 'seed, wind, lods, bu',
   });
   await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
+  await wrong(grow('oak', { fields: { leaves: { leaf_kept: 1 } } }), {
+    code: 'spec-unknown',
+    field: 'leaves.leaf_kept',
+  });
+  await assert.rejects(grow('oak', { fields: { agee: 3 } }), /; is `age` meant\?$/);
+  await assert.rejects(grow('oka'), /; is `oak` meant\?$/);
   await wrong(grow('oak', { detail: 99 }), {
     code: 'field-range',
     field: 'detail',
     value: '99',
     range: '0.1 to 8',
   });
-  await wrong(grow('oak', { fields: { age: 'old' } }), { code: 'spec-kind', field: 'age', value: 'old' });
+  await wrong(grow('oak', { fields: { age: 'old' } }), {
+    code: 'spec-kind',
+    field: 'age',
+    value: 'old',
+    range: 'a whole number',
+  });
   await wrong(grow('oak', { fields: { age: Number.NaN } }), {
     code: 'field-range',
     field: 'age',
@@ -295,6 +306,39 @@ test('whatever is passed makes a plant or is named', async () => {
   assert.ok(made > 5 && refused > 100, `${made} made, ${refused} refused`);
   // The core is whole nevertheless.
   assert.ok((await grow('hazel', { detail: 0.1, textures: false, fields: { age: 2 } })).report);
+});
+
+test('a plant is made beside the program: timers go on, and a signal stops it', async () => {
+  let ticks = 0;
+  const timer = setInterval(() => (ticks += 1), 5);
+  const started = performance.now();
+  const tree = await grow('oak', { seed: 2, detail: 1 });
+  const took = performance.now() - started;
+  clearInterval(timer);
+  assert.ok(tree.report && took > 100 && ticks > took / 100, `${ticks} ticks in ${took} ms`);
+  // One that takes much longer than it is given; the one that waits goes to another thread.
+  const long = { seed: 2, detail: 8, fields: { age: 60 } };
+  const stopped = new AbortController();
+  const first = grow('oak', { ...long, signal: stopped.signal });
+  const second = grow('hazel', { detail: 0.1, textures: false, wind: false });
+  setTimeout(() => stopped.abort(), 50);
+  const from = performance.now();
+  await assert.rejects(first, { name: 'AbortError' });
+  assert.ok(performance.now() - from < 1000, 'it was waited for');
+  assert.ok(expected['tree hazel'].startsWith((await second).digest));
+});
+
+test('in this thread it makes the same plants', async () => {
+  for (const place of ['in-thread.js', 'growth/in-thread.js']) {
+    const here = await import(file(place));
+    let ticks = 0;
+    await here.grow('grass', { detail: 0.1, textures: false });
+    const timer = setInterval(() => (ticks += 1), 1);
+    const tree = await here.grow('oak', { detail: 0.1, textures: false, wind: false });
+    assert.equal(ticks, 0, 'in another thread');
+    clearInterval(timer);
+    assert.ok(expected['tree oak'].startsWith(tree.digest));
+  }
 });
 
 test('schemas say what there is', async () => {
