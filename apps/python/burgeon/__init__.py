@@ -28,6 +28,7 @@ __all__ = [
     "Cloud",
     "Forest",
     "ForestCloud",
+    "ForestMasks",
     "Law",
     "Masks",
     "Model",
@@ -57,7 +58,7 @@ def __getattr__(name: str):
         import importlib
 
         return importlib.import_module(".dataset", __name__)
-    if name in ("Forest", "ForestCloud", "forest"):
+    if name in ("Forest", "ForestCloud", "ForestMasks", "forest"):
         import importlib
 
         found = getattr(importlib.import_module("._forest", __name__), name)

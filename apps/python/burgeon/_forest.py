@@ -11,13 +11,13 @@ from . import _burgeon
 from ._files import write_whole
 from ._given import beyond, keys, number, table, whole, wrong
 from .makers import SpecText, grow
-from .model import Cloud, Model, seen
+from .model import Cloud, Model, look, seen, shown
 from .plant import Plant
 
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["Forest", "ForestCloud", "forest"]
+__all__ = ["Forest", "ForestCloud", "ForestMasks", "forest"]
 
 
 class ForestCloud(NamedTuple):
@@ -44,6 +44,21 @@ class ForestCloud(NamedTuple):
 
     save = Cloud.save
     to_bytes = Cloud.to_bytes
+
+
+class ForestMasks(NamedTuple):
+    """What each pixel of a picture of a forest shows; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
+
+    part: "np.ndarray"
+    """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
+    axis: "np.ndarray"
+    """(height, width) int32: row of the plant's ``axes``; -1 for none."""
+    organ: "np.ndarray"
+    """(height, width) int32: row of the plant's ``organs``; -1 for none."""
+    depth: "np.ndarray"
+    """(height, width) float32: metres from the eye; infinite for nothing."""
+    tree: "np.ndarray"
+    """(height, width) int32: row of ``forest.places``; -1 for nothing."""
 
 
 class Forest:
@@ -149,6 +164,21 @@ class Forest:
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
+
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> ForestMasks:
+        """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
+        import numpy as np
+
+        of_plants = [plant.labels() for plant in self.plants]
+        labels = [rows for own in of_plants for rows in own]
+        start = np.cumsum([0] + [len(rows) for rows in labels])
+        first = np.cumsum([0] + [len(own) for own in of_plants])
+        # The model has the parts of each tree, tree by tree.
+        plant = self.places["plant"].tolist()
+        parts = np.concatenate([np.arange(first[p], first[p + 1]) for p in plant])
+        tree = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
+        seen_parts, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
+        return ForestMasks(*columns, np.where(seen_parts < 0, np.int32(-1), tree[np.maximum(seen_parts, 0)]))
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()

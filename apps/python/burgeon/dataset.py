@@ -18,6 +18,7 @@ import os
 import random
 import sys
 import tarfile
+import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import write_whole
@@ -31,6 +32,10 @@ MAKERS = ("grow", "bloom", "leaf", "forest")
 FORMATS = ("glb", "mtg", "opf", "qsm", "burgeon", "cloud", "laz", "drawing", "picture")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
 would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
+
+
+FORESTS = ("glb", "cloud", "laz", "picture")
+"""What is written of tiles of trees; their clouds and masks also say which ``tree``."""
 
 
 def plant_seed(seed: int, index: int) -> int:
@@ -149,7 +154,7 @@ def _recipe(
     cloud, picture = table("cloud", cloud), table("picture", picture)
     keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
-    known = ("glb", "cloud", "laz") if maker == "forest" else FORMATS
+    known = FORESTS if maker == "forest" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
         raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
@@ -365,19 +370,46 @@ def _without_main() -> "Iterator[None]":
         sys.modules["__main__"] = main
 
 
+def _begin_worker() -> None:
+    """Ctrl-C is of what makes a shard; a process that waits for one ends with its pool."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _shard_of_pool(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """One shard in a process of a pool. After Ctrl-C, and with its drafts gone, the process ends without a word: the next
+    shard may be waiting for it already."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return make_shard_alone(recipe, out, k)
+    except KeyboardInterrupt:
+        os._exit(STOPPED)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+STOPPED = 130
+"""What a process ends with after Ctrl-C."""
+
+
 def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
     import multiprocessing
+    import signal
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from concurrent.futures.process import BrokenProcessPool
 
-    left, tries = list(missing), 0
+    left, tries, others = list(missing), 0, set(multiprocessing.active_children())
     # Processes that are forked off would share locks of threads that they do not have.
     context = multiprocessing.get_context("spawn")
     while left:
         done, failed = set(), False
-        with ProcessPoolExecutor(min(workers or os.cpu_count() or 1, len(left)), mp_context=context) as pool:
+        count = min(workers or os.cpu_count() or 1, len(left))
+        with ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker) as pool:
             with _without_main():
-                jobs = {pool.submit(make_shard_alone, recipe, out, k): k for k in left}
+                jobs = {pool.submit(_shard_of_pool, recipe, out, k): k for k in left}
             try:
                 for job in as_completed(jobs):
                     try:
@@ -387,6 +419,11 @@ def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[in
                         continue
                     yield jobs[job]
             except BaseException:
+                # A terminal tells all processes of Ctrl-C; whoever stops this one alone means them, too.
+                for worker in set(multiprocessing.active_children()) - others:
+                    if os.name == "posix" and worker.pid is not None:
+                        with contextlib.suppress(ProcessLookupError):
+                            os.kill(worker.pid, signal.SIGINT)
                 pool.shutdown(wait=True, cancel_futures=True)
                 raise
         # A worker was killed: its shard, and those that waited, go to new ones.
@@ -462,23 +499,43 @@ def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]
 
 
 class _Bar:
-    """How far it is, on a terminal."""
+    """How far it is, on the error output: by tqdm where that is installed, else as a line that is drawn over again on a
+    terminal, else (in files, in notebooks) as a line now and then."""
 
     def __init__(self, total: int, done: int, wanted: bool) -> None:
-        self.total, self.done = total, done
-        self.shown = wanted and sys.stderr.isatty()
-        self.show()
+        self.total, self.done, self.wanted, self.bar = total, done, wanted, None
+        self.on_terminal = sys.stderr.isatty()
+        self.told_at = -EVERY_S
+        if wanted:
+            try:
+                from tqdm.auto import tqdm
+            except ImportError:
+                self.show()
+            else:
+                self.bar = tqdm(total=total, initial=done, desc="shards", unit="shard", file=sys.stderr)
 
     def step(self) -> None:
         self.done += 1
-        self.show()
+        if self.bar is not None:
+            self.bar.update()
+        elif self.wanted:
+            self.show()
 
     def show(self) -> None:
-        if self.shown:
+        if self.on_terminal:
             full = 30 * self.done // max(self.total, 1)
             line = f"\rshards [{'=' * full}{' ' * (30 - full)}] {self.done} of {self.total}"
             print(line, end="", file=sys.stderr, flush=True)
+        elif self.done == self.total or time.monotonic() - self.told_at >= EVERY_S:
+            self.told_at = time.monotonic()
+            print(f"shards: {self.done} of {self.total}", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        if self.shown:
+        if self.bar is not None:
+            self.bar.close()
+        elif self.wanted and self.on_terminal:
             print(file=sys.stderr)
+
+
+EVERY_S = 10.0
+"""How often a line tells how far it is where nothing can be drawn over."""

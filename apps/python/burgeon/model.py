@@ -160,6 +160,20 @@ def seen(of: Any, points: int, stations: int, elevation: float, noise: float, se
     return {name: array(column) for name, column in columns.items()}
 
 
+def shown(raw: Any, labels: "Sequence[np.ndarray]", start: "np.ndarray", how: "Look") -> "Tuple[np.ndarray, ...]":
+    """What each pixel of a picture of a model shows: part of the model, then what ``labels`` say, then the depth.
+
+    ``labels``: tables (triangles, 3) one after another; ``start``: of each part of the model the row of its first triangle.
+    """
+    import numpy as np
+
+    parts, triangles, depth = map(array, raw.masks(how))
+    rows = np.concatenate([*labels, np.full((1, 3), -1, np.int32)])
+    at = np.where(parts < 0, len(rows) - 1, start[np.maximum(parts, 0)] + triangles)
+    part, axis, organ = np.moveaxis(rows[at], -1, 0)
+    return parts, part, axis, organ, depth
+
+
 Look = Dict[str, Any]
 
 

@@ -10,7 +10,7 @@ from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
 from ._given import flag, number, whole, word, wrong
-from .model import Cloud, Masks, Model, array, look, seen
+from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -322,13 +322,9 @@ class Plant:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
         import numpy as np
 
-        parts, triangles, depth = map(array, self._raw.model().masks(look(size, **how)))
         labels = self.labels()
-        first = np.cumsum([0] + [len(rows) for rows in labels])
-        rows = np.concatenate(labels + [np.full((1, 3), -1, np.int32)])
-        at = np.where(parts < 0, len(rows) - 1, first[np.maximum(parts, 0)] + triangles)
-        part, axis, organ = np.moveaxis(rows[at], -1, 0)
-        return Masks(part, axis, organ, depth)
+        start = np.cumsum([0] + [len(rows) for rows in labels])
+        return Masks(*shown(self._raw.model(), labels, start, look(size, **how))[1:])
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
         """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""

@@ -1,9 +1,11 @@
 """Data sets: the same bytes on one process, on several, after some were killed; only what is missing is made again."""
 
+import contextlib
 import hashlib
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -205,6 +207,66 @@ def test_programs_need_no_guard(tmp_path, as_file):
     given = None if as_file else code
     done = subprocess.run(words, input=given, capture_output=True, text=True, check=False, timeout=120)
     assert (done.returncode, done.stdout.strip()) == (0, "3"), done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+def test_ctrl_c_stops_all_processes_at_once(tmp_path):
+    """Also where this process alone is told, and not all of its terminal."""
+    psutil = pytest.importorskip("psutil")
+    how = dict(formats="glb", fields={"detail": 4.0}, shard=200, workers=2, progress=False)
+    code = f"import burgeon as bg\nbg.dataset.generate('oak', 400, {str(tmp_path)!r}, **{how!r})"
+    program = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    busy, end = [], time.time() + 120
+    try:
+        own = psutil.Process(program.pid)
+        while len(busy) < 2 and time.time() < end:
+            time.sleep(0.01)
+            with contextlib.suppress(psutil.Error):
+                busy = [c for c in own.children(recursive=True) if "spawn_main" in " ".join(c.cmdline())]
+                busy = [c for c in busy if c.cpu_times().user > 1.0]
+        assert len(busy) == 2, "the workers did not work"
+        started = time.time()
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=60)
+        alive = [c for c in busy if c.is_running() and c.status() != psutil.STATUS_ZOMBIE]
+    finally:
+        for process in (program, *busy):
+            with contextlib.suppress(psutil.Error, OSError):
+                process.kill()
+    # A shard takes minutes.
+    assert not alive
+    assert time.time() - started < 20 and program.returncode not in (0, None)
+    assert said.count("Traceback") == 1 and said.rstrip().endswith("KeyboardInterrupt"), said
+    assert os.listdir(tmp_path) == ["recipe.json"]
+
+
+def test_progress_is_told_in_files_too(tmp_path, monkeypatch, capsys):
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, shard=1, workers=1)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    monkeypatch.setattr(dataset, "EVERY_S", 0.0)
+    dataset.generate("grass", 3, tmp_path / "a", **how)
+    assert capsys.readouterr().err == "".join(f"shards: {k} of 3\n" for k in range(4))
+    monkeypatch.setattr(dataset, "EVERY_S", 1000.0)
+    dataset.generate("grass", 3, tmp_path / "b", **how)
+    assert capsys.readouterr().err == "shards: 0 of 3\nshards: 3 of 3\n"
+    dataset.generate("grass", 3, tmp_path / "c", progress=False, **how)
+    assert capsys.readouterr().err == ""
+
+
+def test_progress_is_that_of_tqdm_where_it_is_installed(tmp_path, capsys):
+    pytest.importorskip("tqdm")
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, shard=1, workers=1)
+    dataset.generate("grass", 3, tmp_path, **how)
+    said = capsys.readouterr().err
+    assert "shards: 100%" in said and "3/3" in said
+
+
+def test_numbers_of_numpy_are_numbers(tmp_path):
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, workers=1, progress=False)
+    made = dataset.generate("grass", np.int64(2), tmp_path / "a", seed=np.uint8(3), shard=np.int32(1), **how)
+    assert made == dataset.generate("grass", 2, tmp_path / "b", seed=3, shard=1, **how)
+    with pytest.raises(bg.SpecError, match="n must be a whole number, 1 to 1000000000, not 2.5"):
+        dataset.generate("grass", 2.5, tmp_path / "c", **how)
 
 
 def test_drawings_and_laz(tmp_path, program):
