@@ -4,7 +4,8 @@
 >>> bg.dataset.generate("birch", 1000, "birches", formats=("cloud", "mtg"), vary={"age": (8, 30)})  # doctest: +SKIP
 
 A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` beside
-each, ``manifest.json`` with the SHA-256 of all, ``croissant.json`` for tools that read data sets. The same recipe gives
+each, ``manifest.json`` with the SHA-256 of all, ``plants.csv`` with seed and digest of each plant, ``croissant.json`` for
+tools that read data sets. The same recipe gives
 the same bytes wherever it runs. A run that was stopped is taken up again: only shards that are missing are made.
 """
 
@@ -460,12 +461,13 @@ def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":
         raise RuntimeError(f"{out}: shards are gone that were made a moment ago")
     whole = hashlib.sha256("".join(d for e in shards for d in e["digests"]).encode()).hexdigest()
     manifest = {"recipe": dict(recipe), "plants": recipe["n"], "digest": whole, "shards": shards}
-    files = [("manifest.json", _json(manifest)), ("croissant.json", _json(_croissant(recipe, shards)))]
-    write_whole(out, files)
+    rows = _rows(recipe, shards)
+    croissant = _json(_croissant(recipe, shards, rows))
+    write_whole(out, [("manifest.json", _json(manifest)), ("croissant.json", croissant), ("plants.csv", rows)])
     return manifest
 
 
-def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> "Dict[str, Any]":
+def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]", rows: bytes) -> "Dict[str, Any]":
     """The data set in the words of Croissant 1.0 (MLCommons)."""
     spec = recipe["spec"] if isinstance(recipe["spec"], str) else "plants"
     files = [
@@ -480,22 +482,91 @@ def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]
         }
         for e in shards
     ]
+    table = {
+        "@type": "cr:FileObject",
+        "@id": "plants.csv",
+        "name": "plants.csv",
+        "contentUrl": "plants.csv",
+        "contentSize": f"{len(rows)} B",
+        "encodingFormat": "text/csv",
+        "sha256": hashlib.sha256(rows).hexdigest(),
+    }
+    kinds = {"index": "sc:Integer", "file": "sc:Text", "seed": "sc:Text", "digest": "sc:Text", **_kinds(recipe)}
     return {
         "@context": {
             "@language": "en",
             "@vocab": "https://schema.org/",
+            **{name: f"cr:{name}" for name in CROISSANT},
             "cr": "http://mlcommons.org/croissant/",
             "dct": "http://purl.org/dc/terms/",
             "sc": "https://schema.org/",
+            "rai": "http://mlcommons.org/croissant/RAI/",
             "conformsTo": "dct:conformsTo",
+            "data": {"@id": "cr:data", "@type": "@json"},
+            "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
+            "examples": {"@id": "cr:examples", "@type": "@json"},
         },
         "@type": "sc:Dataset",
         "conformsTo": "http://mlcommons.org/croissant/1.0",
         "name": f"burgeon-{spec}-{recipe['n']}",
         "description": f"{recipe['n']} plants ({spec}) made by Burgeon {recipe['burgeon']}; recipe.json says how.",
         "version": "1.0.0",
-        "distribution": files,
+        "distribution": [*files, table],
+        "recordSet": [
+            {
+                "@type": "cr:RecordSet",
+                "@id": "plants",
+                "name": "plants",
+                "description": "What each plant was made from; its files are in the shard, their names begin with the index.",
+                "field": [
+                    {
+                        "@type": "cr:Field",
+                        "@id": f"plants/{name}",
+                        "name": f"plants/{name}",
+                        "dataType": kind,
+                        "source": {"fileObject": {"@id": "plants.csv"}, "extract": {"column": name}},
+                    }
+                    for name, kind in kinds.items()
+                ],
+            }
+        ],
     }
+
+
+CROISSANT = (
+    *("citeAs", "column", "equivalentProperty", "extract", "field", "fileObject", "fileProperty", "fileSet", "format"),
+    *("includes", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex"),
+    *("repeated", "replace", "samplingRate", "separator", "source", "subField", "transform"),
+)
+"""Words of Croissant 1.0 that stand without its prefix."""
+
+
+def _kinds(recipe: "Mapping[str, Any]") -> "Dict[str, str]":
+    """The kinds of the arguments that differ from plant to plant; of tables and lists it is their JSON."""
+    kinds = {}
+    for name, range_ in sorted(recipe["vary"].items()):
+        values = range_["choice"] if isinstance(range_, dict) else range_
+        found = {type(value) for value in values}
+        whole_or_not = "sc:Float" if found == {int, float} else "sc:Text"
+        one = {bool: "sc:Boolean", int: "sc:Integer", float: "sc:Float"}
+        kinds[name] = one.get(found.pop(), "sc:Text") if len(found) == 1 else whole_or_not
+    return kinds
+
+
+def _rows(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> bytes:
+    """A table of all plants, for whoever chooses some of them, and for tools that read data sets."""
+    import csv
+
+    out = io.StringIO()
+    table, kinds = csv.writer(out, lineterminator="\n"), _kinds(recipe)
+    table.writerow(["index", "file", "seed", "digest", *kinds])
+    for shard in shards:
+        for k, digest in enumerate(shard["digests"]):
+            seed = plant_seed(recipe["seed"], shard["first"] + k)
+            drawn = [_drawn(recipe["vary"][name], seed, name) for name in kinds]
+            drawn = [value if isinstance(value, str) else json.dumps(value, sort_keys=True) for value in drawn]
+            table.writerow([shard["first"] + k, shard["file"], seed, digest, *drawn])
+    return out.getvalue().encode()
 
 
 class _Bar:

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tarfile
 import threading
 import time
 
@@ -56,7 +57,8 @@ def test_a_data_set_holds_what_it_says(made):
         assert plant["png"].startswith(b"\x89PNG")
     assert len({p["fields"]["age"] for p in plants}) > 1
     croissant = json.loads((out / "croissant.json").read_text())
-    assert [f["sha256"] for f in croissant["distribution"]] == [e["sha256"] for e in manifest["shards"]]
+    table = hashlib.sha256((out / "plants.csv").read_bytes()).hexdigest()
+    assert [f["sha256"] for f in croissant["distribution"]] == [*(e["sha256"] for e in manifest["shards"]), table]
 
 
 def test_several_processes_make_the_same_bytes(made, tmp_path):
@@ -305,7 +307,16 @@ def test_croissant_is_what_its_authors_check(made):
     croissant = pytest.importorskip("mlcroissant")
     own = croissant.Dataset(jsonld=str(made[0] / "croissant.json"))
     assert own.metadata.issues.errors == set()
-    assert len(own.metadata.distribution) == 3
+    assert len(own.metadata.distribution) == 4
+    records = {record["plants/index"]: record for record in own.records("plants")}
+    assert sorted(records) == list(range(8))
+    for plant in dataset.read(made[0]):
+        record = records[plant["index"]]
+        assert record["plants/digest"].decode() == plant["digest"] and int(record["plants/seed"]) == plant["seed"]
+        assert record["plants/age"] == plant["fields"]["age"]
+        assert json.loads(record["plants/leaves"]) == plant["fields"]["leaves"]
+        with tarfile.open(made[0] / record["plants/file"].decode()) as shard:
+            assert f"{plant['index']:08d}.glb" in shard.getnames()
 
 
 @pytest.mark.ray
