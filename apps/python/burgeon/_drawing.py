@@ -225,10 +225,10 @@ def _outline(points: "np.ndarray", faces: "np.ndarray") -> "Any":
         if at == start and len(loop) > len(best):
             best = loop
     if len(best) >= 3:
-        loop, own = place[[*best, best[0]]], points[used]
+        outline, own = place[[*best, best[0]]], points[used]
         # The open end of a tube is no outline of it.
-        if (np.ptp(loop, axis=0) >= AROUND * np.ptp(own, axis=0)).all():
-            return loop
+        if (np.ptp(outline, axis=0) >= AROUND * np.ptp(own, axis=0)).all():
+            return outline
     hull = _hull(points[used])
     return None if hull is None else np.concatenate([hull, hull[:1]])
 

@@ -11,11 +11,14 @@ from . import _burgeon
 from ._files import write_whole
 from ._given import beyond, keys, number, table, whole, wrong
 from .makers import SpecText, grow
-from .model import Cloud, Model, look, seen, shown
+from .model import Model, cloud_bytes, look, save_cloud, seen, shown
 from .plant import Plant
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Unpack
+
+    from .model import View
 
 __all__ = ["Forest", "ForestCloud", "ForestMasks", "forest"]
 
@@ -42,8 +45,13 @@ class ForestCloud(NamedTuple):
     tree: "np.ndarray"
     """(n,) uint32: row of ``forest.places``."""
 
-    save = Cloud.save
-    to_bytes = Cloud.to_bytes
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes it: see ``Cloud.save``."""
+        save_cloud(self._asdict(), path)
+
+    def to_bytes(self, extension: str = "npz") -> bytes:
+        """The file of a format: see ``Cloud.to_bytes``."""
+        return cloud_bytes(self._asdict(), extension)
 
 
 class ForestMasks(NamedTuple):
@@ -161,11 +169,11 @@ class Forest:
         """The forest as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
         return ForestCloud(**seen(self, points, stations, elevation, noise, seed))
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> ForestMasks:
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> ForestMasks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
         import numpy as np
 
@@ -177,8 +185,9 @@ class Forest:
         plant = self.places["plant"].tolist()
         parts = np.concatenate([np.arange(first[p], first[p + 1]) for p in plant])
         tree = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
-        seen_parts, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
-        return ForestMasks(*columns, np.where(seen_parts < 0, np.int32(-1), tree[np.maximum(seen_parts, 0)]))
+        at, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
+        part, axis, organ, depth = columns
+        return ForestMasks(part, axis, organ, depth, np.where(at < 0, np.int32(-1), tree[np.maximum(at, 0)]))
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()

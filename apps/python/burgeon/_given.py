@@ -17,7 +17,9 @@ def whole(name: str, value: Any, least: int, most: int) -> int:
     """A whole number within its range; also one of NumPy."""
     try:
         # True is no number of anything.
-        number = operator.index(None if isinstance(value, bool) else value)
+        if isinstance(value, bool):
+            raise TypeError
+        number = operator.index(value)
     except TypeError:
         bounds = f"a whole number, {least} to {most}"
         if isinstance(value, float):

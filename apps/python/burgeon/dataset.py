@@ -279,9 +279,9 @@ def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
             digest, files = make_plant(recipe, index)
             digests.append(digest)
             for extension, data in files:
-                entry = tarfile.TarInfo(f"{index:08d}.{extension}")
-                entry.size, entry.mode = len(data), 0o644
-                archive.addfile(entry, io.BytesIO(data))
+                member = tarfile.TarInfo(f"{index:08d}.{extension}")
+                member.size, member.mode = len(data), 0o644
+                archive.addfile(member, io.BytesIO(data))
     data = tar.getvalue()
     entry = {
         "file": f"{_name(k)}.tar",
@@ -311,7 +311,7 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
     about = {"seed": seed, "index": index, "fields": drawn, "digest": plant.digest, "measures": plant.measures()}
     files = [("json", _json(about))]
     clouds = {"cloud": "cloud.npz", "laz": "laz"}
-    cloud = plant.cloud(**recipe["cloud"]) if any(kind in clouds for kind in recipe["formats"]) else None
+    cloud: Any = plant.cloud(**recipe["cloud"]) if any(kind in clouds for kind in recipe["formats"]) else None
     for kind in recipe["formats"]:
         if kind in clouds:
             files.append((clouds[kind], cloud.to_bytes(clouds[kind].split(".")[-1])))

@@ -27,7 +27,7 @@ class SpecText(NamedTuple):
     file: str
 
 
-Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], None]
+Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], SpecText, None]
 
 
 def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":

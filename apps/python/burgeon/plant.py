@@ -14,6 +14,9 @@ from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Unpack
+
+    from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 
@@ -318,7 +321,7 @@ class Plant:
         """
         return draw(self)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Masks:
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Masks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
         import numpy as np
 
@@ -451,7 +454,7 @@ class Plant:
             files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
             write_whole(folder, [(name, files[0][1]), *files[1:]])
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
