@@ -438,7 +438,7 @@ def _with_ray(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", w
     try:
         import ray
     except ImportError as error:
-        raise ImportError("ray=True needs Ray: pip install 'burgeon[ray]' (or leave ray out: workers=N)") from error
+        raise ImportError("ray=True needs Ray: pip install 'ray>=2' (or leave ray out: workers=N)") from error
     if not ray.is_initialized():
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
     # A worker that is killed is replaced, and its shard made again.

@@ -299,7 +299,7 @@ def test_drawings_and_laz(tmp_path, program):
 
 def test_laspy_that_is_missing_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "laspy", None)
-    with pytest.raises(ImportError, match=r"burgeon\[laz\]"):
+    with pytest.raises(ImportError, match=r"pip install .laspy\[lazrs\]"):
         bg.leaf().cloud(100).to_bytes("laz")
 
 
