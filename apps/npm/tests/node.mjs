@@ -2,9 +2,17 @@
 // installed, in Node. The same plants as the native program, to the bit.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
@@ -59,32 +67,45 @@ test('the small core makes the same trees, and says what it does not make', asyn
   await assert.rejects(small.schema('leaf'), /tree, skin/);
 });
 
-test('drawings and leaves are those of the native program', async () => {
-  for (const name of ['a', 'apple-tree']) {
-    const folder = name.length === 1 ? 'table1' : 'gallery';
-    const path = join(root, `fixtures/sketches/${folder}/${name}.svg`);
-    const plant = await sketch(readFileSync(path), { name: `${name}.svg`, seed: 1 });
-    assert.equal(plant.digest, expected[`drawing ${name}`], name);
+test('all drawings and leaves are those of the native program', async () => {
+  const folder = join(root, 'fixtures/sketches');
+  const drawings = readdirSync(folder, { recursive: true }).filter((path) => path.endsWith('.svg'));
+  const file = new Map(drawings.map((path) => [basename(path, '.svg'), join(folder, path)]));
+  let compared = 0;
+  for (const [name, wanted] of Object.entries(expected)) {
+    const marks = join(root, 'fixtures/leaves', name);
+    if (name.startsWith('drawing ')) {
+      const word = name.slice(8);
+      const plant = await sketch(readFileSync(file.get(word)), { name: `${word}.svg`, seed: 1 });
+      assert.equal(plant.digest, wanted, name);
+    } else if (/^leaf\d\.csv$/.test(name)) {
+      const made = await leaf(readFileSync(marks, 'utf8'), { name: name.slice(0, -4), wind: false });
+      assert.equal(made.digest, wanted, name);
+    } else continue;
+    compared += 1;
   }
-  const marks = await leaf(readFileSync(join(root, 'fixtures/leaves/leaf1.csv'), 'utf8'), {
-    name: 'leaf1',
-    wind: false,
-  });
-  assert.equal(marks.digest, expected['leaf1.csv']);
+  assert.ok(compared >= 28, `${compared} compared`);
 });
 
-test('flowers are those of the native program', {
+test('all flowers, and leaves of chief veins, are those of the native program', {
   skip: native ? false : 'BURGEON names no program',
 }, async () => {
-  const report = join(away, 'flower.json');
-  for (const species of ['lily', 'rose']) {
+  const report = join(away, 'report.json');
+  const told = () => JSON.parse(readFileSync(report, 'utf8')).items[0].digest;
+  for (const species of FLOWERS) {
     const args = ['bloom', 'run', species, '--day', '3', '--quiet', '--report', report];
     execFileSync(native, [...args, '-o', join(away, 'flower.glb')]);
     const flower = await bloom(species, { day: 3, wind: false });
-    assert.equal(flower.digest, JSON.parse(readFileSync(report, 'utf8')).items[0].digest, species);
+    assert.equal(flower.digest, told(), species);
     assert.equal(flower.view.days.length, 2);
   }
   assert.ok(FLOWERS.length > 10);
+  for (const venation of ['palmate', 'parallel']) {
+    const marks = join(away, `${venation}.csv`);
+    execFileSync(native, ['leaf', '--venation', venation, '--marks', marks, '--quiet']);
+    const made = await leaf(readFileSync(marks, 'utf8'), { name: venation, wind: false });
+    assert.equal(made.digest, expected[`${venation}.csv`], venation);
+  }
 });
 
 test('columns, tables and files fit together', async () => {

@@ -179,7 +179,7 @@ def leaf(
                 return _scanned(name, (scan.read(), extension[1:].lower(), word("unit", unit)), None, budget, fields)
         else:
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
-            if _burgeon.is_rays(file[1]):
+            if side_veins is not None and _burgeon.is_rays(file[1]):
                 asked = _asked(seed, budget, fields, {"wind": wind})
                 return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
     return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))

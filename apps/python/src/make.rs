@@ -93,9 +93,6 @@ fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<
         return Err(unread(&"Python reads leaves of marks (.csv) and of vein graphs (.json)"));
     }
     let text = std::fs::read_to_string(&path).map_err(|e| unread(&e))?;
-    if burgeon::formats::is_rays(text.as_bytes()) {
-        return Err(unread(&"is of chief veins, which only the command line hangs into a tree"));
-    }
     let data = LeafData { name: file.to_owned(), text: text.into() };
     let maker = Maker::Leaf(Box::new(LeafMaker { data, settings: LeafSpec::default() }));
     Ok(Settings { name: file.to_owned(), seed, maker, ..Settings::default() })
