@@ -23,6 +23,7 @@ const TEST: &[&str] = &[
     "ipykernel",
     "laspy[lazrs]",
     "mlcroissant",
+    "mypy",
 ];
 /// What the step of its own imports: large, and not there for every Python.
 const RAY: &[&str] = &["ray>=2"];

@@ -109,7 +109,7 @@ class BURGEON_OT_from_strokes(Refusing):
         lines, sheet = strokes.flat(drawn)
         # Once to see how its height is measured, then so that a metre drawn is a metre.
         text = json.dumps([line.tolist() for line in lines])
-        first = plants.grown("sketch", "", self.seed, 0.1, None, text, {"textures": False})
+        first = plants.grown("sketch", "", self.seed, {"detail": 0.1, "textures": False}, None, text, {})
         fields = {"height_m": first.measures()["height_m"] / first.front[0]}
         plant = plants.add(context, "drawing", "sketch", "", self.seed, self.detail, text, fields)
         x, y = first.front[1]

@@ -1,7 +1,5 @@
 """The panel in the side bar, and entries of the menus of Add and Import."""
 
-import json
-
 import bpy
 
 from . import plants, settings
@@ -41,7 +39,9 @@ def draw_plant(layout, plant):
         for line in own.fault.splitlines():
             head.label(text=line, icon="ERROR")
     # Flowers and leaves have no fineness.
-    for name in ("seed", "detail", "live") if own.maker in ("tree", "sketch") else ("seed", "live"):
+    if own.maker in ("tree", "flower") and not own.whole:
+        head.prop(own, "species")
+    for name in ("seed", *surface(own), "live"):
         head.prop(own, name)
     if own.maker == "flower":
         head.prop(own, "day")
@@ -60,9 +60,18 @@ def draw_plant(layout, plant):
                 draw_row(body, group, row)
 
 
+def surface(own):
+    """What a plant says of its meshes: of a project only their fineness is known, flowers and leaves have none."""
+    if own.maker not in ("tree", "sketch"):
+        return ()
+    if own.whole:
+        return ("detail",)
+    return ("detail", *(settings.SURFACE if own.maker == "tree" else settings.SURFACE[:2]))
+
+
 def topics(own):
     """The rows that a plant has, by topic: what stands in no table comes first."""
-    spec, found = json.loads(own.base), {settings.GENERAL: []}
+    spec, found = settings.base(own), {settings.GENERAL: []}
     for row in settings.rows(own.maker):
         if settings.at(spec, row.path) is not settings.missing:
             found.setdefault(row.topic, []).append(row)

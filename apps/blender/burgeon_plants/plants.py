@@ -20,7 +20,7 @@ FAULTS = (ValueError, TypeError, OSError, RuntimeError, MemoryError)
 
 def add(context, name, maker, species="", seed=1, detail=1.0, strokes="", fields=None, collection=None):
     """Makes a plant and adds it to a scene: an object with a mesh and its settings. What is refused adds nothing."""
-    made = grown(maker, species, seed, detail, None, strokes, fields or {})
+    made = grown(maker, species, seed, {"detail": detail}, None, strokes, fields or {})
     plant = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     own = plant.burgeon
     settings.filling = True
@@ -89,16 +89,16 @@ def again(own, fields):
     return was.again(**how, **fields)
 
 
-def grown(maker, species, seed, detail, day, strokes, fields):
-    """What ``burgeon`` makes of settings."""
+def grown(maker, species, seed, skin, day, strokes, fields):
+    """What ``burgeon`` makes of settings; ``skin``: of the meshes of trees and drawings."""
     how = {"seed": seed, "wind": True}
     if maker == "tree":
-        return bg.grow(species or None, detail=detail, **how, **fields)
+        return bg.grow(species or None, **skin, **how, **fields)
     if maker == "flower":
         return bg.bloom(species or None, day, **how, **fields)
     if maker == "leaf":
         return bg.leaf(**how, **fields)
-    return bg.sketch(json.loads(strokes), detail=detail, **how, **fields)
+    return bg.sketch(json.loads(strokes), **skin, **how, **fields)
 
 
 def make(plant):
@@ -107,8 +107,11 @@ def make(plant):
     fields = settings.asked(own)
     if own.whole:
         return again(own, fields)
-    day = own.day if own.maker == "flower" else None
-    return grown(own.maker, own.species, own.seed, own.detail, day, own.strokes, fields)
+    # Another species opens on days of its own.
+    day = own.day if own.maker == "flower" and own.base else None
+    names = settings.SURFACE if own.maker == "tree" else settings.SURFACE[:2]
+    skin = {name: getattr(own, name) for name in ("detail", *names)}
+    return grown(own.maker, own.species, own.seed, skin, day, own.strokes, fields)
 
 
 def is_plant(plant):
@@ -129,6 +132,12 @@ def update(plant):
         return False
     made = make(plant)
     own.fault = ""
+    if not own.base:
+        settings.fill(own, made.spec)
+        if own.maker == "flower":
+            settings.filling = True
+            own.day = made.days[0]
+            settings.filling = False
     if plant.data.users > 1:
         # Another object shows the same mesh: it stays as it is.
         plant.data = bpy.data.meshes.new(plant.data.name)

@@ -27,6 +27,9 @@ MOST_WHOLE = 2**31 - 1
 """Blender's whole numbers are of 32 bits; seeds, too."""
 NONE = "NONE"
 
+SURFACE = ("sides", "textures", "texture_size", "foliage")
+"""How the meshes of a tree are made, beside their fineness; those of a drawing have the first two."""
+
 UNITS = {"m": "DISTANCE", "d": "NONE", "a": "NONE"}
 """Units of schemas, and what Blender has for them; degrees stay degrees."""
 
@@ -149,6 +152,26 @@ def _touched(group, _context):
             call(group.id_data)
 
 
+def _other_species(plant, context):
+    """Another species has settings of its own, which the plant gets when it is made anew."""
+    if not filling:
+        plant.base = ""
+        _touched(plant, context)
+
+
+def _species(plant, _context, _typed):
+    trees, flowers = bg.presets()
+    return {"tree": trees, "flower": flowers}.get(plant.maker, [])
+
+
+SKIN = bg.schema("skin")["properties"]
+FOLIAGE = (
+    ("outlines", "Outlines", "Leaves by their outlines"),
+    ("cards", "Cards", "Leaves cut out of cards by their pictures: fewer triangles"),
+    ("by-level", "By Level", "Outlines near by, cards far away"),
+)
+
+
 def _property(row):
     about, schema = row.schema.get("description", ""), row.schema
     common = {"name": row.label, "description": about.replace("`", "").strip().removesuffix("."), "update": _touched}
@@ -190,9 +213,26 @@ class BURGEON_plant(bpy.types.PropertyGroup):
     """What an object is the plant of; of an object that is none, ``maker`` is empty."""
 
     maker: StringProperty()
-    species: StringProperty(name="Species")
+    species: StringProperty(
+        name="Species",
+        description="What it grows from; another one has settings of its own",
+        search=_species,
+        search_options={"SORT"},
+        update=_other_species,
+    )
     seed: IntProperty(name="Seed", description="What all chance follows from", default=1, min=0, update=_touched)
     detail: FloatProperty(name="Detail", description="Fineness of the meshes", default=1.0, min=0.1, max=8.0, update=_touched)
+    sides: IntProperty(
+        name="Sides",
+        description="Of an ordinary branch",
+        default=SKIN["sides"]["default"],
+        min=SKIN["sides"]["minimum"],
+        max=SKIN["sides"]["maximum"],
+        update=_touched,
+    )
+    textures: BoolProperty(name="Textures", description="Otherwise plain colours", default=True, update=_touched)
+    texture_size: IntProperty(name="Texture Size", description="Pixels of a side", default=512, min=64, max=4096, update=_touched)
+    foliage: EnumProperty(name="Foliage", description="How leaves are meshed", items=FOLIAGE, update=_touched)
     day: FloatProperty(name="Day", description="0 is the bud", min=0.0, soft_max=30.0, max=1000.0, update=_touched)
     live: BoolProperty(name="Live", description="Make it anew a moment after each change", default=True, update=_touched)
     base: StringProperty(description="What it is asked for, as JSON, before the properties change it")
@@ -259,9 +299,14 @@ def value_of(plant, row, was):
     return was if same else [float(f"{x:.7g}") for x in now]
 
 
+def base(plant):
+    """What a plant is asked for before its properties change it; nothing while it waits for the settings of its species."""
+    return json.loads(plant.base or "{}")
+
+
 def asked(plant):
     """The spec of a plant: its base, and what its properties say instead."""
-    spec = json.loads(plant.base)
+    spec = base(plant)
     for row in rows(plant.maker):
         *tables, last = row.path
         if at(spec, row.path) is not missing:
@@ -272,7 +317,7 @@ def asked(plant):
 
 def key(plant):
     """All that a plant is made from."""
-    names = ("maker", "species", "seed", "detail", "day", "strokes", "opens", "row", "whole")
+    names = ("maker", "species", "seed", "detail", *SURFACE, "day", "strokes", "opens", "row", "whole")
     return json.dumps([[getattr(plant, name) for name in names], asked(plant)], sort_keys=True)
 
 

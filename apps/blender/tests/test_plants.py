@@ -1,7 +1,5 @@
 """Plants from the panel: meshes, settings, undo, flowers, wind, forests, projects."""
 
-import json
-
 import bpy
 import numpy as np
 import pytest
@@ -122,7 +120,7 @@ def test_settings_are_those_of_the_schema():
     topics = dict(panel.topics(own))
     assert {"general", "leaves", "look", "wood", "variation", "method", "blossom", "blade"} <= set(topics)
     # Every number, truth, word and colour of the spec has a row.
-    shown, spec = {row.path for rows in topics.values() for row in rows}, json.loads(own.base)
+    shown, spec = {row.path for rows in topics.values() for row in rows}, settings.base(own)
     for table in ("leaves", "look", "wood", "variation", "blossom"):
         for name, value in spec[table].items():
             if isinstance(value, (int, float, bool, str)):
@@ -416,6 +414,102 @@ def test_each_operator_is_one_step_of_undo():
     assert not bpy.data.objects
     bpy.ops.ed.redo()
     assert same(bpy.data.objects["hazel"], small())
+
+
+def there():
+    """All that a file holds of plants, in words that can be compared."""
+    plain = [o for o in bpy.data.objects if o.type == "MESH"]
+    return (
+        sorted((o.name, len(o.data.vertices), o.burgeon.maker, o.burgeon.opens, len(o.modifiers)) for o in plain),
+        sorted((o.name, bool(o.data.shape_keys)) for o in plain),
+        sorted(c.name for c in bpy.data.collections),
+        len(bpy.data.objects),
+    )
+
+
+def _drawn():
+    bpy.ops.burgeon.add_tree("EXEC_DEFAULT", True, **SMALL)
+
+
+def _opened():
+    bpy.ops.burgeon.add_flower("EXEC_DEFAULT", True, species="tulip")
+
+
+def _opening():
+    _opened()
+    bpy.ops.burgeon.open_over_time("EXEC_DEFAULT", True, shapes=2, first=1, last=9)
+
+
+PROJECT = str(ROOT / "fixtures/projects/version-5.burgeon")
+
+
+@pytest.mark.parametrize(
+    "before, name, how",
+    [
+        (None, "add_flower", {"species": "tulip"}),
+        (None, "add_leaf", {}),
+        (None, "add_forest", {"species": "grass", "width": 6, "depth": 6, "spacing": 2, "kinds": 1, "detail": 0.1}),
+        (None, "import_project", {"filepath": PROJECT}),
+        (_drawn, "wind", {"gust": 0.1}),
+        (_opened, "open_over_time", {"shapes": 2, "first": 1, "last": 9}),
+        (_opening, "close", {}),
+    ],
+)
+def test_what_an_operator_does_is_undone_and_done_again(before, name, how):
+    bpy.ops.ed.undo_push(message="start")
+    if before:
+        before()
+    first = there()
+    assert getattr(bpy.ops.burgeon, name)("EXEC_DEFAULT", True, **how) == {"FINISHED"}
+    then = there()
+    assert then != first
+    bpy.ops.ed.undo()
+    assert there() == first
+    bpy.ops.ed.redo()
+    assert there() == then
+
+
+def test_another_species_brings_settings_of_its_own():
+    bpy.ops.burgeon.add_tree(**SMALL)
+    tree = active()
+    tree.burgeon.species = "grass"
+    plants.catch_up()
+    wanted = bg.grow("grass", seed=3, detail=0.2, wind=True)
+    assert tree.burgeon.fault == "" and same(tree, wanted)
+    assert settings.asked(tree.burgeon) == wanted.spec and not plants.is_stale(tree)
+    tree.burgeon.tree.leaves__leaf_keep = 0.5
+    plants.catch_up()
+    assert same(tree, bg.grow("grass", seed=3, detail=0.2, wind=True, leaves={"leaf_keep": 0.5}))
+    # What there is not leaves the plant as it is, and is told with what is meant.
+    tree.burgeon.species = "hazle"
+    plants.catch_up()
+    assert "is `hazel` meant?" in tree.burgeon.fault and panel.topics(tree.burgeon) == []
+    tree.burgeon.species = "hazel"
+    plants.catch_up()
+    assert tree.burgeon.fault == "" and same(tree, bg.grow("hazel", seed=3, detail=0.2, wind=True))
+    bpy.ops.burgeon.add_flower(species="tulip", seed=2)
+    flower = active()
+    flower.burgeon.species = "lily"
+    plants.catch_up()
+    made = bg.bloom("lily", seed=2, wind=True)
+    assert same(flower, made) and flower.burgeon.day == pytest.approx(made.days[0])
+
+
+def test_the_surface_of_trees_and_drawings_can_be_set():
+    bpy.ops.burgeon.add_tree(**SMALL)
+    tree = active()
+    assert panel.surface(tree.burgeon) == ("detail", "sides", "textures", "texture_size", "foliage")
+    tree.burgeon.sides, tree.burgeon.foliage, tree.burgeon.texture_size = 4, "cards", 64
+    plants.catch_up()
+    assert same(tree, small(sides=4, foliage="cards", texture_size=64))
+    sizes = {tuple(n.image.size) for m in tree.data.materials for n in m.node_tree.nodes if n.type == "TEX_IMAGE"}
+    assert (64, 64) in sizes and (512, 512) not in sizes
+    tree.burgeon.textures = False
+    plants.catch_up()
+    assert same(tree, small(sides=4, foliage="cards", textures=False))
+    assert not any(n.type == "TEX_IMAGE" for m in tree.data.materials for n in m.node_tree.nodes)
+    bpy.ops.burgeon.add_leaf()
+    assert panel.surface(active().burgeon) == ()
 
 
 def test_undo_of_a_setting_brings_the_mesh_back_and_redo_the_new_one():

@@ -251,8 +251,9 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
         return preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")));
     }
     if files::extension(what).is_none() && !what.exists() && !inputs::is_stdin(what) {
+        let hint = burgeon::meant(key, burgeon::PRESETS.iter().map(|p| p.key));
         return Err(Failure::Bad(format!(
-            "there is no preset `{key}`; `burgeon presets` lists them, and a spec's name ends with .toml"
+            "there is no preset `{key}`; `burgeon presets` lists them, and a spec's name ends with .toml{hint}"
         )));
     }
     spec_of(what, &files::read_text(what)?, told)

@@ -33,8 +33,11 @@ pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
     };
     let shown = args.show.as_deref().map(|key| {
         let tree = Preset::find(key).map(|p| p.toml);
-        tree.or_else(|| bloom::preset_text(key))
-            .ok_or_else(|| Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them")))
+        tree.or_else(|| bloom::preset_text(key)).ok_or_else(|| {
+            let known = PRESETS.iter().map(|p| p.key).chain(FlowerSpec::PRESETS.iter().copied());
+            let hint = burgeon::meant(key, known);
+            Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them{hint}"))
+        })
     });
     let shown = shown.transpose()?;
     if let Some(path) = &args.schema {

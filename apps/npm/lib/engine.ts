@@ -44,9 +44,17 @@ interface Job {
   reject(why: unknown): void;
 }
 
+/** What is used of a worker. */
+export interface Beside {
+  onmessage: ((event: { readonly data: Said }) => void) | null;
+  onerror: ((event: { readonly message: string }) => void) | null;
+  postMessage(message: { readonly number: number; readonly asking: Asking }): void;
+  terminate(): void;
+}
+
 /** In a worker, one request after another. Stopping one ends the worker; those that wait go to the next. */
-export function beside(spawn: () => Worker): Engine {
-  let thread: Worker | undefined;
+export function beside(spawn: () => Beside): Engine {
+  let thread: Beside | undefined;
   let count = 0;
   const jobs: Job[] = [];
   const stop = (): void => {
@@ -59,9 +67,9 @@ export function beside(spawn: () => Worker): Engine {
     thread ??= start();
     thread.postMessage({ number: job.number, asking: job.asking });
   };
-  const start = (): Worker => {
+  const start = (): Beside => {
     const made = spawn();
-    made.onmessage = ({ data }: MessageEvent<Said>) => {
+    made.onmessage = ({ data }) => {
       const job = jobs[0];
       if (job?.number !== data.number) return;
       jobs.shift();
@@ -119,13 +127,13 @@ export function beside(spawn: () => Worker): Engine {
 }
 
 /** A worker of a page; one of another host is started by way of this one's. */
-export function pageWorker(own: () => Worker, address: string): Worker {
+export function pageWorker(own: () => Worker, address: string): Beside {
   try {
-    return own();
+    return own() as unknown as Beside;
   } catch (e) {
     if (new URL(address).origin === globalThis.location?.origin) throw e;
     const source = new Blob([`import ${JSON.stringify(address)};`], { type: 'text/javascript' });
     const url = URL.createObjectURL(source);
-    return new Worker(url, { type: 'module' });
+    return new Worker(url, { type: 'module' }) as unknown as Beside;
   }
 }

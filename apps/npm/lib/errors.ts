@@ -11,7 +11,7 @@ export class BurgeonError extends Error {
   readonly field: string | undefined;
   /** Its value. */
   readonly value: string | undefined;
-  /** What it may be: a range, or the words that are known. */
+  /** What it may be: a range, the words that are known, or a kind of value. */
   readonly range: string | undefined;
 
   constructor(refusal: Refusal) {
@@ -19,11 +19,11 @@ export class BurgeonError extends Error {
     this.name = 'BurgeonError';
     this.code = refusal.code;
     this.fields = refusal.fields;
-    const { field, path, name, value, range, choices } = refusal.fields;
-    this.field =
-      field ?? ([path, refusal.code === 'spec-unknown' ? name : ''].filter(Boolean).join('.') || undefined);
-    this.value = value ?? (refusal.code === 'spec-choice' ? name : undefined);
-    this.range = range ?? choices;
+    const { field, path, name, value, found, range, choices, wanted } = refusal.fields;
+    const beside = refusal.code === 'spec-unknown' || refusal.code === 'spec-missing' ? name : '';
+    this.field = field ?? ([path, beside].filter(Boolean).join('.') || undefined);
+    this.value = refusal.code === 'spec-choice' ? name : value || found;
+    this.range = range ?? choices ?? wanted;
   }
 }
 

@@ -1,14 +1,9 @@
-/** In Node: the core computes in this thread. */
-import { readFile } from 'node:fs/promises';
-import init, * as core from './core/burgeon_npm.js';
-import { here } from './engine.js';
+/** In Node: the core computes in a worker thread. */
+import { beside } from './engine.js';
 import { makers } from './makers.js';
+import { thread } from './thread.js';
 
-const load = async (): Promise<typeof core> => {
-  const bytes = await readFile(new URL('./core/burgeon_npm_bg.wasm', import.meta.url));
-  await init({ module_or_path: bytes });
-  return core;
-};
+const address = new URL('./node-worker.js', import.meta.url);
 
-export const { grow, sketch, leaf, bloom, schema, close } = makers(here(load));
+export const { grow, sketch, leaf, bloom, schema, close } = makers(beside(() => thread(address)));
 export * from './exports.js';

@@ -30,7 +30,8 @@ impl Refused {
 
     /// A word that is none of those that are known.
     pub(crate) fn choice(path: &str, name: &str, choices: &str) -> Self {
-        let message = format!("{path}: {name:?} is not known; there are {choices}");
+        let hint = burgeon::meant(name, choices.split(", "));
+        let message = format!("{path}: {name:?} is not known; there are {choices}{hint}");
         Self::with("spec-choice", &[("path", path), ("name", name), ("choices", choices)], message)
     }
 

@@ -2,9 +2,17 @@
 // installed, in Node. The same plants as the native program, to the bit.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
@@ -59,32 +67,45 @@ test('the small core makes the same trees, and says what it does not make', asyn
   await assert.rejects(small.schema('leaf'), /tree, skin/);
 });
 
-test('drawings and leaves are those of the native program', async () => {
-  for (const name of ['a', 'apple-tree']) {
-    const folder = name.length === 1 ? 'table1' : 'gallery';
-    const path = join(root, `fixtures/sketches/${folder}/${name}.svg`);
-    const plant = await sketch(readFileSync(path), { name: `${name}.svg`, seed: 1 });
-    assert.equal(plant.digest, expected[`drawing ${name}`], name);
+test('all drawings and leaves are those of the native program', async () => {
+  const folder = join(root, 'fixtures/sketches');
+  const drawings = readdirSync(folder, { recursive: true }).filter((path) => path.endsWith('.svg'));
+  const file = new Map(drawings.map((path) => [basename(path, '.svg'), join(folder, path)]));
+  let compared = 0;
+  for (const [name, wanted] of Object.entries(expected)) {
+    const marks = join(root, 'fixtures/leaves', name);
+    if (name.startsWith('drawing ')) {
+      const word = name.slice(8);
+      const plant = await sketch(readFileSync(file.get(word)), { name: `${word}.svg`, seed: 1 });
+      assert.equal(plant.digest, wanted, name);
+    } else if (/^leaf\d\.csv$/.test(name)) {
+      const made = await leaf(readFileSync(marks, 'utf8'), { name: name.slice(0, -4), wind: false });
+      assert.equal(made.digest, wanted, name);
+    } else continue;
+    compared += 1;
   }
-  const marks = await leaf(readFileSync(join(root, 'fixtures/leaves/leaf1.csv'), 'utf8'), {
-    name: 'leaf1',
-    wind: false,
-  });
-  assert.equal(marks.digest, expected['leaf1.csv']);
+  assert.ok(compared >= 28, `${compared} compared`);
 });
 
-test('flowers are those of the native program', {
+test('all flowers, and leaves of chief veins, are those of the native program', {
   skip: native ? false : 'BURGEON names no program',
 }, async () => {
-  const report = join(away, 'flower.json');
-  for (const species of ['lily', 'rose']) {
+  const report = join(away, 'report.json');
+  const told = () => JSON.parse(readFileSync(report, 'utf8')).items[0].digest;
+  for (const species of FLOWERS) {
     const args = ['bloom', 'run', species, '--day', '3', '--quiet', '--report', report];
     execFileSync(native, [...args, '-o', join(away, 'flower.glb')]);
     const flower = await bloom(species, { day: 3, wind: false });
-    assert.equal(flower.digest, JSON.parse(readFileSync(report, 'utf8')).items[0].digest, species);
+    assert.equal(flower.digest, told(), species);
     assert.equal(flower.view.days.length, 2);
   }
   assert.ok(FLOWERS.length > 10);
+  for (const venation of ['palmate', 'parallel']) {
+    const marks = join(away, `${venation}.csv`);
+    execFileSync(native, ['leaf', '--venation', venation, '--marks', marks, '--quiet']);
+    const made = await leaf(readFileSync(marks, 'utf8'), { name: venation, wind: false });
+    assert.equal(made.digest, expected[`${venation}.csv`], venation);
+  }
 });
 
 test('columns, tables and files fit together', async () => {
@@ -157,13 +178,24 @@ test('what is wrong is named: field, value and range', async () => {
     range: 'seed, wind, lods, bu',
   });
   await wrong(grow('oak', { fields: { agee: 3 } }), { code: 'spec-unknown', field: 'agee' });
+  await wrong(grow('oak', { fields: { leaves: { leaf_kept: 1 } } }), {
+    code: 'spec-unknown',
+    field: 'leaves.leaf_kept',
+  });
+  await assert.rejects(grow('oak', { fields: { agee: 3 } }), /; is `age` meant\?$/);
+  await assert.rejects(grow('oka'), /; is `oak` meant\?$/);
   await wrong(grow('oak', { detail: 99 }), {
     code: 'field-range',
     field: 'detail',
     value: '99',
     range: '0.1 to 8',
   });
-  await wrong(grow('oak', { fields: { age: 'old' } }), { code: 'spec-kind', field: 'age', value: 'old' });
+  await wrong(grow('oak', { fields: { age: 'old' } }), {
+    code: 'spec-kind',
+    field: 'age',
+    value: 'old',
+    range: 'a whole number',
+  });
   await wrong(grow('oak', { fields: { age: Number.NaN } }), {
     code: 'field-range',
     field: 'age',
@@ -295,6 +327,39 @@ test('whatever is passed makes a plant or is named', async () => {
   assert.ok(made > 5 && refused > 100, `${made} made, ${refused} refused`);
   // The core is whole nevertheless.
   assert.ok((await grow('hazel', { detail: 0.1, textures: false, fields: { age: 2 } })).report);
+});
+
+test('a plant is made beside the program: timers go on, and a signal stops it', async () => {
+  let ticks = 0;
+  const timer = setInterval(() => (ticks += 1), 5);
+  const started = performance.now();
+  const tree = await grow('oak', { seed: 2, detail: 1 });
+  const took = performance.now() - started;
+  clearInterval(timer);
+  assert.ok(tree.report && took > 100 && ticks > took / 100, `${ticks} ticks in ${took} ms`);
+  // One that takes much longer than it is given; the one that waits goes to another thread.
+  const long = { seed: 2, detail: 8, fields: { age: 60 } };
+  const stopped = new AbortController();
+  const first = grow('oak', { ...long, signal: stopped.signal });
+  const second = grow('hazel', { detail: 0.1, textures: false, wind: false });
+  setTimeout(() => stopped.abort(), 50);
+  const from = performance.now();
+  await assert.rejects(first, { name: 'AbortError' });
+  assert.ok(performance.now() - from < 1000, 'it was waited for');
+  assert.ok(expected['tree hazel'].startsWith((await second).digest));
+});
+
+test('in this thread it makes the same plants', async () => {
+  for (const place of ['in-thread.js', 'growth/in-thread.js']) {
+    const here = await import(file(place));
+    let ticks = 0;
+    await here.grow('grass', { detail: 0.1, textures: false });
+    const timer = setInterval(() => (ticks += 1), 1);
+    const tree = await here.grow('oak', { detail: 0.1, textures: false, wind: false });
+    assert.equal(ticks, 0, 'in another thread');
+    clearInterval(timer);
+    assert.ok(expected['tree oak'].startsWith(tree.digest));
+  }
 });
 
 test('schemas say what there is', async () => {

@@ -12,6 +12,8 @@ the same spec and seed give the same bits on every machine and as the command li
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from ._burgeon import VERSION as __version__
 from ._burgeon import set_threads
 from .errors import BudgetError, BurgeonError, SpecError
@@ -19,6 +21,10 @@ from .law import Law
 from .makers import bloom, grow, leaf, open, presets, scan, schema, sketch
 from .model import Cloud, Masks, Model, Part
 from .plant import PARTS, Axes, Nodes, Organs, Plant
+
+if TYPE_CHECKING:
+    from . import dataset
+    from ._forest import Forest, ForestCloud, ForestMasks, forest
 
 __all__ = [
     "PARTS",
@@ -28,6 +34,7 @@ __all__ = [
     "Cloud",
     "Forest",
     "ForestCloud",
+    "ForestMasks",
     "Law",
     "Masks",
     "Model",
@@ -51,13 +58,13 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str):
+def __getattr__(name: str) -> Any:
     # Not before it is used: it imports more.
     if name == "dataset":
         import importlib
 
         return importlib.import_module(".dataset", __name__)
-    if name in ("Forest", "ForestCloud", "forest"):
+    if name in ("Forest", "ForestCloud", "ForestMasks", "forest"):
         import importlib
 
         found = getattr(importlib.import_module("._forest", __name__), name)

@@ -4,6 +4,8 @@ from typing import Any, Dict, List, Optional, Tuple
 VERSION: str
 PARTS: List[str]
 
+def meant(word: str, known: List[str]) -> str: ...
+
 class Column:
     @property
     def __array_interface__(self) -> Dict[str, Any]: ...

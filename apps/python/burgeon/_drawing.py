@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Tuple
 from . import _burgeon
 from ._burgeon import PARTS
 from ._files import write_whole
+from ._given import wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +68,7 @@ class Drawing(NamedTuple):
         """Writes ``.svg``, whole or not at all."""
         folder, name = os.path.split(os.fspath(path))
         if not name.lower().endswith(".svg"):
-            raise ValueError(f"drawings are written as .svg, not {name!r}")
+            raise wrong(f"drawings are written as .svg, not {name!r}", "path", name, "a name that ends with .svg")
         write_whole(folder, [(name, self.to_svg())])
 
 
@@ -224,10 +225,10 @@ def _outline(points: "np.ndarray", faces: "np.ndarray") -> "Any":
         if at == start and len(loop) > len(best):
             best = loop
     if len(best) >= 3:
-        loop, own = place[[*best, best[0]]], points[used]
+        outline, own = place[[*best, best[0]]], points[used]
         # The open end of a tube is no outline of it.
-        if (np.ptp(loop, axis=0) >= AROUND * np.ptp(own, axis=0)).all():
-            return loop
+        if (np.ptp(outline, axis=0) >= AROUND * np.ptp(own, axis=0)).all():
+            return outline
     hull = _hull(points[used])
     return None if hull is None else np.concatenate([hull, hull[:1]])
 

@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import keys, number, table, whole
+from ._given import beyond, keys, number, table, whole, wrong
 from .makers import SpecText, grow
-from .model import Cloud, Model, seen
+from .model import Model, cloud_bytes, look, save_cloud, seen, shown
 from .plant import Plant
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Unpack
 
-__all__ = ["Forest", "ForestCloud", "forest"]
+    from .model import View
+
+__all__ = ["Forest", "ForestCloud", "ForestMasks", "forest"]
 
 
 class ForestCloud(NamedTuple):
@@ -42,8 +45,28 @@ class ForestCloud(NamedTuple):
     tree: "np.ndarray"
     """(n,) uint32: row of ``forest.places``."""
 
-    save = Cloud.save
-    to_bytes = Cloud.to_bytes
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes it: see ``Cloud.save``."""
+        save_cloud(self._asdict(), path)
+
+    def to_bytes(self, extension: str = "npz") -> bytes:
+        """The file of a format: see ``Cloud.to_bytes``."""
+        return cloud_bytes(self._asdict(), extension)
+
+
+class ForestMasks(NamedTuple):
+    """What each pixel of a picture of a forest shows; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
+
+    part: "np.ndarray"
+    """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
+    axis: "np.ndarray"
+    """(height, width) int32: row of the plant's ``axes``; -1 for none."""
+    organ: "np.ndarray"
+    """(height, width) int32: row of the plant's ``organs``; -1 for none."""
+    depth: "np.ndarray"
+    """(height, width) float32: metres from the eye; infinite for nothing."""
+    tree: "np.ndarray"
+    """(height, width) int32: row of ``forest.places``; -1 for nothing."""
 
 
 class Forest:
@@ -68,7 +91,7 @@ class Forest:
         columns = {}
         for name, kind in kinds.items():
             if name not in given:
-                raise ValueError(f"places has no {name!r}")
+                raise wrong(f"places has no {name!r}", f"places.{name}", "none", "a column")
             column = np.asarray(given[name])
             # No texts, truths, times or complex numbers; rows of plants are whole.
             if column.dtype.kind not in ("iu" if name == "plant" else "iuf") and column.size:
@@ -78,10 +101,11 @@ class Forest:
         for name, column in columns.items():
             shape = (count, 3) if name == "position" else (count,)
             if column.shape != shape:
-                raise ValueError(f"places[{name!r}] must be of shape {shape}, not {column.shape}")
+                raise beyond(f"places[{name!r}]", column.shape, f"of shape {shape}")
             column.setflags(write=False)
         if (columns["plant"] < 0).any():
-            raise ValueError("places['plant'] are rows of the plants, 0 and more")
+            line = "places['plant'] are rows of the plants, 0 and more"
+            raise wrong(line, "places['plant']", int(columns["plant"].min()), "0 and more")
         self.places = columns
         self.seed = seed
         rows = zip(*(column.tolist() for column in columns.values()))
@@ -145,9 +169,25 @@ class Forest:
         """The forest as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
         return ForestCloud(**seen(self, points, stations, elevation, noise, seed))
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
+
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> ForestMasks:
+        """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
+        import numpy as np
+
+        of_plants = [plant.labels() for plant in self.plants]
+        labels = [rows for own in of_plants for rows in own]
+        start = np.cumsum([0] + [len(rows) for rows in labels])
+        first = np.cumsum([0] + [len(own) for own in of_plants])
+        # The model has the parts of each tree, tree by tree.
+        plant = self.places["plant"].tolist()
+        parts = np.concatenate([np.arange(first[p], first[p + 1]) for p in plant])
+        tree = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
+        at, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
+        part, axis, organ, depth = columns
+        return ForestMasks(part, axis, organ, depth, np.where(at < 0, np.int32(-1), tree[np.maximum(at, 0)]))
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()
@@ -193,7 +233,7 @@ def forest(
     """
     sides = area if isinstance(area, (tuple, list)) else (area, area)
     if len(sides) != 2:
-        raise ValueError(f"area must be metres along x and z, not {area!r}")
+        raise beyond("area", repr(area), "metres along x and z")
     area = (number("area[0]", sides[0], 0.1, 1000, "m"), number("area[1]", sides[1], 0.1, 1000, "m"))
     kinds = whole("kinds", kinds, 1, 100)
     seed = whole("seed", seed, 0, 2**64 - 1)
@@ -201,7 +241,7 @@ def forest(
     mixed = _shares(species)
     found = _burgeon.places(area, spacing, vary, seed)
     if not found:
-        raise ValueError(f"no tree has room: spacing is {spacing}, area {area}")
+        raise wrong(f"no tree has room: spacing is {spacing}, area {area}", "spacing", spacing, "less than area")
     total = sum(share for _, share in mixed)
     plants: "List[Plant]" = []
     rows: "Dict[Tuple[int, int], int]" = {}
@@ -237,7 +277,7 @@ def _shares(species: Any) -> "List[Tuple[Species, float]]":
         mixed = [(species, 1.0)]
     for name, share in mixed:
         if isinstance(share, bool) or not isinstance(share, (int, float)) or not 0 < share < 1e9:
-            raise ValueError(f"species: the share of {name!r} must be above 0, not {share!r}")
+            raise wrong(f"species: the share of {name!r} must be above 0, not {share!r}", f"species[{name!r}]", share, "above 0")
     if not mixed:
-        raise ValueError("species: give one")
+        raise wrong("species: give one", "species", species, "one or more")
     return mixed

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import operator
 import os
 from typing import Any, Dict, Iterable, Mapping
 
+from . import _burgeon
 from .errors import SpecError
 
 ENDLESS = float("inf")
@@ -17,21 +17,27 @@ def whole(name: str, value: Any, least: int, most: int) -> int:
     """A whole number within its range; also one of NumPy."""
     try:
         # True is no number of anything.
-        number = operator.index(None if isinstance(value, bool) else value)
+        if isinstance(value, bool):
+            raise TypeError
+        number = operator.index(value)
     except TypeError:
         bounds = f"a whole number, {least} to {most}"
         if isinstance(value, float):
-            raise _beyond(name, f"{value:.17g}", bounds) from None
+            raise beyond(name, f"{value:.17g}", bounds) from None
         raise TypeError(f"{name} must be {bounds}, not {value!r}") from None
     if not least <= number <= most:
-        raise _beyond(name, str(number), f"{least} to {most}")
+        raise beyond(name, str(number), f"{least} to {most}")
     return number
 
 
-def _beyond(name: str, value: str, bounds: str) -> SpecError:
-    """As the core says it."""
-    fields = {"field": name, "value": value, "range": bounds}
-    return SpecError(f"{name} must be {bounds}, not {value}", "field-range", fields)
+def beyond(name: str, value: Any, bounds: str) -> SpecError:
+    """An argument that is not what it may be, as the core says it."""
+    return wrong(f"{name} must be {bounds}, not {value}", name, value, bounds)
+
+
+def wrong(message: str, name: str, value: Any, bounds: str) -> SpecError:
+    """The same in words of its own."""
+    return SpecError(message, "field-range", {"field": name, "value": str(value), "range": bounds})
 
 
 def number(name: str, value: Any, least: float = -ENDLESS, most: float = ENDLESS, unit: str = "") -> float:
@@ -44,7 +50,7 @@ def number(name: str, value: Any, least: float = -ENDLESS, most: float = ENDLESS
     except OverflowError:
         real = ENDLESS
     if not math.isfinite(real) or not least <= real <= most:
-        raise _beyond(name, f"{real:.17g}" if isinstance(value, float) else str(value), bounds or "a finite number")
+        raise beyond(name, f"{real:.17g}" if isinstance(value, float) else str(value), bounds or "a finite number")
     return real
 
 
@@ -83,6 +89,6 @@ def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
     known = list(known)
     for key in given:
         if key not in known:
-            near = difflib.get_close_matches(str(key), known, n=1, cutoff=0.5)
-            meant = f"; is {near[0]!r} meant?" if near else ""
-            raise SpecError(f"{name} has no {key!r}, it has {', '.join(known)}{meant}", "unknown-field", {"field": str(key)})
+            fields = {"path": name, "name": str(key), "choices": ", ".join(known)}
+            meant = _burgeon.meant(str(key), known)
+            raise SpecError(f"{name} has no {key!r}, it has {fields['choices']}{meant}", "spec-unknown", fields)

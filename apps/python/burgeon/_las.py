@@ -23,7 +23,7 @@ def las(cloud: "Mapping[str, np.ndarray]", packed: bool) -> bytes:
     try:
         import laspy
     except ImportError as error:
-        raise ImportError("LAS and LAZ need laspy: pip install 'burgeon[laz]'") from error
+        raise ImportError("LAS and LAZ need laspy: pip install 'laspy[lazrs]>=2.5'") from error
     points = np.asarray(cloud["points"])
     header = laspy.LasHeader(version="1.4", point_format=6)
     # Nothing that differs from day to day.

@@ -8,6 +8,7 @@ import json
 from typing import TYPE_CHECKING, Any, Dict
 
 from . import _burgeon
+from ._given import beyond
 
 if TYPE_CHECKING:
     from .model import Model, Part
@@ -19,7 +20,7 @@ MOST_TRIANGLES = 120_000
 def page(model: "Model", height: int) -> str:
     """An ``iframe`` with the view: nothing of it meets what else is on the page."""
     if not 64 <= height <= 4096:
-        raise ValueError(f"height must be 64 to 4096 pixels, not {height}")
+        raise beyond("height", height, "64 to 4096 pixels")
     import numpy as np
 
     parts = [p for p in model.parts if len(p.faces)]

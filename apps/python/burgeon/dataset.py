@@ -4,7 +4,8 @@
 >>> bg.dataset.generate("birch", 1000, "birches", formats=("cloud", "mtg"), vary={"age": (8, 30)})  # doctest: +SKIP
 
 A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` beside
-each, ``manifest.json`` with the SHA-256 of all, ``croissant.json`` for tools that read data sets. The same recipe gives
+each, ``manifest.json`` with the SHA-256 of all, ``plants.csv`` with seed and digest of each plant, ``croissant.json`` for
+tools that read data sets. The same recipe gives
 the same bytes wherever it runs. A run that was stopped is taken up again: only shards that are missing are made.
 """
 
@@ -18,10 +19,11 @@ import os
 import random
 import sys
 import tarfile
+import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import write_whole
-from ._given import keys, table
+from ._given import beyond, keys, table, whole, wrong
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
@@ -31,6 +33,10 @@ MAKERS = ("grow", "bloom", "leaf", "forest")
 FORMATS = ("glb", "mtg", "opf", "qsm", "burgeon", "cloud", "laz", "drawing", "picture")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
 would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
+
+
+FORESTS = ("glb", "cloud", "laz", "picture")
+"""What is written of tiles of trees; their clouds and masks also say which ``tree``."""
 
 
 def plant_seed(seed: int, index: int) -> int:
@@ -138,11 +144,9 @@ def _recipe(
     """All that decides what the data set holds, checked: it goes into the manifest."""
     from . import __version__
 
-    for name, value, least, most in (("n", n, 1, 10**9), ("shard", shard, 1, 10**6), ("seed", seed, 0, 2**64 - 1)):
-        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
-            raise ValueError(f"{name} must be a whole number, {least} to {most}, not {value!r}")
+    n, shard, seed = whole("n", n, 1, 10**9), whole("shard", shard, 1, 10**6), whole("seed", seed, 0, 2**64 - 1)
     if not isinstance(maker, str) or maker not in MAKERS:
-        raise ValueError(f"maker must be one of {', '.join(MAKERS)}, not {maker!r}")
+        raise beyond("maker", repr(maker), f"one of {', '.join(MAKERS)}")
     if isinstance(formats, str):
         formats = (formats,)
     if not isinstance(formats, (list, tuple)):
@@ -151,10 +155,10 @@ def _recipe(
     cloud, picture = table("cloud", cloud), table("picture", picture)
     keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
-    known = ("glb", "cloud", "laz") if maker == "forest" else FORMATS
+    known = FORESTS if maker == "forest" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
-        raise ValueError(f"formats are {', '.join(known)}, not {unknown or 'none'}")
+        raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
     if isinstance(spec, (str, os.PathLike)) and os.fspath(spec).endswith(".toml"):
         # A cluster's machines need not have the file.
         spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}
@@ -164,9 +168,10 @@ def _recipe(
             raise TypeError(f"vary: {name} must be (least, most) or a list of choices, not {range_!r}")
         range_ = list(range_) if isinstance(range_, tuple) else {"choice": list(range_)}
         if isinstance(range_, list) and (len(range_) != 2 or not range_[0] <= range_[1]):
-            raise ValueError(f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}")
+            line = f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}"
+            raise wrong(line, f"vary.{name}", tuple(range_), "(least, most) or a list of choices")
         if isinstance(range_, dict) and not range_["choice"]:
-            raise ValueError(f"vary: {name} has no choices")
+            raise wrong(f"vary: {name} has no choices", f"vary.{name}", [], "a list of choices")
         ranges[name] = range_
     recipe = {
         "schema": RECIPE,
@@ -210,19 +215,26 @@ def _json(value: Any) -> bytes:
 
 
 def _claim(out: str, recipe: "Mapping[str, Any]") -> None:
-    """The folder is this data set's, from now on."""
-    path = os.path.join(out, "recipe.json")
-    try:
-        with open(path, encoding="utf-8") as file:
-            there = json.load(file)
-    except FileNotFoundError:
-        if any(name.endswith(".tar") for name in os.listdir(out)):
-            raise ValueError(f"{out} holds shards of something else; choose another folder") from None
+    """The folder is this data set's, from now on. A recipe of which no shard was made gives way: it may have been wrong."""
+    there = _claimed(out)
+    if there == recipe:
+        return
+    if not any(name.endswith(".tar") for name in os.listdir(out)):
         write_whole(out, [("recipe.json", _json(recipe))])
         return
-    if there != recipe:
-        differ = [k for k in recipe if there.get(k) != recipe[k]]
-        raise ValueError(f"{out} holds another data set ({', '.join(differ)} differ); choose another folder or delete it")
+    if there is None:
+        raise ValueError(f"{out} holds shards of something else; choose another folder")
+    differ = [k for k in recipe if there.get(k) != recipe[k]]
+    raise ValueError(f"{out} holds another data set ({', '.join(differ)} differ); choose another folder or delete it")
+
+
+def _claimed(out: str) -> "Optional[Dict[str, Any]]":
+    """The recipe of the folder's data set."""
+    try:
+        with open(os.path.join(out, "recipe.json"), encoding="utf-8") as file:
+            return json.load(file)
+    except FileNotFoundError:
+        return None
 
 
 def _sha256_of(path: str) -> "Optional[str]":
@@ -249,11 +261,16 @@ def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":
         return None
 
 
-def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
-    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
+def make_shard_alone(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """Makes one shard in a process of its own: there are as many of these as cores, so each computes with one thread."""
     from . import set_threads
 
     set_threads(1)
+    return make_shard(recipe, out, k)
+
+
+def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
     first = k * recipe["shard"]
     last = min(first + recipe["shard"], recipe["n"])
     tar, digests = io.BytesIO(), []
@@ -262,9 +279,9 @@ def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
             digest, files = make_plant(recipe, index)
             digests.append(digest)
             for extension, data in files:
-                entry = tarfile.TarInfo(f"{index:08d}.{extension}")
-                entry.size, entry.mode = len(data), 0o644
-                archive.addfile(entry, io.BytesIO(data))
+                member = tarfile.TarInfo(f"{index:08d}.{extension}")
+                member.size, member.mode = len(data), 0o644
+                archive.addfile(member, io.BytesIO(data))
     data = tar.getvalue()
     entry = {
         "file": f"{_name(k)}.tar",
@@ -274,6 +291,9 @@ def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
         "sha256": hashlib.sha256(data).hexdigest(),
         "digests": digests,
     }
+    # Another call may have taken the folder before it held a shard; data sets are not mixed.
+    if _claimed(out) != recipe:
+        raise ValueError(f"{out} was taken by another data set meanwhile; choose another folder")
     # What says that the shard is there comes after it: the first of the list is renamed last.
     write_whole(out, [(f"{_name(k)}.json", _json(entry)), (f"{_name(k)}.tar", data)])
     return k
@@ -291,7 +311,7 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
     about = {"seed": seed, "index": index, "fields": drawn, "digest": plant.digest, "measures": plant.measures()}
     files = [("json", _json(about))]
     clouds = {"cloud": "cloud.npz", "laz": "laz"}
-    cloud = plant.cloud(**recipe["cloud"]) if any(kind in clouds for kind in recipe["formats"]) else None
+    cloud: Any = plant.cloud(**recipe["cloud"]) if any(kind in clouds for kind in recipe["formats"]) else None
     for kind in recipe["formats"]:
         if kind in clouds:
             files.append((clouds[kind], cloud.to_bytes(clouds[kind].split(".")[-1])))
@@ -351,19 +371,46 @@ def _without_main() -> "Iterator[None]":
         sys.modules["__main__"] = main
 
 
+def _begin_worker() -> None:
+    """Ctrl-C is of what makes a shard; a process that waits for one ends with its pool."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _shard_of_pool(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """One shard in a process of a pool. After Ctrl-C, and with its drafts gone, the process ends without a word: the next
+    shard may be waiting for it already."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return make_shard_alone(recipe, out, k)
+    except KeyboardInterrupt:
+        os._exit(STOPPED)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+STOPPED = 130
+"""What a process ends with after Ctrl-C."""
+
+
 def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
     import multiprocessing
+    import signal
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from concurrent.futures.process import BrokenProcessPool
 
-    left, tries = list(missing), 0
+    left, tries, others = list(missing), 0, set(multiprocessing.active_children())
     # Processes that are forked off would share locks of threads that they do not have.
     context = multiprocessing.get_context("spawn")
     while left:
         done, failed = set(), False
-        with ProcessPoolExecutor(min(workers or os.cpu_count() or 1, len(left)), mp_context=context) as pool:
+        count = min(workers or os.cpu_count() or 1, len(left))
+        with ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker) as pool:
             with _without_main():
-                jobs = {pool.submit(make_shard, recipe, out, k): k for k in left}
+                jobs = {pool.submit(_shard_of_pool, recipe, out, k): k for k in left}
             try:
                 for job in as_completed(jobs):
                     try:
@@ -373,6 +420,11 @@ def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[in
                         continue
                     yield jobs[job]
             except BaseException:
+                # A terminal tells all processes of Ctrl-C; whoever stops this one alone means them, too.
+                for worker in set(multiprocessing.active_children()) - others:
+                    if os.name == "posix" and worker.pid is not None:
+                        with contextlib.suppress(ProcessLookupError):
+                            os.kill(worker.pid, signal.SIGINT)
                 pool.shutdown(wait=True, cancel_futures=True)
                 raise
         # A worker was killed: its shard, and those that waited, go to new ones.
@@ -386,11 +438,11 @@ def _with_ray(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", w
     try:
         import ray
     except ImportError as error:
-        raise ImportError("ray=True needs Ray: pip install 'burgeon[ray]' (or leave ray out: workers=N)") from error
+        raise ImportError("ray=True needs Ray: pip install 'ray>=2' (or leave ray out: workers=N)") from error
     if not ray.is_initialized():
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
     # A worker that is killed is replaced, and its shard made again.
-    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard)
+    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard_alone)
     jobs = [task.remote(recipe, out, k) for k in missing]
     try:
         while jobs:
@@ -409,12 +461,13 @@ def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":
         raise RuntimeError(f"{out}: shards are gone that were made a moment ago")
     whole = hashlib.sha256("".join(d for e in shards for d in e["digests"]).encode()).hexdigest()
     manifest = {"recipe": dict(recipe), "plants": recipe["n"], "digest": whole, "shards": shards}
-    files = [("manifest.json", _json(manifest)), ("croissant.json", _json(_croissant(recipe, shards)))]
-    write_whole(out, files)
+    rows = _rows(recipe, shards)
+    croissant = _json(_croissant(recipe, shards, rows))
+    write_whole(out, [("manifest.json", _json(manifest)), ("croissant.json", croissant), ("plants.csv", rows)])
     return manifest
 
 
-def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> "Dict[str, Any]":
+def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]", rows: bytes) -> "Dict[str, Any]":
     """The data set in the words of Croissant 1.0 (MLCommons)."""
     spec = recipe["spec"] if isinstance(recipe["spec"], str) else "plants"
     files = [
@@ -429,42 +482,131 @@ def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]
         }
         for e in shards
     ]
+    table = {
+        "@type": "cr:FileObject",
+        "@id": "plants.csv",
+        "name": "plants.csv",
+        "contentUrl": "plants.csv",
+        "contentSize": f"{len(rows)} B",
+        "encodingFormat": "text/csv",
+        "sha256": hashlib.sha256(rows).hexdigest(),
+    }
+    kinds = {"index": "sc:Integer", "file": "sc:Text", "seed": "sc:Text", "digest": "sc:Text", **_kinds(recipe)}
     return {
         "@context": {
             "@language": "en",
             "@vocab": "https://schema.org/",
+            **{name: f"cr:{name}" for name in CROISSANT},
             "cr": "http://mlcommons.org/croissant/",
             "dct": "http://purl.org/dc/terms/",
             "sc": "https://schema.org/",
+            "rai": "http://mlcommons.org/croissant/RAI/",
             "conformsTo": "dct:conformsTo",
+            "data": {"@id": "cr:data", "@type": "@json"},
+            "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
+            "examples": {"@id": "cr:examples", "@type": "@json"},
         },
         "@type": "sc:Dataset",
         "conformsTo": "http://mlcommons.org/croissant/1.0",
         "name": f"burgeon-{spec}-{recipe['n']}",
         "description": f"{recipe['n']} plants ({spec}) made by Burgeon {recipe['burgeon']}; recipe.json says how.",
         "version": "1.0.0",
-        "distribution": files,
+        "distribution": [*files, table],
+        "recordSet": [
+            {
+                "@type": "cr:RecordSet",
+                "@id": "plants",
+                "name": "plants",
+                "description": "What each plant was made from; its files are in the shard, their names begin with the index.",
+                "field": [
+                    {
+                        "@type": "cr:Field",
+                        "@id": f"plants/{name}",
+                        "name": f"plants/{name}",
+                        "dataType": kind,
+                        "source": {"fileObject": {"@id": "plants.csv"}, "extract": {"column": name}},
+                    }
+                    for name, kind in kinds.items()
+                ],
+            }
+        ],
     }
 
 
+CROISSANT = (
+    *("citeAs", "column", "equivalentProperty", "extract", "field", "fileObject", "fileProperty", "fileSet", "format"),
+    *("includes", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex"),
+    *("repeated", "replace", "samplingRate", "separator", "source", "subField", "transform"),
+)
+"""Words of Croissant 1.0 that stand without its prefix."""
+
+
+def _kinds(recipe: "Mapping[str, Any]") -> "Dict[str, str]":
+    """The kinds of the arguments that differ from plant to plant; of tables and lists it is their JSON."""
+    kinds = {}
+    for name, range_ in sorted(recipe["vary"].items()):
+        values = range_["choice"] if isinstance(range_, dict) else range_
+        found = {type(value) for value in values}
+        whole_or_not = "sc:Float" if found == {int, float} else "sc:Text"
+        one = {bool: "sc:Boolean", int: "sc:Integer", float: "sc:Float"}
+        kinds[name] = one.get(found.pop(), "sc:Text") if len(found) == 1 else whole_or_not
+    return kinds
+
+
+def _rows(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> bytes:
+    """A table of all plants, for whoever chooses some of them, and for tools that read data sets."""
+    import csv
+
+    out = io.StringIO()
+    table, kinds = csv.writer(out, lineterminator="\n"), _kinds(recipe)
+    table.writerow(["index", "file", "seed", "digest", *kinds])
+    for shard in shards:
+        for k, digest in enumerate(shard["digests"]):
+            seed = plant_seed(recipe["seed"], shard["first"] + k)
+            drawn = [_drawn(recipe["vary"][name], seed, name) for name in kinds]
+            drawn = [value if isinstance(value, str) else json.dumps(value, sort_keys=True) for value in drawn]
+            table.writerow([shard["first"] + k, shard["file"], seed, digest, *drawn])
+    return out.getvalue().encode()
+
+
 class _Bar:
-    """How far it is, on a terminal."""
+    """How far it is, on the error output: by tqdm where that is installed, else as a line that is drawn over again on a
+    terminal, else (in files, in notebooks) as a line now and then."""
 
     def __init__(self, total: int, done: int, wanted: bool) -> None:
-        self.total, self.done = total, done
-        self.shown = wanted and sys.stderr.isatty()
-        self.show()
+        self.total, self.done, self.wanted, self.bar = total, done, wanted, None
+        self.on_terminal = sys.stderr.isatty()
+        self.told_at = -EVERY_S
+        if wanted:
+            try:
+                from tqdm.auto import tqdm
+            except ImportError:
+                self.show()
+            else:
+                self.bar = tqdm(total=total, initial=done, desc="shards", unit="shard", file=sys.stderr)
 
     def step(self) -> None:
         self.done += 1
-        self.show()
+        if self.bar is not None:
+            self.bar.update()
+        elif self.wanted:
+            self.show()
 
     def show(self) -> None:
-        if self.shown:
+        if self.on_terminal:
             full = 30 * self.done // max(self.total, 1)
             line = f"\rshards [{'=' * full}{' ' * (30 - full)}] {self.done} of {self.total}"
             print(line, end="", file=sys.stderr, flush=True)
+        elif self.done == self.total or time.monotonic() - self.told_at >= EVERY_S:
+            self.told_at = time.monotonic()
+            print(f"shards: {self.done} of {self.total}", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        if self.shown:
+        if self.bar is not None:
+            self.bar.close()
+        elif self.wanted and self.on_terminal:
             print(file=sys.stderr)
+
+
+EVERY_S = 10.0
+"""How often a line tells how far it is where nothing can be drawn over."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence
 
 from . import _burgeon
 from ._files import write_whole
+from ._given import beyond, wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,12 +35,13 @@ class Law:
         organs = sizes if isinstance(sizes, Mapping) else {name: sizes}
         when = _numbers(days, "days")
         if (when[1:] <= when[:-1]).any():
-            raise ValueError("days must increase from one to the next")
+            raise wrong("days must increase from one to the next", "days", when.tolist(), "increasing")
         rows = []
         for organ, values in organs.items():
             row = _numbers(values, f"sizes of {organ}" if isinstance(sizes, Mapping) else "sizes")
             if len(row) != len(when):
-                raise ValueError(f"sizes of {organ}: there are {len(row)} for {len(when)} days")
+                line = f"sizes of {organ}: there are {len(row)} for {len(when)} days"
+                raise wrong(line, "sizes", f"{len(row)} numbers", f"{len(when)} numbers")
             rows.append((str(organ), when.tolist(), row.tolist()))
         return cls(_burgeon.RawLaw.fit(name, rows))
 
@@ -86,8 +88,9 @@ def _numbers(values: Any, what: str) -> "np.ndarray":
 
     row = np.asarray(values)
     if row.dtype.kind not in "fiu" or row.ndim != 1:
-        raise ValueError(f"{what} must be numbers of shape (n,), not {row.dtype} of shape {row.shape}")
+        raise beyond(what, f"{row.dtype} of shape {row.shape}", "numbers of shape (n,)")
     row = row.astype(np.float64)
     if not np.isfinite(row).all():
-        raise ValueError(f"{what} must be finite")
+        at = int(np.argmin(np.isfinite(row)))
+        raise beyond(f"{what}[{at}]", float(row[at]), "finite")
     return row

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _burgeon
-from ._given import number, whole, word
+from ._given import beyond, number, whole, word, wrong
 from ._given import path as path_of
 from .law import Law
 from .plant import Plant
@@ -27,7 +27,7 @@ class SpecText(NamedTuple):
     file: str
 
 
-Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], None]
+Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], SpecText, None]
 
 
 def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
@@ -53,7 +53,7 @@ def _text(path: str) -> str:
 
 def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
     if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
-        raise ValueError(f"seed must be a whole number, 0 to 2^64 - 1, not {seed!r}")
+        raise beyond("seed", repr(seed), "a whole number, 0 to 2^64 - 1")
     return {
         "seed": int(seed),
         "budget": number("budget", budget, 1, 1000),
@@ -155,12 +155,14 @@ def leaf(
     }
     if venation is not None:
         if spec is not None and not isinstance(spec, Mapping):
-            raise ValueError("venation makes a leaf of numbers: leave the file out")
+            raise wrong("venation makes a leaf of numbers: leave the file out", "spec", spec, "left out, or a dict")
         asked = _asked(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
         return Plant(_burgeon.leaf_of_veins({"venation": word("venation", venation), "file": None, **numbers}, asked))
     given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
     if given:
-        raise ValueError(f"{given[0].replace('_m', '')} is of leaves with venation='palmate' or 'parallel'")
+        option = given[0].replace("_m", "")
+        line = f"{option} is of leaves with venation='palmate' or 'parallel'"
+        raise wrong(line, option, numbers[given[0]], "left out")
     if isinstance(spec, Mapping):
         own = dict(spec)
     elif isinstance(spec, SpecText):
@@ -177,7 +179,7 @@ def leaf(
                 return _scanned(name, (scan.read(), extension[1:].lower(), word("unit", unit)), None, budget, fields)
         else:
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
-            if _burgeon.is_rays(file[1]):
+            if side_veins is not None and _burgeon.is_rays(file[1]):
                 asked = _asked(seed, budget, fields, {"wind": wind})
                 return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
     return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))
@@ -186,7 +188,8 @@ def leaf(
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
     """The leaf of a cloud of points."""
     if fields:
-        raise ValueError(f"{next(iter(fields))} is of measured leaves; a leaf of a scan has no fields")
+        field = next(iter(fields))
+        raise wrong(f"{field} is of measured leaves; a leaf of a scan has no fields", field, fields[field], "left out")
     rows: "List[List[float]]" = _points(points).tolist() if file is None else []
     return Plant(_burgeon.leaf_of_scan(name, file, rows, number("budget", budget, 1, 1000)))
 
@@ -199,10 +202,11 @@ def _points(points: Any) -> "np.ndarray":
     if array.dtype.kind not in "fiu":
         raise TypeError(f"a scan is numbers, not {array.dtype}")
     if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"a scan must be of shape (points, 3), not {array.shape}")
+        raise wrong(f"a scan must be of shape (points, 3), not {array.shape}", "scan", array.shape, "of shape (points, 3)")
     array = np.ascontiguousarray(array, np.float64)
     if not np.isfinite(array).all():
-        raise ValueError("a scan must be finite numbers")
+        row = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise beyond(f"scan[{row}]", array[row].tolist(), "finite")
     return array
 
 
@@ -306,11 +310,11 @@ def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
         if points.dtype.kind not in "fiu":
             raise TypeError(f"strokes[{k}] must be numbers, not {points.dtype}")
         if points.ndim != 2 or points.shape[1] != 2:
-            raise ValueError(f"strokes[{k}] must be of shape (points, 2), not {points.shape}")
+            raise beyond(f"strokes[{k}]", points.shape, "of shape (points, 2)")
         points = points.astype(np.float64)
         if not np.isfinite(points).all():
             row = int(np.argmin(np.isfinite(points).all(axis=1)))
-            raise ValueError(f"strokes[{k}][{row}] must be finite, not {points[row].tolist()}")
+            raise beyond(f"strokes[{k}][{row}]", points[row].tolist(), "finite")
         if not y_up:
             points[:, 1] *= -1.0
         lines.append(points.tolist())

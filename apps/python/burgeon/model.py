@@ -7,10 +7,23 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequenc
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import flag, keys, number, whole, word
+from ._given import flag, keys, number, whole, word, wrong
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Literal, TypedDict, Unpack
+
+    class View(TypedDict, total=False):
+        """How a picture is taken."""
+
+        view: Literal["front", "three-quarter", "side", "top", "turntable", "orbit"]
+        azimuth: float
+        elevation: float
+        background: str
+        shadow: bool
+        supersample: int
+        seed: int
+
 
 __all__ = ["Cloud", "Masks", "Model", "Part"]
 
@@ -129,21 +142,32 @@ class Cloud(NamedTuple):
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): whole or not
         at all."""
-        folder, name = os.path.split(os.fspath(path))
-        write_whole(folder, [(name, self.to_bytes(os.path.splitext(name)[1]))])
+        save_cloud(self._asdict(), path)
 
     def to_bytes(self, extension: str = "npz") -> bytes:
         """The file of a format, ``npz``, ``las`` or ``laz``: the same bytes for the same cloud."""
-        extension = extension.lower().lstrip(".")
-        if extension == "npz":
-            from ._npz import npz
+        return cloud_bytes(self._asdict(), extension)
 
-            return npz(self._asdict())
-        if extension in ("las", "laz"):
-            from ._las import las
 
-            return las(self._asdict(), extension == "laz")
-        raise ValueError(f"clouds are written as .npz, .las or .laz, not .{extension}")
+def save_cloud(columns: "Dict[str, np.ndarray]", path: "str | os.PathLike[str]") -> None:
+    """Writes the columns of a cloud, whole or not at all."""
+    folder, name = os.path.split(os.fspath(path))
+    write_whole(folder, [(name, cloud_bytes(columns, os.path.splitext(name)[1]))])
+
+
+def cloud_bytes(columns: "Dict[str, np.ndarray]", extension: str) -> bytes:
+    """The file of a cloud in a format."""
+    extension = extension.lower().lstrip(".")
+    if extension == "npz":
+        from ._npz import npz
+
+        return npz(columns)
+    if extension in ("las", "laz"):
+        from ._las import las
+
+        return las(columns, extension == "laz")
+    line = f"clouds are written as .npz, .las or .laz, not .{extension}"
+    raise wrong(line, "path", f".{extension}", ".npz, .las or .laz")
 
 
 def seen(of: Any, points: int, stations: int, elevation: float, noise: float, seed: "Optional[int]") -> "Dict[str, np.ndarray]":
@@ -159,10 +183,24 @@ def seen(of: Any, points: int, stations: int, elevation: float, noise: float, se
     return {name: array(column) for name, column in columns.items()}
 
 
+def shown(raw: Any, labels: "Sequence[np.ndarray]", start: "np.ndarray", how: "Look") -> "Tuple[np.ndarray, ...]":
+    """What each pixel of a picture of a model shows: part of the model, then what ``labels`` say, then the depth.
+
+    ``labels``: tables (triangles, 3) one after another; ``start``: of each part of the model the row of its first triangle.
+    """
+    import numpy as np
+
+    parts, triangles, depth = map(array, raw.masks(how))
+    rows = np.concatenate([*labels, np.full((1, 3), -1, np.int32)])
+    at = np.where(parts < 0, len(rows) - 1, start[np.maximum(parts, 0)] + triangles)
+    part, axis, organ = np.moveaxis(rows[at], -1, 0)
+    return parts, part, axis, organ, depth
+
+
 Look = Dict[str, Any]
 
 
-def look(size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Look:
+def look(size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Look:
     """How a picture is taken."""
     keys("a picture", how, ("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
     return _look(size, **how)
@@ -291,8 +329,8 @@ class Model:
         scene = trimesh.Scene()
         for part in self.parts:
             material = part.material
-            color = np.concatenate([_srgb(np.float32(material["base_color"])), [1.0]])
-            visual = None
+            color = np.concatenate([_srgb(np.array(material["base_color"], np.float32)), [1.0]])
+            visual: Any = None
             if part.texture is not None and len(part.uvs):
                 from PIL import Image
 
@@ -318,7 +356,8 @@ class Model:
             if visual is None:
                 own = part.colors if len(part.colors) else np.ones((len(part.vertices), 3), np.float32)
                 rgb = _srgb(own * np.float32(material["base_color"]))
-                mesh.visual.vertex_colors = np.uint8(np.c_[255 * rgb, np.full(len(rgb), 255)])
+                rgba = np.uint8(np.c_[255 * rgb, np.full(len(rgb), 255)])
+                mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=rgba)
             scene.add_geometry(mesh, geom_name=part.name, node_name=part.name)
         return scene
 
@@ -335,7 +374,7 @@ class Model:
         """The file of a format, without files beside it."""
         return bytes(self._raw.files(extension.lower().lstrip("."), "model", unit, up)[0][1])
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.
 
         ``view``: ``front``, ``three-quarter``, ``side``, ``top``, ``turntable`` or ``orbit`` (with ``azimuth`` and
@@ -344,7 +383,7 @@ class Model:
         """
         return array(self._raw.render(look(size, **how)))
 
-    def to_png(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> bytes:
+    def to_png(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> bytes:
         """The same as a PNG file."""
         pixels = self.render(size, **how)
         height, width, _ = pixels.shape

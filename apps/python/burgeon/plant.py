@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
-from ._given import flag, number, whole, word
-from .model import Cloud, Masks, Model, array, look, seen
+from ._given import flag, number, whole, word, wrong
+from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
     import numpy as np
+    from typing_extensions import Unpack
+
+    from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 
@@ -318,17 +321,13 @@ class Plant:
         """
         return draw(self)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Masks:
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Masks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
         import numpy as np
 
-        parts, triangles, depth = map(array, self._raw.model().masks(look(size, **how)))
         labels = self.labels()
-        first = np.cumsum([0] + [len(rows) for rows in labels])
-        rows = np.concatenate(labels + [np.full((1, 3), -1, np.int32)])
-        at = np.where(parts < 0, len(rows) - 1, first[np.maximum(parts, 0)] + triangles)
-        part, axis, organ = np.moveaxis(rows[at], -1, 0)
-        return Masks(part, axis, organ, depth)
+        start = np.cumsum([0] + [len(rows) for rows in labels])
+        return Masks(*shown(self._raw.model(), labels, start, look(size, **how))[1:])
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
         """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
@@ -449,13 +448,13 @@ class Plant:
         if extension in ("mtg", "opf", "qsm", "burgeon"):
             asked = [word for word, value in form.items() if value not in (0, False, None)]
             if asked:
-                raise ValueError(f"{asked[0]} is of models, not of .{extension} files")
+                raise wrong(f"{asked[0]} is of models, not of .{extension} files", asked[0], "given", "left out")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
             files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
             write_whole(folder, [(name, files[0][1]), *files[1:]])
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 

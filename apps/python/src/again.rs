@@ -6,11 +6,10 @@ use burgeon::document::{
     FlowerCommand, LeafCommand, Maker, PlantCommand, SketchCommand, TreeCommand, TreeSettings,
 };
 use burgeon::skin::SkinSpec;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::asked::Asked;
-use crate::fault::unusable;
+use crate::fault::{unusable, wrong};
 use crate::held::Held;
 
 impl Held {
@@ -70,9 +69,8 @@ impl Held {
 }
 
 fn dayless(day: Option<f64>, maker: &str) -> PyResult<()> {
-    let fault =
-        || PyValueError::new_err(format!("a {maker} has no days: flowers have, and drawings of flowers"));
-    day.map_or(Ok(()), |_| Err(fault()))
+    let line = format!("a {maker} has no days: flowers have, and drawings of flowers");
+    day.map_or(Ok(()), |day| Err(wrong(&line, "day", &day.to_string(), "left out")))
 }
 
 /// The wind of what has no other choice of how it is meshed.
@@ -81,7 +79,7 @@ fn plain(asked: &Asked<'_>, py: Python<'_>) -> PyResult<Option<bool>> {
     if skin == SkinSpec::default() {
         return Ok(wind);
     }
-    Err(PyValueError::new_err("detail, sides, textures and foliage are of trees and drawings"))
+    Err(unusable(py, &"detail, sides, textures and foliage are of trees and drawings"))
 }
 
 /// What makes the obstacles of a tree those of another.

@@ -7,12 +7,11 @@ use burgeon::document::{
 };
 use burgeon::skin::{FoliageStyle, SkinSpec};
 use burgeon::{SceneEvaluator, Seed, Spec};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::Value;
 
-use crate::fault::{refused, unusable};
+use crate::fault::{beyond, refused, unusable};
 use crate::held::{Held, run};
 use crate::value::json_of;
 
@@ -54,28 +53,21 @@ impl Asked<'_> {
         let wind = match unsaved("wind") {
             None => None,
             Some(Value::Bool(wind)) => Some(wind),
-            Some(other) => {
-                return Err(PyValueError::new_err(format!("wind must be True or False, not {other}")));
-            }
+            Some(other) => return Err(beyond("wind", other, "True or False")),
         };
         let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
         let mut skin = put(py, base, fields)?;
         if let Some(size) = size {
             let pixels =
                 size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
-            skin.texture_size = pixels.ok_or_else(|| {
-                PyValueError::new_err(format!("texture_size must be 64 to 4096 pixels, not {size}"))
-            })?;
+            skin.texture_size = pixels.ok_or_else(|| beyond("texture_size", size, "64 to 4096 pixels"))?;
         }
         if let Some(word) = foliage {
             skin.foliage = match word.as_str() {
                 Some("outlines") => FoliageStyle::Outlines,
                 Some("cards") => FoliageStyle::Cards,
                 Some("by-level") => FoliageStyle::ByLevel,
-                _ => {
-                    let known = "outlines, cards or by-level";
-                    return Err(PyValueError::new_err(format!("foliage must be {known}, not {word}")));
-                }
+                _ => return Err(beyond("foliage", word, "outlines, cards or by-level")),
             };
         }
         Ok((skin, wind))
@@ -89,7 +81,7 @@ impl Asked<'_> {
         if (1.0..=1000.0).contains(&self.budget) {
             return Ok(self.budget);
         }
-        Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {}", self.budget)))
+        Err(beyond("budget", self.budget, "1 to 1000"))
     }
 
     pub(crate) fn made(

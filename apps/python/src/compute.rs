@@ -1,13 +1,15 @@
 //! Threads, Ctrl-C and limits: what the core leaves to its shell.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use burgeon::{Budget, CancelToken, Clock, Executor, Run};
 use pyo3::prelude::*;
 use rayon::prelude::*;
+
+use crate::fault::beyond;
 
 /// Threads to compute with; 0 for as many as the machine has.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
@@ -80,21 +82,45 @@ pub(crate) fn compute<T: Send>(
             let _over = over;
             work(&Run { cancel: &own, executor: &threads, clock: &clock, budget })
         });
-        let ended = Mutex::new(ended);
-        let wait = || ended.lock().map_or(Err(RecvTimeoutError::Disconnected), |e| e.recv_timeout(TICK));
-        while py.detach(wait) == Err(RecvTimeoutError::Timeout) {
-            if let Err(stop) = py.check_signals() {
-                token.cancel();
-                let _ = py.detach(|| thread.join().is_ok());
-                return Err(stop);
-            }
+        if let Err(stop) = wait(py, ended) {
+            token.cancel();
+            let _ = py.detach(|| thread.join().is_ok());
+            return Err(stop);
         }
-        py.detach(|| thread.join()).map_err(|payload| {
-            let text = payload.downcast_ref::<&str>().map(|t| (*t).to_owned());
-            let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-            pyo3::exceptions::PyRuntimeError::new_err(format!("internal error, a bug in burgeon: {text}"))
-        })
+        py.detach(|| thread.join()).map_err(|payload| bug(payload.as_ref()))
     })
+}
+
+/// Does what nothing can stop (files are written and read, tables filled) without Python's lock. Ctrl-C does not wait for
+/// it: what it makes is dropped when it is done.
+pub(crate) fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (over, ended) = sync_channel::<()>(1);
+    let thread = std::thread::spawn(move || {
+        let _over = over;
+        work()
+    });
+    wait(py, ended)?;
+    py.detach(|| thread.join()).map_err(|payload| bug(payload.as_ref()))
+}
+
+/// Waits until a thread drops what it tells its end with; Ctrl-C is an error at once.
+fn wait(py: Python<'_>, ended: Receiver<()>) -> PyResult<()> {
+    let ended = Mutex::new(ended);
+    let next = || ended.lock().map_or(Err(RecvTimeoutError::Disconnected), |e| e.recv_timeout(TICK));
+    while py.detach(next) == Err(RecvTimeoutError::Timeout) {
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
+/// Of a thread that panicked.
+fn bug(payload: &(dyn std::any::Any + Send)) -> PyErr {
+    let text = payload.downcast_ref::<&str>().map(|t| (*t).to_owned());
+    let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+    pyo3::exceptions::PyRuntimeError::new_err(format!("internal error, a bug in burgeon: {text}"))
 }
 
 /// How often Ctrl-C is looked for.
@@ -104,7 +130,6 @@ const TICK: Duration = Duration::from_millis(20);
 #[pyfunction]
 pub(crate) fn set_threads(count: i64) -> PyResult<()> {
     let sound = usize::try_from(count).ok().filter(|&n| n <= 256);
-    let line = || pyo3::exceptions::PyValueError::new_err(format!("count must be 0 to 256, not {count}"));
-    THREADS.store(sound.ok_or_else(line)?, Ordering::Relaxed);
+    THREADS.store(sound.ok_or_else(|| beyond("count", count, "0 to 256"))?, Ordering::Relaxed);
     Ok(())
 }

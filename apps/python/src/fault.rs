@@ -2,19 +2,24 @@
 
 use std::fmt::Display;
 
-use burgeon::{Coded, Told};
+use burgeon::{Coded, Slip, Told};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// An exception of the module `burgeon.errors`.
-fn exception(py: Python<'_>, class: &str, message: &str, told: Option<&Told>) -> PyErr {
+fn exception<'a>(
+    py: Python<'_>,
+    class: &str,
+    message: &str,
+    code: &str,
+    told: impl IntoIterator<Item = (&'a str, &'a str)>,
+) -> PyErr {
     let made = || -> PyResult<Bound<'_, PyAny>> {
         let fields = PyDict::new(py);
-        for (name, value) in told.iter().flat_map(|t| &t.fields) {
+        for (name, value) in told {
             fields.set_item(name, value)?;
         }
-        let code = told.map_or("", |t| t.code);
         py.import("burgeon.errors")?.getattr(class)?.call1((message, code, fields))
     };
     made().map_or_else(|e| e, PyErr::from_value)
@@ -22,16 +27,55 @@ fn exception(py: Python<'_>, class: &str, message: &str, told: Option<&Told>) ->
 
 /// What is wrong with what was asked for, or that it was stopped.
 pub(crate) fn refused<E: Coded + Display>(py: Python<'_>, error: &E) -> PyErr {
-    let told = error.told();
-    let class = match told.code {
+    let Told { code, fields, .. } = error.told();
+    let class = match code {
         "cancelled" => return PyKeyboardInterrupt::new_err("stopped"),
         "over-budget" => "BudgetError",
         _ => "SpecError",
     };
-    exception(py, class, &error.to_string(), Some(&told))
+    let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
+    exception(py, class, &error.to_string(), code, fields)
 }
 
-/// The same, in words alone.
+/// An argument that is not what it may be, in the words of the core.
+pub(crate) fn beyond(field: &str, value: impl Display, range: &str) -> PyErr {
+    let value = burgeon::quoted(&value.to_string());
+    wrong(&format!("{field} must be {range}, not {value}"), field, &value, range)
+}
+
+/// An argument that is not what it may be, in words of its own.
+pub(crate) fn wrong(message: &str, field: &str, value: &str, range: &str) -> PyErr {
+    let told = [("field", field), ("value", value), ("range", range)];
+    Python::attach(|py| exception(py, "SpecError", message, "field-range", told))
+}
+
+/// A word that is none of those that are known; `what` is said of it.
+pub(crate) fn choice(field: &str, word: &str, known: &[&str], what: &str) -> PyErr {
+    let (word, choices) = (burgeon::quoted(word), known.join(", "));
+    let message =
+        format!("{what} {word:?}; there are {choices}{}", burgeon::meant(&word, known.iter().copied()));
+    let told = [("path", field), ("name", &word), ("choices", &choices)];
+    Python::attach(|py| exception(py, "SpecError", &message, "spec-choice", told))
+}
+
+/// What a reader of JSON says of an argument.
+pub(crate) fn misread(py: Python<'_>, field: &str, error: &serde_json::Error) -> PyErr {
+    let said = error.to_string();
+    // Rows follow the name at once.
+    let text = if said.starts_with('[') { format!("{field}{said}") } else { format!("{field}: {said}") };
+    let slip = Slip::of(&text);
+    let Told { code, fields, .. } = slip.told();
+    let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
+    exception(py, "SpecError", &(text.clone() + &slip.hint()), code, fields)
+}
+
+/// Which of the words that are known is meant, as the end of a message; empty if none is near.
+#[pyfunction]
+pub(crate) fn meant(word: &str, known: Vec<String>) -> String {
+    burgeon::meant(word, known.iter().map(String::as_str))
+}
+
+/// What is wrong, in words alone.
 pub(crate) fn unusable(py: Python<'_>, error: &impl Display) -> PyErr {
-    exception(py, "SpecError", &error.to_string(), None)
+    exception(py, "SpecError", &error.to_string(), "", [])
 }

@@ -7,15 +7,14 @@ use burgeon::formats::PngCache;
 use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
 use burgeon::{Seed, Stood};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::column::Column;
-use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, refused, wrong};
 use crate::held::Held;
-use crate::model::RawModel;
+use crate::model::{RawModel, bytes_of};
 use crate::plant::{RawPlant, Scan, cloud};
 
 /// More plants are no stand that a scanner sees at once.
@@ -23,6 +22,7 @@ const MOST: usize = 2000;
 
 /// Plants, and where copies of them stand.
 #[pyclass(frozen, module = "burgeon._burgeon")]
+#[derive(Clone)]
 pub(crate) struct RawForest {
     plants: Vec<Arc<Held>>,
     /// Rows of the plants, and where each stands.
@@ -46,7 +46,7 @@ pub(crate) fn places(
     ];
     for (name, value, least, most) in fields {
         if !(least..=most).contains(&value) {
-            return Err(PyValueError::new_err(format!("{name} must be {least} to {most}, not {value}")));
+            return Err(beyond(name, value, &format!("{least} to {most}")));
         }
     }
     let (x, z) = (0.5 * width, 0.5 * depth);
@@ -54,7 +54,7 @@ pub(crate) fn places(
     let found = workspace::stand(&outline, spacing, vary, MOST + 1, Seed::new(seed));
     if found.len() > MOST {
         let line = format!("a forest has at most {MOST} plants: give more spacing, or less area");
-        return Err(PyValueError::new_err(line));
+        return Err(wrong(&line, "spacing", &spacing.to_string(), "more"));
     }
     Ok(found.into_iter().map(|p| (p.position.x, p.position.z, p.yaw_deg, p.scale)).collect())
 }
@@ -75,17 +75,15 @@ impl RawForest {
     #[new]
     fn new(plants: Vec<PyRef<'_, RawPlant>>, stand: Vec<(usize, [f64; 3], f64, f64)>) -> PyResult<Self> {
         if stand.is_empty() || stand.len() > MOST {
-            return Err(PyValueError::new_err(format!(
-                "a forest has 1 to {MOST} plants, not {}",
-                stand.len()
-            )));
+            return Err(beyond("places", format!("{} rows", stand.len()), &format!("1 to {MOST} rows")));
         }
         let plants: Vec<Arc<Held>> = plants.iter().map(|p| Arc::clone(&p.0)).collect();
         let place = |(k, (row, at, yaw_deg, scale)): (usize, (usize, [f64; 3], f64, f64))| {
             let sound = at.iter().chain([&yaw_deg, &scale]).all(|x| x.is_finite()) && scale > 0.0;
             if row >= plants.len() || !sound {
-                let line = format!("places[{k}]: finite numbers, a scale above 0, and a plant that is there");
-                return Err(PyValueError::new_err(line));
+                let told = format!("plant {row} at {at:?}, turned {yaw_deg}, scale {scale}");
+                let range = "finite numbers, a scale above 0, and a plant that is there";
+                return Err(beyond(&format!("places[{k}]"), told, range));
             }
             Ok((row, Placement { position: DVec3::from_array(at), yaw_deg, scale }))
         };
@@ -94,18 +92,17 @@ impl RawForest {
     }
 
     /// All of it as one model.
-    fn model(&self, py: Python<'_>, name: &str) -> RawModel {
-        RawModel::new(py.detach(|| burgeon::scene_model(name, &self.standing())))
+    fn model(&self, py: Python<'_>, name: &str) -> PyResult<RawModel> {
+        let (own, name) = (self.clone(), name.to_owned());
+        aside(py, move || RawModel::new(burgeon::scene_model(&name, &own.standing())))
     }
 
     /// A .glb in which copies share their meshes.
     fn glb<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let mut bytes = Vec::new();
-        let written = py.detach(|| {
-            burgeon::formats::write_glb_scene(name, &self.standing(), &mut PngCache::new(), &mut bytes)
-        });
-        written.map_err(|e| unusable(py, &e))?;
-        Ok(PyBytes::new(py, &bytes))
+        let (own, name) = (self.clone(), name.to_owned());
+        bytes_of(py, move |bytes| {
+            burgeon::formats::write_glb_scene(&name, &own.standing(), &mut PngCache::new(), bytes)
+        })
     }
 
     /// Points as a scanner around all of it sees them; `tree` is the place.

@@ -8,11 +8,10 @@ use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::Layout;
 use burgeon::{ItemReport, MadePlant, SceneEvaluator, ScenePlant, Seed};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::fault::{beyond, refused, unusable};
 
 /// A plant of a document and what was made of it. Nothing changes it: what follows from it is another.
 pub(crate) struct Held {
@@ -53,7 +52,7 @@ impl Held {
         budget: f64,
     ) -> PyResult<Arc<Self>> {
         if !(1.0..=1000.0).contains(&budget) {
-            return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
+            return Err(beyond("budget", budget, "1 to 1000"));
         }
         let mut held = Self { scene, document, id, budget, lone: None, found: None };
         let made = compute(py, budget, |run| held.scene.update(id, &held.document, run).map(|()| held))?;

@@ -38,6 +38,8 @@ mod _burgeon {
     #[pymodule_export]
     use crate::compute::set_threads;
     #[pymodule_export]
+    use crate::fault::meant;
+    #[pymodule_export]
     use crate::forest::{RawForest, places};
     #[pymodule_export]
     use crate::make::{

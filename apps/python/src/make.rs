@@ -15,12 +15,11 @@ use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::asked::Asked;
-use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, choice, refused, unusable, wrong};
 use crate::held::{Held, run};
 use crate::model::axes;
 use crate::plant::RawPlant;
@@ -62,8 +61,8 @@ impl Base {
         match (&self.preset, &self.toml) {
             (Some(word), _) => {
                 let preset = Preset::find(word).ok_or_else(|| {
-                    let known = burgeon::PRESETS.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
-                    unusable(py, &format!("there is no preset {word:?}; there are {known}"))
+                    let known: Vec<&str> = burgeon::PRESETS.iter().map(|p| p.key).collect();
+                    choice("spec", word, &known, "there is no preset")
                 })?;
                 Ok((preset.spec().map_err(|e| refused(py, &e))?, Some(preset.key)))
             }
@@ -94,9 +93,6 @@ fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<
         return Err(unread(&"Python reads leaves of marks (.csv) and of vein graphs (.json)"));
     }
     let text = std::fs::read_to_string(&path).map_err(|e| unread(&e))?;
-    if burgeon::formats::is_rays(text.as_bytes()) {
-        return Err(unread(&"is of chief veins, which only the command line hangs into a tree"));
-    }
     let data = LeafData { name: file.to_owned(), text: text.into() };
     let maker = Maker::Leaf(Box::new(LeafMaker { data, settings: LeafSpec::default() }));
     Ok(Settings { name: file.to_owned(), seed, maker, ..Settings::default() })
@@ -133,10 +129,9 @@ pub(crate) fn bloom(
     day: Option<f64>,
     law: Option<PyRef<'_, RawLaw>>,
 ) -> PyResult<RawPlant> {
-    let known = || FlowerSpec::PRESETS.join(", ");
     let spec = match (&base.preset, &base.toml) {
         (Some(word), _) => {
-            let none = || unusable(py, &format!("there is no flower {word:?}; there are {}", known()));
+            let none = || choice("spec", word, FlowerSpec::PRESETS, "there is no flower");
             burgeon::bloom::preset(word).ok_or_else(none)?
         }
         (None, Some((text, _))) => burgeon::spec::from_toml(text).map_err(|e| refused(py, &e))?,
@@ -192,7 +187,7 @@ fn within(name: &str, value: Option<f64>, usual: f64, [least, most]: [f64; 2]) -
     if (least..=most).contains(&value) {
         return Ok(value);
     }
-    Err(PyValueError::new_err(format!("{name} must be {least} to {most}, not {value}")))
+    Err(beyond(name, value, &format!("{least} to {most}")))
 }
 
 impl Veins {
@@ -201,8 +196,7 @@ impl Veins {
         if veins % 2 == 1 && (3..=most).contains(&veins) {
             return Ok(veins);
         }
-        let line = format!("veins must be an odd number from 3 to {most}, not {veins}: one is the midrib");
-        Err(PyValueError::new_err(line))
+        Err(beyond("veins", veins, &format!("an odd number from 3 to {most} (one is the midrib)")))
     }
 
     fn rays(&self) -> PyResult<(&'static str, Rays)> {
@@ -216,7 +210,7 @@ impl Veins {
                 Ok(("palmate", Rays::palmate(&spec)))
             }
             Some("parallel") if self.depth.is_some() => {
-                Err(PyValueError::new_err("depth is of palmate leaves: leave it out"))
+                Err(wrong("depth is of palmate leaves: leave it out", "depth", "given", "left out"))
             }
             Some("parallel") => {
                 let usual = ParallelSpec::default();
@@ -227,8 +221,7 @@ impl Veins {
                 ))
             }
             other => {
-                let other = other.unwrap_or_default();
-                Err(PyValueError::new_err(format!("venation must be palmate or parallel, not {other:?}")))
+                Err(beyond("venation", format!("{:?}", other.unwrap_or_default()), "palmate or parallel"))
             }
         }
     }
@@ -255,7 +248,7 @@ pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> P
     let usual = if veins.venation.as_deref() == Some("palmate") { 4 } else { 0 };
     let side_veins = veins.side_veins.unwrap_or(usual);
     if side_veins > 12 {
-        return Err(PyValueError::new_err(format!("side_veins must be 0 to 12, not {side_veins}")));
+        return Err(beyond("side_veins", side_veins, "0 to 12"));
     }
     let skin = SkinSpec { wind, ..SkinSpec::default() };
     let options = LeafOptions { spec, skin, side_veins, ..LeafOptions::default() };
@@ -279,12 +272,14 @@ pub(crate) fn leaf_of_scan(
             let format = format
                 .ok_or_else(|| unusable(py, &format!("{name}: is no cloud (.xyz, .ply, .pcd, .las)")))?;
             let axes = axes(&unit, "y")?;
-            let read = burgeon::formats::read_cloud(&*bytes, format, &axes, &mut Report::default());
+            let read = aside(py, move || {
+                burgeon::formats::read_cloud(&*bytes, format, &axes, &mut Report::default())
+            })?;
             read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points
         }
     };
     if !(1.0..=1000.0).contains(&budget) {
-        return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
+        return Err(beyond("budget", budget, "1 to 1000"));
     }
     let spec = ScanSpec::default();
     let made = compute(py, budget, |run| burgeon::make_leaf_from_scan(name, &points, &spec, run))?;
@@ -322,10 +317,14 @@ pub(crate) fn sketch(
             let format = format.ok_or_else(|| {
                 unusable(py, &format!("{name}: is no drawing (.svg, .inkml, .ndjson, .json)"))
             })?;
-            let mut read = burgeon::formats::read_drawings(&*bytes, format, name);
-            let first = read.next().ok_or_else(|| unusable(py, &format!("{name}: holds no drawing")))?;
+            let own = name.to_owned();
+            let (first, several) = aside(py, move || {
+                let mut read = burgeon::formats::read_drawings(&*bytes, format, &own);
+                (read.next(), read.next().is_some())
+            })?;
+            let first = first.ok_or_else(|| unusable(py, &format!("{name}: holds no drawing")))?;
             let drawing = first.map_err(|e| unusable(py, &format!("{name}: {e}")))?.drawing;
-            if read.next().is_some() {
+            if several {
                 return Err(unusable(py, &format!("{name}: holds several drawings; give one")));
             }
             drawing
@@ -352,11 +351,16 @@ pub(crate) fn sketch(
     for (row, word) in classes {
         let count = strokes.len();
         let stroke = strokes.get(row).ok_or_else(|| {
-            PyValueError::new_err(format!("classes: there is no stroke {row}; the drawing has {count}"))
+            let line = format!("classes: there is no stroke {row}; the drawing has {count}");
+            wrong(&line, "classes", &row.to_string(), &format!("0 to {}", count.saturating_sub(1)))
         })?;
         let class = StrokeClass::from_word(&word).ok_or_else(|| {
-            let known = StrokeClass::ALL.map(StrokeClass::word).join(", ");
-            PyValueError::new_err(format!("classes[{row}]: {word:?} is no class; there are {known}"))
+            choice(
+                &format!("classes[{row}]"),
+                &word,
+                &StrokeClass::ALL.map(StrokeClass::word),
+                "there is no class",
+            )
         })?;
         commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).of(id));
     }
@@ -371,12 +375,13 @@ pub(crate) fn sketch(
 #[pyo3(signature = (bytes, budget, wind, only = None))]
 pub(crate) fn open_project(
     py: Python<'_>,
-    bytes: &[u8],
+    bytes: Vec<u8>,
     budget: f64,
     wind: bool,
     only: Option<usize>,
 ) -> PyResult<Vec<RawPlant>> {
-    let document = burgeon::document::read_project(bytes).map_err(|e| unusable(py, &e))?;
+    let document = aside(py, move || burgeon::document::read_project(&bytes))?;
+    let document = document.map_err(|e| unusable(py, &e))?;
     let seen = document.plants().iter().filter(|p| !p.settings().hidden);
     let ids: Vec<PlantId> = seen.map(DocumentPlant::id).collect();
     let wanted = ids.into_iter().enumerate().filter(|(row, _)| only.is_none_or(|only| only == *row));
@@ -401,7 +406,8 @@ impl RawLaw {
     fn fit(py: Python<'_>, name: &str, organs: Vec<(String, Vec<f64>, Vec<f64>)>) -> PyResult<Self> {
         let series = organs.into_iter().map(|(organ, days, values)| (organ, Series { days, values }));
         let series: Vec<(String, Series)> = series.collect();
-        let law = py.detach(|| burgeon::bloom::fit_sizes(name, &series, Offset::Auto));
+        let name = name.to_owned();
+        let law = aside(py, move || burgeon::bloom::fit_sizes(&name, &series, Offset::Auto))?;
         law.map(Self).map_err(|e| unusable(py, &e))
     }
 
@@ -422,7 +428,7 @@ impl RawLaw {
     /// Sizes of an organ on some days, in the count of those that were fitted, metres.
     fn values(&self, organ: usize, days: Vec<f64>) -> PyResult<Vec<f64>> {
         let count = self.0.laws.len();
-        let none = || PyValueError::new_err(format!("there is no organ {organ}; the law has {count}"));
+        let none = || beyond("organ", organ, &format!("0 to {}", count.saturating_sub(1)));
         let law = self.0.laws.get(organ).ok_or_else(none)?;
         Ok(days.into_iter().map(|d| law.value(d - self.0.first_day)).collect())
     }
@@ -443,8 +449,7 @@ pub(crate) fn schema(maker: &str) -> PyResult<String> {
         "sketch" => SketchSpec::schema().to_string(),
         "skin" => SkinSpec::schema().to_string(),
         other => {
-            let known = "tree, flower, leaf, sketch or skin";
-            return Err(PyValueError::new_err(format!("maker must be {known}, not {other:?}")));
+            return Err(beyond("maker", format!("{other:?}"), "tree, flower, leaf, sketch or skin"));
         }
     })
 }

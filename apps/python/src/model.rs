@@ -8,13 +8,13 @@ use burgeon::ink::{Drawing, Layer, Stroke};
 use burgeon::mesh::Model;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::{Digest, Report, Seed, Unit, UpAxis};
-use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyKeyError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::column::{Column, Owner};
-use crate::compute::compute;
-use crate::fault::unusable;
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, unusable, wrong};
 use crate::held::Held;
 
 /// Who keeps a model.
@@ -58,12 +58,12 @@ pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
         "m" => Unit::Metre,
         "cm" => Unit::Centimetre,
         "mm" => Unit::Millimetre,
-        other => return Err(PyValueError::new_err(format!("unit must be m, cm or mm, not {other:?}"))),
+        other => return Err(beyond("unit", format!("{other:?}"), "m, cm or mm")),
     };
     let up = match up {
         "y" => UpAxis::Y,
         "z" => UpAxis::Z,
-        other => return Err(PyValueError::new_err(format!("up must be y or z, not {other:?}"))),
+        other => return Err(beyond("up", format!("{other:?}"), "y or z")),
     };
     Ok(ExportSpec { up, unit })
 }
@@ -91,13 +91,12 @@ pub(crate) struct Look {
 
 impl Look {
     fn spec(&self) -> PyResult<PictureSpec> {
-        let bad = |line: String| Err(PyValueError::new_err(line));
         let (width, height) = self.size;
         if !(1..=8192).contains(&width) || !(1..=8192).contains(&height) {
-            return bad(format!("size must be 1 to 8192 pixels each way, not {width} x {height}"));
+            return Err(beyond("size", format!("{width} x {height}"), "1 to 8192 pixels each way"));
         }
         if !(1..=6).contains(&self.supersample) {
-            return bad(format!("supersample must be 1 to 6, not {}", self.supersample));
+            return Err(beyond("supersample", self.supersample, "1 to 6"));
         }
         let view = match self.view.as_str() {
             "front" => View::Front,
@@ -110,11 +109,11 @@ impl Look {
             }
             other => {
                 let views = "front, three-quarter, side, top, turntable or orbit";
-                return bad(format!("view must be {views}, not {other:?}"));
+                return Err(beyond("view", format!("{other:?}"), views));
             }
         };
         if !self.azimuth.is_finite() || !(-85.0..=85.0).contains(&self.elevation) {
-            return bad(format!("elevation must be -85 to 85 deg, not {}", self.elevation));
+            return Err(beyond("elevation", self.elevation, "-85 to 85 deg"));
         }
         let background = match self.background.as_str() {
             "sky" => Background::Sky,
@@ -127,7 +126,7 @@ impl Look {
                     Some(rgb) => Background::Plain([16, 8, 0].map(|by| (rgb >> by & 0xff) as u8)),
                     None => {
                         let words = "sky, transparent, white or a colour as #rrggbb";
-                        return bad(format!("background must be {words}, not {other:?}"));
+                        return Err(beyond("background", format!("{other:?}"), words));
                     }
                 }
             }
@@ -210,10 +209,11 @@ impl RawModel {
     }
 
     /// The fingerprint of meshes and materials.
-    fn digest(&self, py: Python<'_>) -> String {
-        py.detach(|| {
+    fn digest(&self, py: Python<'_>) -> PyResult<String> {
+        let own = Self(self.0.clone());
+        aside(py, move || {
             let mut digest = Digest::new();
-            digest.add(self.get());
+            digest.add(own.get());
             digest.hex()
         })
     }
@@ -230,7 +230,8 @@ impl RawModel {
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let spec = axes(unit, up)?;
         let format = model_format(extension)?;
-        let files = py.detach(|| written(self.get(), format, extension, stem, &spec));
+        let (own, extension, stem) = (Self(self.0.clone()), extension.to_owned(), stem.to_owned());
+        let files = aside(py, move || written(own.get(), format, &extension, &stem, &spec))?;
         let files = files.map_err(|e| unusable(py, &e))?;
         Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
     }
@@ -272,7 +273,8 @@ pub(crate) fn model_format(extension: &str) -> PyResult<ModelFormat> {
     let format = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf);
     format.ok_or_else(|| {
         let known = ".glb, .obj, .ply, .stl, .usda or .usdz";
-        PyValueError::new_err(format!("models are written as {known}, not .{extension}"))
+        let line = format!("models are written as {known}, not .{extension}");
+        wrong(&line, "path", &format!(".{extension}"), known)
     })
 }
 
@@ -306,6 +308,18 @@ pub(crate) fn written(
     }
 }
 
+/// The bytes of a file that is written aside.
+pub(crate) fn bytes_of<E: std::fmt::Display + Send + 'static>(
+    py: Python<'_>,
+    write: impl FnOnce(&mut Vec<u8>) -> Result<(), E> + Send + 'static,
+) -> PyResult<Bound<'_, PyBytes>> {
+    let written = aside(py, move || {
+        let mut bytes = Vec::new();
+        write(&mut bytes).map(|()| bytes)
+    })?;
+    Ok(PyBytes::new(py, &written.map_err(|e| unusable(py, &e))?))
+}
+
 /// RGBA bytes as a PNG.
 #[pyfunction]
 pub(crate) fn png<'py>(
@@ -314,10 +328,8 @@ pub(crate) fn png<'py>(
     height: u32,
     pixels: &[u8],
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let mut bytes = Vec::new();
-    let written = py.detach(|| burgeon::formats::write_png(width, height, pixels, &mut bytes));
-    written.map_err(|e| unusable(py, &e))?;
-    Ok(PyBytes::new(py, &bytes))
+    let pixels = pixels.to_vec();
+    bytes_of(py, move |bytes| burgeon::formats::write_png(width, height, &pixels, bytes))
 }
 
 /// Lines (x, y upwards) as a drawing's SVG; each lies on the layer of its word.
@@ -336,8 +348,5 @@ pub(crate) fn drawing_svg<'py>(
         let samples = line.into_iter().map(|p| DVec2::from_array(p).into()).collect();
         drawing.strokes.push(Stroke { samples, layer: Some(layer), ..Stroke::default() });
     }
-    let mut bytes = Vec::new();
-    let written = py.detach(|| burgeon::formats::write_svg(&drawing, &mut bytes));
-    written.map_err(|e| unusable(py, &e))?;
-    Ok(PyBytes::new(py, &bytes))
+    bytes_of(py, move |bytes| burgeon::formats::write_svg(&drawing, bytes))
 }

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
 use burgeon::plant::Organ;
 use burgeon::{SceneError, Seed, SurveySpec, Surveyed};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::asked::Asked;
 use crate::column::{Column, Owner};
-use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, misread, refused, unusable};
 use crate::held::Held;
-use crate::model::{RawModel, axes};
+use crate::model::{RawModel, axes, bytes_of};
 use crate::value::json_of;
 use crate::write::Form;
 
@@ -161,7 +161,7 @@ impl RawPlant {
     /// A coarser copy of the model.
     fn level(&self, py: Python<'_>, level: u32) -> PyResult<RawModel> {
         if level > 6 {
-            return Err(PyValueError::new_err(format!("level must be 0 to 6, not {level}")));
+            return Err(beyond("level", level, "0 to 6"));
         }
         let held = &self.0;
         if let Some(lone) = &held.lone {
@@ -174,10 +174,10 @@ impl RawPlant {
     }
 
     /// What the triangles of each part of the model lie on: part, axis, organ.
-    fn labels(&self, py: Python<'_>) -> Vec<Column> {
-        let held = &self.0;
-        let labels = py.detach(|| burgeon::triangle_labels(held.plant(), held.model(), held.layout()));
-        labels.into_iter().map(Column::new).collect()
+    fn labels(&self, py: Python<'_>) -> PyResult<Vec<Column>> {
+        let held = Arc::clone(&self.0);
+        let labels = aside(py, move || burgeon::triangle_labels(held.plant(), held.model(), held.layout()))?;
+        Ok(labels.into_iter().map(Column::new).collect())
     }
 
     /// Points as a scanner sees them.
@@ -199,25 +199,20 @@ impl RawPlant {
         unit: &str,
         up: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (spec, held) = (axes(unit, up)?, &self.0);
-        let mut bytes = Vec::new();
-        let written = match format {
-            "mtg" => py.detach(|| burgeon::formats::write_mtg(held.plant(), &spec, &mut bytes)),
-            "opf" => py.detach(|| burgeon::write_opf(held.plant(), &spec, &mut bytes)),
-            "qsm" => py.detach(|| burgeon::formats::write_qsm(held.plant(), &spec, &mut bytes)),
-            other => {
-                return Err(PyValueError::new_err(format!("a structure is mtg, opf or qsm, not {other:?}")));
-            }
-        };
-        written.map_err(|e| unusable(py, &e))?;
-        Ok(PyBytes::new(py, &bytes))
+        let (spec, held) = (axes(unit, up)?, Arc::clone(&self.0));
+        match format {
+            "mtg" => bytes_of(py, move |bytes| burgeon::formats::write_mtg(held.plant(), &spec, bytes)),
+            "opf" => bytes_of(py, move |bytes| burgeon::write_opf(held.plant(), &spec, bytes)),
+            "qsm" => bytes_of(py, move |bytes| burgeon::formats::write_qsm(held.plant(), &spec, bytes)),
+            other => Err(beyond("format", format!("{other:?}"), "mtg, opf or qsm")),
+        }
     }
 
     /// The plant after more edits by hand: the list of edits of an edits file.
     fn shape(&self, py: Python<'_>, edits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let edits = json_of(edits, "edits")?;
         let edits: Vec<burgeon::shape::HandEdit> = burgeon::spec::through_json::from_text(&edits.to_string())
-            .map_err(|e| unusable(py, &format!("edits: {e}")))?;
+            .map_err(|e| misread(py, "edits", &e))?;
         for (k, edit) in edits.iter().enumerate() {
             edit.check().map_err(|why| unusable(py, &format!("edits[{k}] ({}): {why}", edit.word())))?;
         }
@@ -309,7 +304,8 @@ impl RawPlant {
     /// The plant as a project of the Studio.
     fn project<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.0.must_have_document(py)?;
-        let bytes = burgeon::document::write_project(&self.0.document, burgeon::VERSION);
+        let held = Arc::clone(&self.0);
+        let bytes = aside(py, move || burgeon::document::write_project(&held.document, burgeon::VERSION))?;
         Ok(PyBytes::new(py, &bytes.map_err(|e| unusable(py, &e))?))
     }
 }

@@ -6,12 +6,11 @@ use burgeon::mesh::PointCloud;
 use burgeon::scan::{FoundTree, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{Report, ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::asked::Asked;
-use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, refused, unusable};
 use crate::held::{Found, Held};
 use crate::make::Base;
 use crate::model::axes;
@@ -41,7 +40,7 @@ pub(crate) struct Sought {
 fn within(name: &str, value: Option<f64>, [least, most]: [f64; 2]) -> PyResult<Option<f64>> {
     match value {
         Some(value) if !(least..=most).contains(&value) => {
-            Err(PyValueError::new_err(format!("{name} must be {least} to {most} m, not {value}")))
+            Err(beyond(name, value, &format!("{least} to {most} m")))
         }
         value => Ok(value),
     }
@@ -49,18 +48,22 @@ fn within(name: &str, value: Option<f64>, [least, most]: [f64; 2]) -> PyResult<O
 
 impl Sought {
     /// The points, metres, +Y up.
-    fn cloud(&self, py: Python<'_>, name: &str, report: &mut Report) -> PyResult<Vec<DVec3>> {
+    fn cloud(&mut self, py: Python<'_>, name: &str, report: &mut Report) -> PyResult<Vec<DVec3>> {
         let axes = axes(&self.unit, &self.up)?;
-        let Some((bytes, extension)) = &self.file else {
+        let Some((bytes, extension)) = self.file.take() else {
             let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
             let row = |row: &[u8]| DVec3::new(number(&row[..8]), number(&row[8..16]), number(&row[16..]));
             return Ok(self.points.chunks_exact(24).map(|r| axes.inward(row(r))).collect());
         };
-        let format = CloudFormat::from_extension(extension).or_else(|| CloudFormat::sniff(bytes));
+        let format = CloudFormat::from_extension(&extension).or_else(|| CloudFormat::sniff(&bytes));
         let format = format.ok_or_else(|| {
             unusable(py, &format!("{name}: is no cloud (.laz, .las, .ply, .xyz, .pcd, .obj)"))
         })?;
-        let read = py.detach(|| burgeon::formats::read_cloud(&**bytes, format, &axes, report));
+        let (read, told) = aside(py, move || {
+            let mut told = Report::default();
+            (burgeon::formats::read_cloud(&*bytes, format, &axes, &mut told), told)
+        })?;
+        *report = told;
         Ok(read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points)
     }
 }
@@ -70,7 +73,7 @@ impl Sought {
 pub(crate) fn tree_of_scan(
     py: Python<'_>,
     name: &str,
-    sought: Sought,
+    mut sought: Sought,
     leaves: Option<Base>,
     asked: Asked<'_>,
 ) -> PyResult<RawPlant> {

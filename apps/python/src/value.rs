@@ -1,9 +1,11 @@
 //! What people write in Python -> JSON, which the readers of specs take.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde_json::{Map, Number, Value};
+
+use crate::fault::beyond;
 
 /// Deeper than any spec is nested; a list that holds itself ends here.
 const DEEPEST: usize = 32;
@@ -15,7 +17,7 @@ pub(crate) fn json_of(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
 
 fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     if depth > DEEPEST {
-        return Err(PyValueError::new_err(format!("{path}: is nested more than {DEEPEST} deep")));
+        return Err(beyond(path, "more", &format!("nested at most {DEEPEST} deep")));
     }
     let child = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     if value.is_none() {
@@ -27,13 +29,12 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     if value.is_instance_of::<PyInt>() {
         let whole = value.extract::<i64>().map(Number::from);
         let whole = whole.or_else(|_| value.extract::<u64>().map(Number::from));
-        let much =
-            |_| PyValueError::new_err(format!("{path} must be a whole number below 2^64, not {value}"));
+        let much = |_| beyond(path, value, "a whole number below 2^64");
         return whole.map(Value::Number).map_err(much);
     }
     if value.is_instance_of::<PyFloat>() {
         let number: f64 = value.extract()?;
-        let none = || PyValueError::new_err(format!("{path} must be a finite number, not {number}"));
+        let none = || beyond(path, number, "a finite number");
         return Number::from_f64(number).map(Value::Number).ok_or_else(none);
     }
     if let Ok(text) = value.cast::<PyString>() {

@@ -4,20 +4,19 @@ use std::sync::Arc;
 
 use burgeon::SceneError;
 use burgeon::formats::{
-    Level, ModelFormat, Packing, PngCache, WriteError, write_glb_levels, write_glb_rigged,
+    ExportSpec, Level, ModelFormat, Packing, PngCache, WriteError, write_glb_levels, write_glb_rigged,
 };
 use burgeon::mesh::{Copies, Model};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::compute::compute;
-use crate::fault::{refused, unusable};
+use crate::compute::{aside, compute};
+use crate::fault::{beyond, refused, unusable, wrong};
 use crate::held::Held;
 use crate::model::{axes, model_format, written};
 
 /// How a plant is written, as Python asks for it.
-#[derive(FromPyObject)]
+#[derive(Clone, FromPyObject)]
 pub(crate) struct Form {
     #[pyo3(item)]
     unit: String,
@@ -38,8 +37,9 @@ pub(crate) struct Form {
     sway: bool,
 }
 
-fn refuse<T>(line: impl Into<String>) -> PyResult<T> {
-    Err(PyValueError::new_err(line.into()))
+/// An option that does not fit with the rest.
+fn refuse<T>(option: &str, line: &str) -> PyResult<T> {
+    Err(wrong(line, option, "given", "left out"))
 }
 
 impl Form {
@@ -48,7 +48,7 @@ impl Form {
             None => None,
             Some("quantized") => Some(Packing::Quantized),
             Some("meshopt") => Some(Packing::Compressed),
-            Some(other) => return refuse(format!("pack must be quantized or meshopt, not {other:?}")),
+            Some(other) => return Err(beyond("pack", format!("{other:?}"), "quantized or meshopt")),
         })
     }
 
@@ -64,25 +64,26 @@ impl Form {
             ("sway", self.sway),
         ];
         if let Some((name, _)) = of_glb.iter().find(|(_, asked)| *asked && format != ModelFormat::Glb) {
-            return refuse(format!("{name} is of .glb files"));
+            return refuse(name, &format!("{name} is of .glb files"));
         }
         if self.lods > 6 {
-            return refuse(format!("lods must be 0 to 6, not {}", self.lods));
+            return Err(beyond("lods", self.lods, "0 to 6"));
         }
         if let Some(size) = self.impostor.filter(|size| !(128..=4096).contains(size)) {
-            return refuse(format!("impostor must be 128 to 4096 pixels, not {size}"));
+            return Err(beyond("impostor", size, "128 to 4096 pixels"));
         }
         if self.impostor.is_some() && !textured {
-            return refuse("impostor is of models with textures: .glb, .obj, .usda, .usdz");
+            return refuse("impostor", "impostor is of models with textures: .glb, .obj, .usda, .usdz");
         }
         if self.one_file && self.lods == 0 {
-            return refuse("one_file is of coarser copies: ask for lods");
+            return refuse("one_file", "one_file is of coarser copies: ask for lods");
         }
         if self.sway && (self.pack.is_some() || self.one_file) {
-            return refuse("what sways has files of its own for its levels, and is not packed");
+            return refuse("sway", "what sways has files of its own for its levels, and is not packed");
         }
         if swung && (self.instances || self.impostor.is_some()) {
             return refuse(
+                if self.instances { "instances" } else { "impostor" },
                 "instances and an impostor do not move in the wind: leave out sway, and make it without wind",
             );
         }
@@ -148,11 +149,29 @@ pub(crate) fn files<'py>(
         Arc::clone(plant)
     };
     let coarser = held.coarser(py, form)?;
-    let files = py.detach(|| -> Result<Vec<(String, Vec<u8>)>, WriteError> {
+    let writing = Writing { held, coarser, form: form.clone(), format, packing, spec };
+    let (extension, stem) = (extension.to_owned(), stem.to_owned());
+    let files = aside(py, move || writing.files(&extension, &stem))?.map_err(|e| unusable(py, &e))?;
+    Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
+}
+
+/// What is written, and how.
+struct Writing {
+    held: Arc<Held>,
+    coarser: Vec<Split>,
+    form: Form,
+    format: ModelFormat,
+    packing: Option<Packing>,
+    spec: ExportSpec,
+}
+
+impl Writing {
+    fn files(&self, extension: &str, stem: &str) -> Result<Vec<(String, Vec<u8>)>, WriteError> {
+        let (held, form, packing) = (&self.held, &self.form, self.packing);
         let model = held.model();
         let split = form.instances.then(|| burgeon::skin::copies(held.plant(), model, held.layout()));
         let models = std::iter::once((model, split.as_ref()));
-        let models: Vec<_> = models.chain(coarser.iter().map(|(m, s)| (m, s.as_ref()))).collect();
+        let models: Vec<_> = models.chain(self.coarser.iter().map(|(m, s)| (m, s.as_ref()))).collect();
         let levels: Vec<Level<'_>> = models.iter().map(|(model, split)| level(model, *split)).collect();
         let mut cache = PngCache::new();
         if form.one_file {
@@ -164,20 +183,18 @@ pub(crate) fn files<'py>(
         for (k, (level, (model, _))) in levels.iter().zip(&models).enumerate() {
             let stem = if k == 0 { stem.to_owned() } else { format!("{stem}-lod{k}") };
             let rig = form.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten();
-            if let (ModelFormat::Glb, Some(rig)) = (format, rig) {
+            if let (ModelFormat::Glb, Some(rig)) = (self.format, rig) {
                 let mut bytes = Vec::new();
                 write_glb_rigged(model, &rig, &mut cache, &mut bytes)?;
                 files.push((format!("{stem}.{extension}"), bytes));
-            } else if format == ModelFormat::Glb {
+            } else if self.format == ModelFormat::Glb {
                 let mut bytes = Vec::new();
                 write_glb_levels(std::slice::from_ref(level), packing, &mut cache, &mut bytes)?;
                 files.push((format!("{stem}.{extension}"), bytes));
             } else {
-                files.extend(written(model, format, extension, &stem, &spec)?);
+                files.extend(written(model, self.format, extension, &stem, &self.spec)?);
             }
         }
         Ok(files)
-    });
-    let files = files.map_err(|e| unusable(py, &e))?;
-    Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
+    }
 }

@@ -1,6 +1,8 @@
 """Tables and meshes: what they hold, and that nothing is copied."""
 
 import gc
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -141,6 +143,21 @@ def test_files_are_those_of_the_model(small, tmp_path):
     text = small.to_bytes("mtg").decode()
     assert text == (tmp_path / "plant.mtg").read_text() and "/P1" in text
     assert not [p for p in tmp_path.iterdir() if p.name.endswith(".draft")]
+
+
+def test_structure_is_what_openalea_reads_where_it_is_installed(small, monkeypatch):
+    class MTG:
+        def __init__(self, text):
+            self.text = text
+
+    folder = types.ModuleType("openalea.mtg.io")
+    folder.read_mtg = MTG
+    for name in ("openalea", "openalea.mtg"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    monkeypatch.setitem(sys.modules, "openalea.mtg.io", folder)
+    read = small.mtg()
+    assert isinstance(read, MTG) and read.text.encode() == small.to_bytes("mtg")
+    assert small.mtg(unit="cm").text != read.text
 
 
 def test_structure_is_an_mtg_or_its_text(small):

@@ -28,11 +28,60 @@ def test_ranges_are_told_with_field_value_and_unit():
     assert (str(again), again.fields, type(again)) == (str(error), error.fields, bg.SpecError)
 
 
+@pytest.mark.parametrize(
+    "call, field, value, range",
+    [
+        (lambda: bg.grow("oak", leaves={"leaf_kept": 0.5}), "leaves.leaf_kept", None, None),
+        (lambda: bg.grow("oak", method={"kind": "points"}), "method.points", None, None),
+        (lambda: bg.grow("oak", method={"kind": "carved"}), "method.kind", "carved", "competition"),
+        (lambda: bg.grow("oak", age="old"), "age", "old", "a whole number"),
+        (lambda: bg.grow("oak", obstacles=3), "obstacles", "3", "a list"),
+        (lambda: bg.grow("oka"), "spec", "oka", "apple"),
+        (lambda: bg.bloom("hyacinth"), "spec", "hyacinth", "lily"),
+        (lambda: bg.grow("oak", seed=-1), "seed", "-1", "a whole number, 0 to 2^64 - 1"),
+        (lambda: bg.grow("oak", seed="x"), "seed", "'x'", "a whole number, 0 to 2^64 - 1"),
+        (lambda: bg.grow("oak", budget=0), "budget", "0", "1 to 1000"),
+        (lambda: bg.grow("oak", age=float("nan")), "age", "NaN", "a finite number"),
+        (lambda: bg.grow("oak", foliage="hay"), "foliage", '"hay"', "outlines, cards or by-level"),
+        (lambda: bg.grow("oak", texture_size=7), "texture_size", "7", "64 to 4096 pixels"),
+        (lambda: bg.sketch([np.zeros((3, 3))]), "strokes[0]", "(3, 3)", "of shape (points, 2)"),
+        (lambda: bg.sketch([[[0, 0], [np.inf, 1]]]), "strokes[0][1]", "[inf, 1.0]", "finite"),
+        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={4: "blade"}), "classes", "4", "0 to 0"),
+        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={0: "tail"}), "classes[0]", "tail", "axis"),
+        (lambda: bg.leaf(np.zeros((3, 2))), "scan", "(3, 2)", "of shape (points, 3)"),
+        (lambda: bg.leaf([[0, 0, 0], [0, np.nan, 1]]), "scan[1]", "[0.0, nan, 1.0]", "finite"),
+        (lambda: bg.leaf(venation="palmate", veins=4), "veins", "4", "an odd number from 3 to 11"),
+        (lambda: bg.Law.fit([0, 1, 2], [0.1, np.nan, 0.3]), "sizes[1]", "nan", "finite"),
+        (lambda: bg.Law.fit([[0], [1]], [0.1, 0.2]), "days", "int64 of shape (2, 1)", "numbers of shape (n,)"),
+        (lambda: bg.schema("fern"), "maker", '"fern"', "tree, flower, leaf, sketch or skin"),
+        (lambda: bg.set_threads(1000), "count", "1000", "0 to 256"),
+        (lambda: bg.leaf().render(view="back"), "view", '"back"', "front, three-quarter"),
+        (lambda: bg.leaf().render(sise=3), "a picture.sise", None, "view, azimuth"),
+        (lambda: bg.leaf().save("x.docx"), "path", ".docx", ".glb, .obj"),
+        (lambda: bg.leaf().save("x.obj", pack="meshopt"), "pack", "given", "left out"),
+        (lambda: bg.leaf().shape([{"op": "nothing"}]), "edits[0].op", "nothing", "prune"),
+        (lambda: bg.dataset.generate("oak", 0, "x"), "n", "0", "1 to 1000000000"),
+    ],
+)
+def test_errors_name_field_value_and_range(call, field, value, range):
+    with pytest.raises(bg.SpecError) as told:
+        call()
+    error = told.value
+    assert (error.field, error.value) == (field, value) and error.code, error.fields
+    assert error.range is None if range is None else range in error.range, error.range
+
+
 def test_unknown_fields_say_which_is_meant():
     with pytest.raises(bg.SpecError, match="is `leaves` meant"):
         bg.grow("oak", leave={})
     with pytest.raises(bg.SpecError, match="leaf_keep` meant"):
         bg.grow("oak", leaves={"leaf_kept": 0.5})
+    with pytest.raises(bg.SpecError, match="there are .*; is `oak` meant"):
+        bg.grow("oka")
+    with pytest.raises(bg.SpecError, match=r"edits\[0\].*is `prune` meant"):
+        bg.leaf().shape([{"op": "prun"}])
+    with pytest.raises(bg.SpecError, match="is `stations` meant"):
+        bg.dataset.generate("oak", 1, "x", cloud={"station": 3})
     with pytest.raises(bg.SpecError, match="detail must be 0.1 to 8"):
         bg.grow("oak", detail=100)
 
@@ -53,7 +102,7 @@ def test_unknown_fields_say_which_is_meant():
         (lambda: bg.bloom("rose", -3), "day must be 0 to 100"),
         (lambda: bg.sketch([]), "no usable stroke"),
         (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={4: "blade"}), "there is no stroke 4"),
-        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={0: "tail"}), "is no class"),
+        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={0: "tail"}), "there is no class"),
         (lambda: bg.sketch([np.zeros((3, 3))]), r"strokes\[0\] must be of shape \(points, 2\)"),
         (lambda: bg.sketch([[[0, 0], [np.inf, 1]]]), r"strokes\[0\]\[1\] must be finite"),
         (lambda: bg.Law.fit([0, 1], [0.1, 0.2]), "3"),
@@ -176,6 +225,42 @@ def test_ctrl_c_stops_a_computation():
             bg.grow("oak", seed=int(started), detail=8)
     assert time.perf_counter() - started < 30
     assert bg.grow("hazel", age=3, detail=0.2).digest
+
+
+def test_other_threads_of_python_go_on_meanwhile():
+    """With Python's lock held they would stand still until the tree is there."""
+    counted, over = [0], threading.Event()
+
+    def count():
+        while not over.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        started = time.perf_counter()
+        before = counted[0]
+        bg.grow("oak", seed=1, detail=1)
+        took, after = time.perf_counter() - started, counted[0]
+    finally:
+        over.set()
+        thread.join()
+    assert took > 0.1 and after - before > 10 * took, (took, after - before)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+def test_ctrl_c_does_not_wait_for_what_is_written():
+    model = bg.grow("oak", seed=1, age=30).model
+    started = time.perf_counter()
+    model.to_bytes("obj")
+    whole = time.perf_counter() - started
+    timer = threading.Timer(0.1 * whole, lambda: os.kill(os.getpid(), signal.SIGINT))
+    started = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        model.to_bytes("obj")
+    assert time.perf_counter() - started < 0.5 * whole
 
 
 def test_nothing_can_be_set(small):

@@ -184,7 +184,7 @@ def test_shared_and_read_only_memory_is_left_as_it_is(small):
 
 def test_ray_that_is_missing_is_told(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "ray", None)
-    with pytest.raises(ImportError, match=r"pip install 'burgeon\[ray\]'"):
+    with pytest.raises(ImportError, match=r"pip install 'ray>=2'"):
         dataset.generate("grass", 1, tmp_path, ray=True, progress=False)
     assert not [n for n in os.listdir(tmp_path) if n.endswith(".tar") or "draft" in n]
 

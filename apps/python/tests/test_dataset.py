@@ -1,11 +1,14 @@
 """Data sets: the same bytes on one process, on several, after some were killed; only what is missing is made again."""
 
+import contextlib
 import hashlib
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
+import tarfile
 import threading
 import time
 
@@ -14,6 +17,7 @@ import pytest
 
 import burgeon as bg
 from burgeon import dataset
+from conftest import python
 
 HOW = dict(
     formats=("glb", "mtg", "cloud", "picture"),
@@ -53,7 +57,8 @@ def test_a_data_set_holds_what_it_says(made):
         assert plant["png"].startswith(b"\x89PNG")
     assert len({p["fields"]["age"] for p in plants}) > 1
     croissant = json.loads((out / "croissant.json").read_text())
-    assert [f["sha256"] for f in croissant["distribution"]] == [e["sha256"] for e in manifest["shards"]]
+    table = hashlib.sha256((out / "plants.csv").read_bytes()).hexdigest()
+    assert [f["sha256"] for f in croissant["distribution"]] == [*(e["sha256"] for e in manifest["shards"]), table]
 
 
 def test_several_processes_make_the_same_bytes(made, tmp_path):
@@ -76,6 +81,43 @@ def test_only_what_is_missing_is_made_again(made, tmp_path):
 def test_a_folder_holds_one_data_set(made):
     with pytest.raises(ValueError, match=r"holds another data set \(n, seed differ\)"):
         dataset.generate("hazel", 9, made[0], seed=2, **HOW)
+
+
+@pytest.mark.parametrize("wrong", [{"fields": {"age": 3, "leave": {}}}, {"vary": {"age": ["old"]}}, {"cloud": {"points": 0}}])
+def test_a_recipe_that_made_nothing_gives_way_to_the_corrected_one(tmp_path, wrong):
+    how = dict(formats=("mtg", "cloud"), fields={"age": 3}, cloud={"points": 50}, shard=1, workers=1, progress=False)
+    with pytest.raises(ValueError):
+        dataset.generate("grass", 1, tmp_path, **{**how, **wrong})
+    assert dataset.generate("grass", 1, tmp_path, **how)["plants"] == 1
+    dataset.verify(tmp_path)
+
+
+def test_a_folder_that_was_taken_meanwhile_is_left_alone(tmp_path, monkeypatch):
+    how = dict(formats="mtg", fields={"age": 3}, shard=1, workers=1, progress=False)
+    real = dataset.make_plant
+
+    def slow(recipe, index):
+        if recipe["seed"] == 1:
+            dataset.generate("grass", 1, tmp_path, seed=2, **how)
+        return real(recipe, index)
+
+    monkeypatch.setattr(dataset, "make_plant", slow)
+    with pytest.raises(ValueError, match="taken by another data set"):
+        dataset.generate("grass", 1, tmp_path, seed=1, **how)
+    dataset.verify(tmp_path)
+    assert [p["seed"] for p in dataset.read(tmp_path)] == [dataset.plant_seed(2, 0)]
+
+
+def test_the_threads_of_the_program_stay_as_they_are(tmp_path):
+    """Of the program that asks: its own process computes with as many as it has set."""
+    pytest.importorskip("psutil")
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 3}, workers=1, progress=False)
+    code = (
+        "import burgeon as bg, numpy, psutil; bg.set_threads(3); before = psutil.Process().num_threads()\n"
+        f"bg.dataset.generate('hazel', 2, {str(tmp_path)!r}, **{how!r})\n"
+        "print(psutil.Process().num_threads() - before)"
+    )
+    assert python(code) == "3"
 
 
 def test_specs_of_files_go_along(tmp_path):
@@ -169,6 +211,66 @@ def test_programs_need_no_guard(tmp_path, as_file):
     assert (done.returncode, done.stdout.strip()) == (0, "3"), done.stderr
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+def test_ctrl_c_stops_all_processes_at_once(tmp_path):
+    """Also where this process alone is told, and not all of its terminal."""
+    psutil = pytest.importorskip("psutil")
+    how = dict(formats="glb", fields={"detail": 4.0}, shard=200, workers=2, progress=False)
+    code = f"import burgeon as bg\nbg.dataset.generate('oak', 400, {str(tmp_path)!r}, **{how!r})"
+    program = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    busy, end = [], time.time() + 120
+    try:
+        own = psutil.Process(program.pid)
+        while len(busy) < 2 and time.time() < end:
+            time.sleep(0.01)
+            with contextlib.suppress(psutil.Error):
+                busy = [c for c in own.children(recursive=True) if "spawn_main" in " ".join(c.cmdline())]
+                busy = [c for c in busy if c.cpu_times().user > 1.0]
+        assert len(busy) == 2, "the workers did not work"
+        started = time.time()
+        program.send_signal(signal.SIGINT)
+        _, said = program.communicate(timeout=60)
+        alive = [c for c in busy if c.is_running() and c.status() != psutil.STATUS_ZOMBIE]
+    finally:
+        for process in (program, *busy):
+            with contextlib.suppress(psutil.Error, OSError):
+                process.kill()
+    # A shard takes minutes.
+    assert not alive
+    assert time.time() - started < 20 and program.returncode not in (0, None)
+    assert said.count("Traceback") == 1 and said.rstrip().endswith("KeyboardInterrupt"), said
+    assert os.listdir(tmp_path) == ["recipe.json"]
+
+
+def test_progress_is_told_in_files_too(tmp_path, monkeypatch, capsys):
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, shard=1, workers=1)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    monkeypatch.setattr(dataset, "EVERY_S", 0.0)
+    dataset.generate("grass", 3, tmp_path / "a", **how)
+    assert capsys.readouterr().err == "".join(f"shards: {k} of 3\n" for k in range(4))
+    monkeypatch.setattr(dataset, "EVERY_S", 1000.0)
+    dataset.generate("grass", 3, tmp_path / "b", **how)
+    assert capsys.readouterr().err == "shards: 0 of 3\nshards: 3 of 3\n"
+    dataset.generate("grass", 3, tmp_path / "c", progress=False, **how)
+    assert capsys.readouterr().err == ""
+
+
+def test_progress_is_that_of_tqdm_where_it_is_installed(tmp_path, capsys):
+    pytest.importorskip("tqdm")
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, shard=1, workers=1)
+    dataset.generate("grass", 3, tmp_path, **how)
+    said = capsys.readouterr().err
+    assert "shards: 100%" in said and "3/3" in said
+
+
+def test_numbers_of_numpy_are_numbers(tmp_path):
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 2}, workers=1, progress=False)
+    made = dataset.generate("grass", np.int64(2), tmp_path / "a", seed=np.uint8(3), shard=np.int32(1), **how)
+    assert made == dataset.generate("grass", 2, tmp_path / "b", seed=3, shard=1, **how)
+    with pytest.raises(bg.SpecError, match="n must be a whole number, 1 to 1000000000, not 2.5"):
+        dataset.generate("grass", 2.5, tmp_path / "c", **how)
+
+
 def test_drawings_and_laz(tmp_path, program):
     laspy = pytest.importorskip("laspy")
     how = {**HOW, "formats": ("cloud", "laz", "drawing"), "picture": None}
@@ -197,7 +299,7 @@ def test_drawings_and_laz(tmp_path, program):
 
 def test_laspy_that_is_missing_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "laspy", None)
-    with pytest.raises(ImportError, match=r"burgeon\[laz\]"):
+    with pytest.raises(ImportError, match=r"pip install .laspy\[lazrs\]"):
         bg.leaf().cloud(100).to_bytes("laz")
 
 
@@ -205,7 +307,16 @@ def test_croissant_is_what_its_authors_check(made):
     croissant = pytest.importorskip("mlcroissant")
     own = croissant.Dataset(jsonld=str(made[0] / "croissant.json"))
     assert own.metadata.issues.errors == set()
-    assert len(own.metadata.distribution) == 3
+    assert len(own.metadata.distribution) == 4
+    records = {record["plants/index"]: record for record in own.records("plants")}
+    assert sorted(records) == list(range(8))
+    for plant in dataset.read(made[0]):
+        record = records[plant["index"]]
+        assert record["plants/digest"].decode() == plant["digest"] and int(record["plants/seed"]) == plant["seed"]
+        assert record["plants/age"] == plant["fields"]["age"]
+        assert json.loads(record["plants/leaves"]) == plant["fields"]["leaves"]
+        with tarfile.open(made[0] / record["plants/file"].decode()) as shard:
+            assert f"{plant['index']:08d}.glb" in shard.getnames()
 
 
 @pytest.mark.ray

@@ -89,8 +89,51 @@ def test_tiles_are_plants_of_data_sets(tmp_path):
     assert len(tiles) == made["plants"] == 3
     assert len({tile["digest"] for tile in tiles}) == 3
     assert all(tile["cloud"]["tree"].max() < tile["measures"]["trees"] for tile in tiles)
-    with pytest.raises(ValueError, match="formats are glb, cloud"):
+    with pytest.raises(bg.SpecError, match="formats are glb, cloud, laz, picture"):
         bg.dataset.generate("hazel", 1, tmp_path / "bad", maker="forest", formats=("mtg",))
+
+
+def test_masks_say_which_tree_each_pixel_shows():
+    how = dict(size=(160, 120), view="front", supersample=1)
+    grove = bg.forest(["hazel", "birch"], area=9.0, spacing=3.0, kinds=1, seed=4, **SMALL)
+    masks = grove.masks(**how)
+    assert all(column.shape == (120, 160) for column in masks)
+    trees = np.unique(masks.tree[masks.tree >= 0])
+    assert len(trees) >= 3 and trees.max() < len(grove)
+    nothing = masks.tree < 0
+    assert np.array_equal(nothing, masks.part < 0) and np.array_equal(nothing, ~np.isfinite(masks.depth))
+    for tree in trees:
+        plant, own = grove.plants[grove.places["plant"][tree]], masks.tree == tree
+        assert masks.axis[own].max() < len(plant.axes) and masks.organ[own].max() < len(plant.organs)
+        axis = masks.axis[own & (masks.organ < 0)]
+        assert np.array_equal(plant.axes.part[axis], masks.part[own & (masks.organ < 0)])
+    # Each tree that stands alone is where the masks of all show it.
+    for tree in trees:
+        one = {name: column[[tree]] for name, column in grove.places.items()}
+        far = {**one, "position": one["position"] + [200.0, 0.0, 0.0]}
+        both = {name: np.concatenate([one[name], far[name]]) for name in one}
+        alone = bg.Forest(grove.plants, both).masks(**{**how, "size": (4096, 128)})
+        assert {0, 1} == set(np.unique(alone.tree[alone.tree >= 0]))
+
+
+def test_a_plant_alone_has_the_masks_of_the_plant():
+    plant = bg.grow("hazel", seed=1, **SMALL)
+    place = {"position": [[0, 0, 0]], "yaw_deg": [0], "scale": [1], "plant": [0]}
+    how = dict(size=(96, 96), view="front", supersample=1)
+    one, own = bg.Forest([plant], place).masks(**how), plant.masks(**how)
+    assert all(np.array_equal(getattr(one, name), getattr(own, name)) for name in own._fields)
+    assert np.array_equal(one.tree, np.where(own.part < 0, -1, 0)) and (one.tree == 0).any()
+
+
+def test_tiles_have_pictures_with_a_mask_for_each_tree(tmp_path):
+    how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
+    bg.dataset.generate(
+        "hazel", 1, tmp_path / "tiles", maker="forest", formats=("picture",), fields=how,
+        picture={"size": 96, "supersample": 1}, workers=1, progress=False,
+    )  # fmt: skip
+    (tile,) = bg.dataset.read(tmp_path / "tiles")
+    assert tile["png"].startswith(b"\x89PNG") and sorted(tile["masks"]) == ["axis", "depth", "organ", "part", "tree"]
+    assert tile["masks"]["tree"].shape == (96, 96) and tile["masks"]["tree"].max() < tile["measures"]["trees"]
 
 
 @pytest.mark.parametrize(

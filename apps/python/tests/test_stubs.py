@@ -3,6 +3,8 @@
 import ast
 import inspect
 import pathlib
+import subprocess
+import sys
 
 import pytest
 
@@ -73,3 +75,12 @@ def test_all_that_is_exported_is_there_and_documented():
 def test_functions_are_annotated(name):
     thing = getattr(bg, name)
     assert "return" in thing.__annotations__ and set(inspect.signature(thing).parameters) <= set(thing.__annotations__), name
+
+
+@pytest.mark.parametrize("how", [("--ignore-missing-imports", "-p", "burgeon"), ("--strict", "typed.py")])
+def test_types_are_those_of_the_docs(how, tmp_path):
+    """A checker of types finds nothing in the package, and in a program what is wrong (`typed.py`) and nothing else."""
+    pytest.importorskip("mypy")
+    words = [sys.executable, "-m", "mypy", "--cache-dir", tmp_path, *how]
+    done = subprocess.run(words, cwd=pathlib.Path(__file__).parent, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -59,6 +59,23 @@ def test_a_leaf_of_ones_own_is_that_of_the_command_line(cli, root, shown, tmp_pa
         bg.grow(spec)
 
 
+def test_a_leaf_of_chief_veins_is_borne_as_by_the_command_line(cli, shown, tmp_path):
+    veins = tmp_path / "maple.csv"
+    own = cli("leaf", "--venation", "palmate", "--veins", 7, "-o", tmp_path / "m.glb", "--marks", veins)["digest"]
+    theirs = cli("grow", "hazel", *ASKED, "--leaf-template", veins, "--json")["digest"]
+    spec = tmp_path / "hazel.toml"
+    spec.write_text(shown("hazel").replace("[blade]", '[blade]\nfile = "maple.csv"'))
+    tree = bg.grow(spec, **SMALL)
+    assert tree.digest == theirs != bg.grow("hazel", **SMALL).digest
+    leaf = bg.leaf(veins)
+    assert bg.grow("hazel", **SMALL, leaf=leaf).digest == theirs
+    assert leaf.digest == cli("leaf", veins, "-o", tmp_path / "x.glb")["digest"] != own
+    # A project keeps it.
+    tree.save(tmp_path / "x.burgeon")
+    (opened,) = bg.open(tmp_path / "x.burgeon")
+    assert opened.digest == theirs
+
+
 @pytest.mark.parametrize(
     "name, how, words",
     [

@@ -643,6 +643,7 @@ async function tree({ page, url, shot }) {
   for (const [format, start] of [
     ['glb', 'glTF'],
     ['mtg', 'CODE'],
+    ['opf', '<opf'],
     ['qsm', 'radius'],
   ]) {
     const file = await exported(page, format);

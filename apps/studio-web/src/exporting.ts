@@ -5,10 +5,22 @@ import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
 export type ExportOptions = Omit<ExportRequest, 'format'>;
-const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'svg', 'json'];
+const FORMATS: readonly Target[] = [
+  'glb',
+  'usda',
+  'obj',
+  'ply',
+  'stl',
+  'mtg',
+  'opf',
+  'qsm',
+  'png',
+  'svg',
+  'json',
+];
 /** Formats with levels of detail. */
 export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
-const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
+const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'opf', 'qsm']);
 /** Formats with room for wind. */
 export const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };

@@ -19,6 +19,7 @@ const TYPES: Record<string, string> = {
   stl: 'model/stl',
   json: 'application/json',
   mtg: 'text/plain',
+  opf: 'application/xml',
   qsm: 'text/csv',
 };
 
@@ -238,7 +239,7 @@ export class Files {
     try {
       const levelled = LEVELS.has(format);
       if (!levelled) options.levels = 1;
-      const structure = (format === 'mtg' || format === 'qsm') && options.whole && this.events.several();
+      const structure = ['mtg', 'opf', 'qsm'].includes(format) && options.whole && this.events.several();
       const zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);
       const extension = format === 'qsm' ? 'csv' : format;
       const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;

@@ -408,6 +408,8 @@ export type ExportFormat =
   "stl"
   | /** The structure of each plant as a multiscale tree graph. */
   "mtg"
+  | /** The structure of each plant with the meshes of its organs, as AMAPstudio and Archimed read it. */
+  "opf"
   | /** The structure of each plant as a table of cylinders. */
   "qsm"
   | /** The current drawing in our JSON. */

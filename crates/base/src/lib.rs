@@ -11,6 +11,7 @@
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
 //! | `slip` | [`Slip`]: what readers say of a text, as codes |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
+//! | `nearest` | [`nearest()`], [`meant`]: which of the known words was meant |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats; [`escaped_xml`] |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
@@ -24,6 +25,7 @@ mod coded;
 mod digest;
 mod exps;
 mod ids;
+mod nearest;
 pub mod ops;
 mod quote;
 mod report;
@@ -39,6 +41,7 @@ pub use budget::{Budget, Counted, OverBudget, grouped};
 pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
 pub use litemap::LiteMap;
+pub use nearest::{meant, nearest};
 pub use quote::{brief, escaped_xml, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};

@@ -38,12 +38,25 @@ impl Slip {
             !path.contains(' ') && ["unknown ", "missing ", "invalid "].iter().any(|s| why.starts_with(s))
         });
         let (path, why) = in_field.unwrap_or(("", why));
+        let why = crate::nearest::without_hint(why);
         Self { path: path.to_owned(), place, why: crate::brief(why) }
     }
 
     /// Of a message about what names and rows lead to, in a text of which the line (from 1) may be known.
     pub fn in_field(path: &str, line: Option<usize>, why: &str) -> Self {
         Self { path: path.to_owned(), place: line.map(|line| (line, None)), why: crate::brief(why) }
+    }
+
+    /// Of a field or a word that is not known, which of those that are known is meant; empty if none is near.
+    ///
+    /// ```
+    /// let slip = base::Slip::of("unknown field `depht`, expected `width` or `depth`");
+    /// assert_eq!(slip.hint(), "; is `depth` meant?");
+    /// ```
+    pub fn hint(&self) -> String {
+        let unknown = ["unknown field", "unknown variant"].iter().any(|start| self.why.starts_with(start));
+        let mut quoted = self.why.split('`').skip(1).step_by(2);
+        quoted.next().filter(|_| unknown).map(|word| crate::meant(word, quoted)).unwrap_or_default()
     }
 
     fn said(&self) -> Said<'_> {
@@ -253,6 +266,14 @@ mod tests {
             assert_eq!((told.code, fields(&told)), ("slip-at", at.to_vec()));
             assert_eq!((told.causes["what"].code, fields(&told.causes["what"])), (code, want));
         }
+    }
+
+    #[test]
+    fn a_hint_is_no_choice() {
+        let plain = "unknown variant `laom`, expected `sand` or `loam`";
+        let slip = Slip::of(&format!("soil: {plain}{} at line 1 column 2", Slip::of(plain).hint()));
+        assert_eq!((slip.hint().as_str(), slip.to_string().as_str()), ("; is `loam` meant?", plain));
+        assert_eq!(slip.told().causes["what"].fields["choices"], "sand, loam");
     }
 
     #[test]

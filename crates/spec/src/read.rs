@@ -10,7 +10,7 @@ use crate::{Node, RangeFault, Spec, TextFault, check};
 #[non_exhaustive]
 pub enum SpecFault {
     /// It is no such spec: not TOML, a field that is not known or missing, or a value of another kind.
-    #[error("{}{}{message}", on(*line), lead(path))]
+    #[error("{}{}{message}{}", on(*line), lead(path), Slip::in_field(path, None, message).hint())]
     Text {
         /// From 1; none where there is no text.
         line: Option<usize>,
@@ -208,6 +208,20 @@ mod tests {
     }
 
     crate::schemas!(Bed);
+
+    #[test]
+    fn of_what_is_not_known_the_nearest_is_meant() {
+        for (text, hint) in [
+            ("width_n = 1\nsoil = \"loam\"", Some("width_m")),
+            ("width_m = 1\nsoil = \"laom\"", Some("loam")),
+            ("width_m = 1\nsoil = \"gravel\"", None),
+            ("width_m = \"`width_n`\"\nsoil = \"loam\"", None),
+        ] {
+            let said = from_toml::<Bed>(text).expect_err("not sound").to_string();
+            let meant = hint.map(|word| format!("; is `{word}` meant?"));
+            assert!(meant.map_or(!said.contains("meant"), |meant| said.ends_with(&meant)), "{said}");
+        }
+    }
 
     #[test]
     fn common_slips_have_codes_of_their_own() {

@@ -43,7 +43,7 @@ mod venation;
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
     NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,
-    brief, grouped, map_indexed, map_of, quoted, set_of, sort_by_key,
+    brief, grouped, map_indexed, map_of, meant, quoted, set_of, sort_by_key,
 };
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};

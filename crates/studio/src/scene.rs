@@ -12,11 +12,11 @@ use document::{
     Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
     SketchCommand, SketchSettings, TreeSettings,
 };
-use formats::{MarksAxes, read_marks, read_vein_graph};
+use formats::{MarksAxes, is_rays, read_marks, read_rays, read_vein_graph};
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
-use leaf::{FullMarks, LeafSpec, ThicknessRule};
+use leaf::{FullMarks, LeafSpec, Rays, ThicknessRule};
 use mesh::{Copies, MaterialId, Model, Standing};
 use plant::{AxisId, Plant};
 use skin::{Layout, SkinSpec, Worn};
@@ -31,6 +31,7 @@ use crate::opening::OpeningPlant;
 use crate::report::ItemReport;
 use crate::template::LeafTemplate;
 use crate::trees::{TreeEvaluator, TreeOptions};
+use crate::venation::make_ray_leaf;
 
 /// What was made of one plant.
 #[derive(Clone, Copy, Debug)]
@@ -331,8 +332,16 @@ impl SceneEvaluator {
         let made = &mut kept.made;
         let lent = match &plant.settings().maker {
             Maker::Leaf(l) if made.lent.is_none() => {
-                let (marks, options) = leaf_input(l)?;
-                let lent = LeafTemplate::of_marks(&marks, &options, plant.settings().seed, run)?;
+                let (input, options) = leaf_input(l)?;
+                let lent = match &input {
+                    LeafInput::Marks(marks) => {
+                        LeafTemplate::of_marks(marks, &options, plant.settings().seed, run)?
+                    }
+                    LeafInput::Rays(rays) => match LeafTemplate::of_rays(rays, &options, run)? {
+                        Ok(lent) => lent,
+                        Err(_) => return Err(none()),
+                    },
+                };
                 Arc::make_mut(made).lent = Some(lent.clone());
                 Some(lent)
             }
@@ -548,9 +557,14 @@ impl Made {
         from: &MadeFrom,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let (marks, mut options) = leaf_input(leaf)?;
+        let (input, mut options) = leaf_input(leaf)?;
         (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
-        let made = make_leaf_of(&from.name, &marks, &options, from.seed, run, Report::default())?;
+        let made = match &input {
+            LeafInput::Marks(marks) => {
+                make_leaf_of(&from.name, marks, &options, from.seed, run, Report::default())?
+            }
+            LeafInput::Rays(rays) => make_ray_leaf(&from.name, rays, &options, run)?,
+        };
         self.lent = None;
         Ok(self.take(made))
     }
@@ -598,13 +612,26 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
     }
 }
 
-/// The marks of a leaf of a document, and how it is made.
-fn leaf_input(leaf: &LeafMaker) -> Result<(FullMarks, LeafOptions), SceneError> {
+/// What was measured of a leaf.
+enum LeafInput {
+    /// Marks along its midrib, veins and margins.
+    Marks(FullMarks),
+    /// Chief veins that start together.
+    Rays(Rays),
+}
+
+/// What was measured of a leaf of a document, and how it is made.
+fn leaf_input(leaf: &LeafMaker) -> Result<(LeafInput, LeafOptions), SceneError> {
     let LeafMaker { data, settings } = leaf;
+    if is_rays(data.text.as_bytes()) {
+        let read = read_rays(data.text.as_bytes(), &data.name, MarksAxes::default())?;
+        let spec = LeafSpec { thickness: settings.thickness.or(read.thickness), ..settings.clone() };
+        return Ok((LeafInput::Rays(read.rays), LeafOptions { spec, ..LeafOptions::default() }));
+    }
     let (marks, in_file) = leaf_marks(data, settings)?;
     let full = marks.complete(&mut Report::default()).map_err(LeafError::from)?;
     let spec = LeafSpec { thickness: settings.thickness.or(in_file), ..settings.clone() };
-    Ok((full, LeafOptions { spec, ..LeafOptions::default() }))
+    Ok((LeafInput::Marks(full), LeafOptions { spec, ..LeafOptions::default() }))
 }
 
 /// The marks in a file of a leaf, and what its thickness is if it says so; without a text those of the form that is set.

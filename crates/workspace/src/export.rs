@@ -36,6 +36,8 @@ pub enum ExportFormat {
     Stl,
     /// The structure of each plant as a multiscale tree graph.
     Mtg,
+    /// The structure of each plant with the meshes of its organs, as AMAPstudio and Archimed read it.
+    Opf,
     /// The structure of each plant as a table of cylinders.
     Qsm,
     /// The current drawing in our JSON.
@@ -53,6 +55,7 @@ impl ExportFormat {
             Self::Ply => ModelFormat::Ply,
             Self::Stl => ModelFormat::Stl,
             Self::Mtg => return Err(WorkspaceError::Format("mtg")),
+            Self::Opf => return Err(WorkspaceError::Format("opf")),
             Self::Qsm => return Err(WorkspaceError::Format("qsm")),
             Self::Json => return Err(WorkspaceError::Format("json")),
             Self::Svg => return Err(WorkspaceError::Format("svg")),
@@ -205,6 +208,9 @@ fn export(
     match wanted.format {
         ExportFormat::Mtg => {
             return structure(structures, "mtg", |plant, out| formats::write_mtg(plant, &wanted.spec(), out));
+        }
+        ExportFormat::Opf => {
+            return structure(structures, "opf", |plant, out| burgeon::write_opf(plant, &wanted.spec(), out));
         }
         ExportFormat::Qsm => {
             return structure(structures, "csv", |plant, out| formats::write_qsm(plant, &wanted.spec(), out));

@@ -327,8 +327,9 @@ fn load_shapes(
     }
     if !start.exists() && !stdin {
         let names = FlowerSpec::PRESETS.join(", ");
+        let hint = burgeon::meant(&args.start, FlowerSpec::PRESETS.iter().copied());
         return Err(Failure::Bad(format!(
-            "{}: there is no such file, and no such flower ({names}); check the spelling",
+            "{}: there is no such file, and no such flower ({names}); check the spelling{hint}",
             args.start
         )));
     }

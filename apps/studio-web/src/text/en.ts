@@ -502,6 +502,7 @@ export const en = {
   'export.what.scene': 'the whole scene',
   'export.what.plant': 'the chosen plant',
   'export.mtg': 'structure (multiscale tree graph)',
+  'export.opf': 'structure with the shapes of its organs (AMAPstudio, Archimed)',
   'export.qsm': 'cylinders (TreeQSM columns)',
   'note.failed': '{name} was not made: {why}',
   'note.nosketch': 'a photograph lies under a drawing; choose a drawing first',
