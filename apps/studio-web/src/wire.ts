@@ -408,7 +408,7 @@ export type ExportFormat =
   "stl"
   | /** The structure of each plant as a multiscale tree graph. */
   "mtg"
-  | /** The structure of each plant with the meshes of its organs, as AMAPstudio and Archimed read it. */
+  | /** The structure of each plant with the meshes of its organs, as Open Plant Format. */
   "opf"
   | /** The structure of each plant as a table of cylinders. */
   "qsm"

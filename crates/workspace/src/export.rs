@@ -36,7 +36,7 @@ pub enum ExportFormat {
     Stl,
     /// The structure of each plant as a multiscale tree graph.
     Mtg,
-    /// The structure of each plant with the meshes of its organs, as `AMAPstudio` and `ARCHIMED` read it.
+    /// The structure of each plant with the meshes of its organs, as Open Plant Format.
     Opf,
     /// The structure of each plant as a table of cylinders.
     Qsm,
