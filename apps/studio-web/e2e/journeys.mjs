@@ -672,6 +672,11 @@ async function own({ page, url, shot }) {
   const birch = await changed(page, mine, 'a birch');
   await page.waitForTimeout(800);
   await shot('own-preset');
+  // Kept under the name of another by mistake: the other comes back.
+  await page.click('#b-own-keep');
+  await page.locator('dialog .field').fill('Thin hazel');
+  await page.keyboard.press('Enter');
+  await page.locator('.note', { hasText: 'other values' }).locator('button', { hasText: 'Undo' }).click();
   await page.click('[data-own="Thin hazel"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
   assert.notEqual(birch, mine);

@@ -4,7 +4,7 @@
  *
  * The journal is only ever appended to, and nothing holds it while it waits for a page or for the disk: what is asked of
  * it is asked in one go, whether it is written or read. Everything else about a document (its entry in the list, its
- * picture, the whole file) has transactions of its own.
+ * picture, the whole file) has transactions of its own. The picture behind the plants is among the pictures.
  *
  * The tab that works on a document owns it, and writes the rows of its journal one after the other. The tab that takes
  * it over writes the next one: what the old owner still has on its way finds its row taken, and none of it is written.
@@ -298,8 +298,23 @@ export async function copy(id: string, to: string, name: string): Promise<void> 
     stores.documents.put({ ...entry, id: to, name, time: Date.now(), owner: '', deleted: 0 });
     if (picture !== undefined) stores.pictures.put(picture, to);
     if (stored.whole) stores.wholes.put(stored.whole, to);
-    for (const { seq, request } of stored.written) stores.journal.put(request, [to, seq]);
-    stores.journal.put(naming(name), [to, stored.last + 1]);
+    const more = numbered(stored.last, [...stored.unended, naming(name)]);
+    for (const { seq, request } of [...stored.written, ...more]) stores.journal.put(request, [to, seq]);
+  });
+}
+
+/** The place of the picture behind the plants, which belongs to no document: their numbers have no such letters. */
+const BACKDROP = '.backdrop';
+
+/** The picture behind the plants, a data URL. */
+export async function backdrop(): Promise<string | undefined> {
+  const [url] = await look(['pictures'], ({ pictures }) => [pictures.get(BACKDROP)]);
+  return url as string | undefined;
+}
+
+export function setBackdrop(url: string): Promise<void> {
+  return transact(['pictures'], ({ pictures }) => {
+    pictures.put(url, BACKDROP);
   });
 }
 
