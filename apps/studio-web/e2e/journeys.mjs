@@ -656,6 +656,20 @@ async function tree({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
+/** What is odd about a file that is opened is told in the language of the page. */
+async function oddFile({ page, url, shot }) {
+  await begin(page, url);
+  await page.click('#b-language');
+  await page.locator('#b-language', { hasText: 'English' }).waitFor();
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99"><text>a</text>
+<path id="p" stroke="black" fill="none" d="M10 10L20 60L30 5 L"/></svg>`;
+  await drop(page, 'odd.svg', svg);
+  const told = await page.locator('.note.bad').textContent();
+  assert.match(told, /第 2 行.*没有读取：文字（1）/);
+  assert.doesNotMatch(told, /left out|broken|attribute/, 'none of it is English');
+  await shot('odd-file-zh');
+}
+
 /** On a laptop each icon bears its name until it was used, and all of them fit. */
 async function names({ page, url, shot }) {
   await begin(page, url);
@@ -907,6 +921,7 @@ export const journeys = [
     { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false },
   ],
   ['a tree with an obstacle', tree],
+  ['a file with oddities is told of in Chinese', oddFile],
   ['names under icons on a laptop', names],
   ["a preset of one's own", own],
   ['a leaf from marks', leaf],
