@@ -657,6 +657,51 @@ async function tree({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
+/** What is odd about a file that is opened is told in the language of the page. */
+async function oddFile({ page, url, shot }) {
+  await begin(page, url);
+  await page.click('#b-language');
+  await page.locator('#b-language', { hasText: 'English' }).waitFor();
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99"><text>a</text>
+<path id="p" stroke="black" fill="none" d="M10 10L20 60L30 5 L"/></svg>`;
+  await drop(page, 'odd.svg', svg);
+  const told = await page.locator('.note.bad').textContent();
+  assert.match(told, /第 2 行.*没有读取：文字（1）/);
+  assert.doesNotMatch(told, /left out|broken|attribute/, 'none of it is English');
+  await shot('odd-file-zh');
+}
+
+/** On a laptop each icon bears its name until it was used, and all of them fit. */
+async function names({ page, url, shot }) {
+  await begin(page, url);
+  const seen = (of) => page.locator(`${of} .caption:visible`).count();
+  const all = (of) => page.locator(`${of} button:visible`).count();
+  for (const width of [1280, 1366]) {
+    await page.setViewportSize({ width, height: 650 });
+    // Of the commands of the bar, one has its name beside its icon; the language is a word.
+    assert.equal(await seen('.bar'), (await all('.bar')) - 2, `names in the bar at ${width} pixels`);
+    for (const of of ['.left > .tools', '.right-tools']) {
+      assert.equal(await seen(of), await all(of), `names of ${of} at ${width} pixels`);
+      const fits = await page.locator(of).evaluate((e) => e.scrollHeight <= e.clientHeight);
+      assert.ok(fits, `${of} need not be scrolled at ${width} pixels`);
+    }
+    const inside = await page.locator('.bar').evaluate((bar) => {
+      const right = bar.getBoundingClientRect().right;
+      const boxes = [...bar.querySelectorAll('button')].map((b) => b.getBoundingClientRect());
+      return boxes.every((b) => b.width >= 28 && b.right <= right);
+    });
+    assert.ok(inside, `the bar holds its buttons at ${width} pixels`);
+  }
+  await shot('names-laptop');
+  await page.click('#b-wire');
+  await page.click('#b-grid');
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('#b-wire .caption, #b-grid .caption').count(), 0, 'what was used is known');
+  await page.click('#b-language');
+  await page.waitForTimeout(500);
+  await shot('names-laptop-zh');
+}
+
 /** A tree that was changed is kept as a preset, comes back by a click, and travels as a file. */
 async function own({ page, url, shot }) {
   await begin(page, url);
@@ -673,6 +718,11 @@ async function own({ page, url, shot }) {
   const birch = await changed(page, mine, 'a birch');
   await page.waitForTimeout(800);
   await shot('own-preset');
+  // Kept under the name of another by mistake: the other comes back.
+  await page.click('#b-own-keep');
+  await page.locator('dialog .field').fill('Thin hazel');
+  await page.keyboard.press('Enter');
+  await page.locator('.note', { hasText: 'other values' }).locator('button', { hasText: 'Undo' }).click();
   await page.click('[data-own="Thin hazel"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
   assert.notEqual(birch, mine);
@@ -872,6 +922,8 @@ export const journeys = [
     { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false },
   ],
   ['a tree with an obstacle', tree],
+  ['a file with oddities is told of in Chinese', oddFile],
+  ['names under icons on a laptop', names],
   ["a preset of one's own", own],
   ['a leaf from marks', leaf],
   ['a flower that opens: play', bloom],

@@ -51,6 +51,38 @@ async function crash({ page, url, context }) {
   await after.close();
 }
 
+/** The stroke under the pen is written while it is drawn: the page may end before the stroke does. */
+async function underPen({ page, url, context }) {
+  await begin(page, url);
+  await page.keyboard.press('m');
+  const box = await page.locator('.sheet').boundingBox();
+  const reach = async (of, steps) => {
+    await of.mouse.move(box.x + 150, box.y + 400);
+    await of.mouse.down();
+    await of.mouse.move(box.x + 180, box.y + 250, { steps });
+  };
+  await reach(page, 12);
+  await page.waitForTimeout(200);
+  assert.equal(await count(page, 'strokes'), 0, 'it is not finished');
+  const cdp = await context.newCDPSession(page);
+  await Promise.race([cdp.send('Page.crash').catch(() => {}), page.waitForTimeout(500).catch(() => {})]);
+  const after = await another(context, url);
+  await until(after, 'strokes', ['is', 2], 'the stroke is there, with its mirror image');
+  await after.keyboard.press('Control+z');
+  await until(after, 'strokes', ['is', 0], 'as one step of undo');
+  await standing(after, 'saved');
+  await after.reload();
+  await until(after, 'strokes', ['is', 0], 'and does not come back');
+  // What the system takes from the hand was no stroke.
+  await reach(after, 12);
+  await after.waitForTimeout(200);
+  await after.locator('.sheet').dispatchEvent('pointercancel', { pointerId: 1, pointerType: 'mouse' });
+  await after.waitForTimeout(200);
+  await after.reload();
+  await until(after, 'strokes', ['is', 0], 'a stroke that was taken back is none');
+  await after.close();
+}
+
 /** A gesture that is not finished is nothing; one that is finished is there with all its parts. */
 async function gestures({ page, url }) {
   await begin(page, url);
@@ -312,6 +344,7 @@ async function long({ page, url }) {
 
 export const keeping = [
   ['kept: forty quick strokes and a crash', crash],
+  ['kept: the stroke under the pen', underPen],
   ['kept: gestures', gestures],
   ['kept: two tabs', tabs],
   ['kept: two tabs without locks', lockless],

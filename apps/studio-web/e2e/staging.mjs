@@ -787,6 +787,90 @@ async function warnings({ page, url, shot }) {
   await shot('warnings-zh');
 }
 
+/** A picture file (BMP) of reddish noise, which no compression makes small. */
+function noise(width, height) {
+  const pixels = Buffer.alloc(3 * width * height);
+  let state = 1;
+  for (let i = 0; i < pixels.length; i += 1) {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    // Blue, green, red: red is the brighter half.
+    pixels[i] = (state >>> 25) + (i % 3 === 2 ? 128 : 0);
+  }
+  const head = Buffer.alloc(54);
+  head.write('BM');
+  head.writeUInt32LE(54 + pixels.length, 2);
+  for (const [at, value] of [
+    [10, 54],
+    [14, 40],
+    [18, width],
+    [22, height],
+  ])
+    head.writeUInt32LE(value, at);
+  head.writeUInt16LE(1, 26);
+  head.writeUInt16LE(24, 28);
+  return Buffer.concat([head, pixels]);
+}
+
+async function chooseBackdrop(page, buffer) {
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('.scenery .link');
+  await (await chooser).setFiles({ name: 'noise.bmp', mimeType: 'image/bmp', buffer });
+}
+
+/** What is removed from the stage comes back by a click; a picture too large for settings is kept, or it is told. */
+async function keptStage({ page, url, shot }) {
+  await page.addInitScript(() => {
+    const { put } = IDBObjectStore.prototype;
+    IDBObjectStore.prototype.put = function write(...rest) {
+      if (sessionStorage.getItem('full')) throw new DOMException('full', 'QuotaExceededError');
+      return put.apply(this, rest);
+    };
+  });
+  await begin(page, url);
+  await sample(page);
+  await page.keyboard.press('c');
+  for (const side of ['front', 'left', 'back']) {
+    await page.click(`[data-side=${side}]`);
+    await rest(page);
+    await page.click('[data-camera=keep]');
+  }
+  await page.click('[data-camera="2"]');
+  const left = await rest(page);
+  await page.click('[data-camera="3"]');
+  const back = await rest(page);
+  await page.click('[data-camera-drop="2"]');
+  await page.waitForFunction(() => !document.querySelector('[data-camera="3"]'));
+  await page.locator('.note button', { hasText: 'Undo' }).click();
+  // A click beside the panel closes it.
+  await page.keyboard.press('c');
+  await page.locator('[data-camera="3"]').waitFor();
+  await page.click('[data-camera="2"]');
+  assert.deepEqual(await rest(page), left, 'the camera is in its place again');
+  assert.notDeepEqual(left, back);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await page.selectOption('[data-stage=background]', 'picture');
+  await chooseBackdrop(page, noise(2600, 2000));
+  const sky = [0.4, 0.01, 0.8, 0.05];
+  const reddish = async (why) => {
+    await page.keyboard.press('Escape');
+    await page.waitForTimeout(1500);
+    const { rgb } = await seen(page, sky);
+    assert.ok(rgb[0] > 160 && rgb[2] < 110, `${why}: ${rgb}`);
+  };
+  await reddish('the picture stands behind');
+  assert.equal(await page.locator('.note.bad').count(), 0);
+  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await reddish('and after a reload');
+  await shot('kept-backdrop');
+  await page.evaluate(() => sessionStorage.setItem('full', 'yes'));
+  await page.keyboard.press('t');
+  await chooseBackdrop(page, noise(40, 40));
+  await page.locator('.note.bad', { hasText: 'no room for the picture' }).waitFor();
+}
+
 export const staging = [
   ['warnings are read by one click', warnings],
   ['an obstacle is dragged and the tree grows when it is let go', obstacles],
@@ -794,6 +878,7 @@ export const staging = [
   ['an export is seen before it is written: levels, wind, figures', preview],
   ['an export of a tree is seen at its age, and stands still for whom it should', scene],
   ['the stage: presets, ground, background, quality', stage],
+  ['the stage keeps its cameras and its picture', keptStage],
   ['the camera: to the pointer, sides, lens, kept, on foot', camera],
   ['a picture of any size, with transparency', picture],
   ['films: round the plant, opening, stopped', films],

@@ -201,6 +201,8 @@ export class App implements Page {
         note(t('note.noworker'), 'bad');
       },
       refusal: () => this.documents.refusal(),
+      drawing: (requests) => this.documents.keeper.drawing(requests),
+      undrawn: () => this.documents.keeper.undrawn(),
       asked: (request) => this.documents.keeper.record(request),
       vain: (request) => this.documents.keeper.forget(request),
       told: (request) => this.documents.keeper.again(request),
@@ -228,8 +230,8 @@ export class App implements Page {
         endTour();
         this.session.stroke(mode, samples, mirror);
       },
-      draft: (mode, samples) => {
-        this.session.setDraft(mode, samples);
+      draft: (mode, samples, mirror) => {
+        this.session.setDraft(mode, samples, mirror);
         this.show.emptySheet();
       },
       undraft: () => {

@@ -13,7 +13,7 @@ export interface Pieces {
 }
 
 type Child = HTMLElement | string;
-/** What has a short name, for the bars beside sheet and view. */
+/** What has a short name, for under its icon. */
 type ToolCommand = CommandId &
   (TextKey extends infer K ? (K extends `short.${infer id}` ? id : never) : never);
 /** Buttons by their names, which stand in their ids. */
@@ -128,9 +128,8 @@ function iconButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonE
   return keepButton(buttons, spec, button(spec.icon, labelOf(spec), act, keyOf(spec.command)));
 }
 
-/** A tool: an icon, and below it its short name until it was used. */
-function toolButton(buttons: Buttons, page: Page, command: ToolCommand, of: IconName): HTMLButtonElement {
-  const b = iconButton(buttons, page, { command, icon: of });
+/** Under the icon its short name, until it was used. */
+function captioned(command: ToolCommand, b: HTMLButtonElement): HTMLButtonElement {
   b.addEventListener('click', () => learn(command));
   if (!isLearnt(command))
     b.append(
@@ -139,14 +138,24 @@ function toolButton(buttons: Buttons, page: Page, command: ToolCommand, of: Icon
   return b;
 }
 
-/** A button with its name beside the icon. */
-function wideButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonElement {
+/** A tool: an icon with its name. */
+function toolButton(buttons: Buttons, page: Page, command: ToolCommand, of: IconName): HTMLButtonElement {
+  return captioned(command, iconButton(buttons, page, { command, icon: of }));
+}
+
+/** A button with its name beside the icon, or under it where there is less room. */
+function wideButton(
+  buttons: Buttons,
+  page: Page,
+  spec: ButtonSpec & { command: ToolCommand },
+): HTMLButtonElement {
   const label = labelOf(spec);
   const key = keyOf(spec.command);
   const title = key ? `${label}  (${key})` : label;
   const act = () => commandOf(spec.command).run(page);
-  const attributes = { type: 'button', class: 'wide', title, onclick: act };
-  return keepButton(buttons, spec, el('button', attributes, icon(spec.icon), el('span', {}, label)));
+  const attributes = { type: 'button', class: 'wide', title, 'aria-label': label, onclick: act };
+  const b = el('button', attributes, icon(spec.icon), el('span', { class: 'beside' }, label));
+  return captioned(spec.command, keepButton(buttons, spec, b));
 }
 
 function keepButton(buttons: Buttons, spec: ButtonSpec, b: HTMLButtonElement): HTMLButtonElement {
@@ -207,8 +216,9 @@ function nameField(page: Page): HTMLInputElement {
 }
 
 function topBar(buttons: Buttons, page: Page, name: HTMLInputElement): HTMLElement {
-  const small = (spec: ButtonSpec) => iconButton(buttons, page, spec);
-  const wide = (spec: ButtonSpec) => wideButton(buttons, page, spec);
+  type Spec = ButtonSpec & { command: ToolCommand };
+  const small = (spec: Spec) => captioned(spec.command, iconButton(buttons, page, spec));
+  const wide = (spec: Spec) => wideButton(buttons, page, spec);
   const language = { class: 'plain', type: 'button', title: t('menu.language.hint') };
   return el(
     'header',

@@ -5,7 +5,7 @@
  * last has it, and the other one is told when it writes next.
  */
 import { type Standing, Keeper, newId } from './keeper';
-import { documents, type Kept, portray, take } from './library';
+import { documents, type Kept, lockOf, portray, take } from './library';
 import type { Request } from './protocol';
 import { setTabSetting, tabSetting } from './store';
 import { t } from './text';
@@ -108,7 +108,8 @@ export class Documents {
       this.events.opened();
       return;
     }
-    const before = this.id;
+    // A stroke that came to nothing is no document.
+    const before = this.keeper.standing === 'empty' ? undefined : this.id;
     const name = this.events.name();
     await this.leave();
     await this.empty();
@@ -230,14 +231,6 @@ function journalOf({ whole, rows }: Kept): Request[] {
   ];
 }
 
-const nameOf = (id: string): string => `burgeon.${id}`;
-
-/** The documents that some tab has open for writing. */
-export async function held(): Promise<Set<string>> {
-  const locks = (await navigator.locks?.query())?.held ?? [];
-  return new Set(locks.map((lock) => lock.name?.replace('burgeon.', '') ?? ''));
-}
-
 /** Has a document for this tab alone, until it is let go; undefined if another tab does not let go of it in time. */
 function hold(
   id: string,
@@ -248,7 +241,7 @@ function hold(
     let granted = false;
     const options = wait === undefined ? { steal: steal ?? false } : { signal: AbortSignal.timeout(wait) };
     navigator.locks
-      .request(nameOf(id), options, () => {
+      .request(lockOf(id), options, () => {
         granted = true;
         return new Promise<void>((free) => resolve(free));
       })

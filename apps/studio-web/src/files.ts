@@ -7,7 +7,7 @@ import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
 import { measured } from './measure';
-import { t } from './text';
+import { t, warning } from './text';
 import { dialog, download, el, note } from './ui';
 
 /** Larger files are refused before they are read into memory. */
@@ -112,7 +112,7 @@ export class Files {
     this.events.opened();
     if (!quiet) {
       note(t('note.opened', { name }));
-      if (opened.warnings.length > 0) note(opened.warnings.slice(0, 3).join(' · '), 'bad');
+      if (opened.warnings.length > 0) note(opened.warnings.slice(0, 3).map(warning).join(' · '), 'bad');
     }
     if (opened.names.length > 1 && row === 0) this.pick(name, bytes, opened.names);
   }

@@ -10,6 +10,8 @@ const disk = vi.hoisted(() => ({
   whole: undefined as string | undefined,
   full: undefined as Error | undefined,
   appends: 0,
+  /** Of the stroke under the pen: the row before it, and what is asked. */
+  pen: undefined as [number, readonly unknown[]] | undefined,
 }));
 
 vi.mock('./library', async (original) => {
@@ -29,6 +31,10 @@ vi.mock('./library', async (original) => {
       });
     },
     create: () => write(() => undefined),
+    underPen: (_: Mine, after: number, requests: readonly unknown[]) =>
+      write(() => {
+        disk.pen = requests.length > 0 ? [after, requests] : undefined;
+      }),
     writeWhole: (_: Entry, whole: Uint8Array, seq: number) =>
       write(() => {
         disk.whole = new TextDecoder().decode(whole);
@@ -74,7 +80,7 @@ function keeper(): Keeper {
 beforeEach(() => {
   vi.stubGlobal('window', globalThis);
   vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout'] });
-  Object.assign(disk, { rows: new Map(), whole: undefined, full: undefined, appends: 0 });
+  Object.assign(disk, { rows: new Map(), whole: undefined, full: undefined, appends: 0, pen: undefined });
   [standing, lost, saves] = ['empty', 0, 0];
 });
 
@@ -142,6 +148,55 @@ describe('what is asked', () => {
     expect(corrected(written).map((row) => row.seq)).toEqual([1, 2]);
     expect(corrected(written)[0]!.request).toEqual(open);
     expect(corrected(written.slice(1)), 'what is in the whole file is not asked again').toHaveLength(1);
+  });
+});
+
+describe('the stroke under the pen', () => {
+  const part = (length: number): Request => ({ ...STROKE, samples: new Float64Array(length) });
+
+  it('is written at once, and then with its latest points now and then', async () => {
+    const k = keeper();
+    k.drawing(() => [part(12)]);
+    expect(disk.pen).toEqual([0, [part(12)]]);
+    for (const length of [16, 20]) k.drawing(() => [part(length)]);
+    expect(disk.pen, 'not with each event').toEqual([0, [part(12)]]);
+    await vi.advanceTimersByTimeAsync(50);
+    expect(disk.pen).toEqual([0, [part(20)]]);
+    expect(standing, 'nothing is kept yet').toBe('empty');
+    k.record(part(24));
+    await settle();
+    k.drawing(() => [part(12)]);
+    await vi.advanceTimersByTimeAsync(50);
+    expect(disk.pen, 'behind the one before').toEqual([1, [part(12)]]);
+  });
+
+  it('is not written again when it has ended', async () => {
+    const k = keeper();
+    for (const length of [12, 16]) k.drawing(() => [part(length)]);
+    k.record(part(20));
+    await vi.advanceTimersByTimeAsync(200);
+    await settle();
+    expect(disk.pen).toEqual([0, [part(12)]]);
+    expect(kinds()).toEqual(['stroke']);
+  });
+
+  it('is forgotten if it was none', async () => {
+    const k = keeper();
+    for (const length of [12, 16]) k.drawing(() => [part(length)]);
+    k.undrawn();
+    await vi.advanceTimersByTimeAsync(200);
+    expect(disk.pen).toBeUndefined();
+    expect(standing).toBe('empty');
+    k.record(stroke());
+    await settle();
+    expect(standing).toBe('saved');
+  });
+
+  it('is not written into a document that another tab has', () => {
+    const k = keeper();
+    k.open('x', [], 'readonly');
+    k.drawing(() => [part(12)]);
+    expect(disk.pen).toBeUndefined();
   });
 });
 

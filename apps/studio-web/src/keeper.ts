@@ -12,6 +12,7 @@ import {
   type Mine,
   type Row,
   TakenError,
+  underPen,
   writeWhole,
   type Written,
 } from './library';
@@ -47,6 +48,8 @@ const LARGE = 16 << 20;
 /** So many may be done again when a document is opened. */
 const MANY_AT_ONCE = 200;
 const RETRY_MS = 5000;
+/** So long the stroke under the pen may be ahead of what is written of it. */
+const UNDER_PEN_MS = 50;
 
 const ENDS: ReadonlySet<Request['kind']> = new Set(['commit', 'abandon', 'undo', 'redo', 'open']);
 
@@ -61,6 +64,12 @@ export class Keeper {
   /** What an open gesture has asked so far. */
   private held: Request[] = [];
   private gesture = false;
+  /** The document has an entry in the list. */
+  private entered = false;
+  /** The stroke under the pen, where it is ahead of what is written of it. */
+  private drawn: (() => Request[]) | undefined;
+  private penRests = false;
+  private penWritten = false;
   private batch: Written[] = [];
   private readonly writes = new Set<Promise<void>>();
   /** In the journal. */
@@ -84,13 +93,15 @@ export class Keeper {
     if (this.mode) return this.mode;
     if (this.failed) return { failed: this.failed };
     if (this.writes.size > 0 || this.batch.length > 0 || this.hole) return 'saving';
-    return this.mine ? 'saved' : 'empty';
+    return this.entered ? 'saved' : 'empty';
   }
 
   /** From now on this document, with what the journal holds of it; undefined: a new one. */
   open(id: string | undefined, rows: readonly Row[], mode?: 'readonly'): void {
     this.mine = id === undefined ? undefined : { id, owner: this.owner };
     this.mode = mode;
+    this.entered = id !== undefined;
+    [this.drawn, this.penWritten] = [undefined, false];
     this.changed = 0;
     this.seq = rows.at(-1)?.seq ?? 0;
     this.count = rows.length;
@@ -141,11 +152,13 @@ export class Keeper {
     this.held = [];
     if (kind === 'abandon' && done[0]?.kind === 'begin') return;
     // A document does not begin with looking at it.
-    if (!this.mine && kind === 'select') return;
-    if (!this.mine) {
-      this.mine = { id: newId(), owner: this.owner };
-      this.events.created(this.mine.id);
-      this.track(create(this.entry(this.mine)));
+    if (!this.entered && kind === 'select') return;
+    // The row that comes now says that the stroke under the pen is over.
+    [this.drawn, this.penWritten] = [undefined, false];
+    const mine = this.begun();
+    if (!this.entered) {
+      this.entered = true;
+      this.track(create(this.entry(mine)));
     }
     this.changed = Date.now();
     if (this.failed || (this.cut && (kind === 'undo' || kind === 'redo'))) this.wanted = this.hole = true;
@@ -160,6 +173,43 @@ export class Keeper {
     if (this.failed) this.later();
     // Whoever asks goes to the worker right after this: a document that was saved before would lack what made it necessary.
     else queueMicrotask(() => this.pump());
+  }
+
+  /**
+   * The stroke under the pen, as it would be asked for if it ended now. Where the page ends before the stroke does, or
+   * before its end is written, it is taken as one that ended here.
+   */
+  drawing(requests: () => Request[]): void {
+    if (this.mode || this.failed) return;
+    this.drawn = requests;
+    if (!this.penRests) this.writeDrawn();
+  }
+
+  /** It was none. */
+  undrawn(): void {
+    this.drawn = undefined;
+    if (this.penWritten && this.mine) void underPen(this.mine, this.seq, []).catch(() => undefined);
+    this.penWritten = false;
+  }
+
+  private writeDrawn(): void {
+    const { drawn } = this;
+    this.penRests = drawn !== undefined;
+    if (!drawn) return;
+    this.drawn = undefined;
+    this.penWritten = true;
+    // If it cannot be written, neither can the stroke when it ends, and that is told.
+    void underPen(this.begun(), this.seq, drawn()).catch(() => undefined);
+    window.setTimeout(() => this.writeDrawn(), UNDER_PEN_MS);
+  }
+
+  /** The document, which begins now if there was none. */
+  private begun(): Mine {
+    if (!this.mine) {
+      this.mine = { id: newId(), owner: this.owner };
+      this.events.created(this.mine.id);
+    }
+    return this.mine;
   }
 
   /** It was refused, and need not be asked again when the document is opened. */

@@ -4,11 +4,12 @@
  *
  * The journal is only ever appended to, and nothing holds it while it waits for a page or for the disk: what is asked of
  * it is asked in one go, whether it is written or read. Everything else about a document (its entry in the list, its
- * picture, the whole file) has transactions of its own.
+ * picture, the whole file) has transactions of its own. The picture behind the plants is among the pictures.
  *
  * The tab that works on a document owns it, and writes the rows of its journal one after the other. The tab that takes
  * it over writes the next one: what the old owner still has on its way finds its row taken, and none of it is written.
  */
+import { dropPen, keepPen, keptPen, laterPen, type UnderPen } from './lastpen';
 import type { Request } from './protocol';
 
 const NAME = 'burgeon';
@@ -54,6 +55,16 @@ export type Correction =
 export interface Written {
   seq: number;
   request: Request | Correction;
+}
+
+const LOCK = 'burgeon.';
+/** The name of the lock of a document. */
+export const lockOf = (id: string): string => LOCK + id;
+
+/** The documents that some tab has open for writing. */
+export async function held(): Promise<Set<string>> {
+  const locks = (await navigator.locks?.query())?.held ?? [];
+  return new Set(locks.map((lock) => lock.name?.replace(LOCK, '') ?? ''));
 }
 
 /** Which document, and who says that it is his. */
@@ -169,6 +180,9 @@ const nothing = (): void => undefined;
 const ROUNDS: Manner = { rounds: true };
 /** The rows of a document in the journal, up to one of them. */
 const rowsOf = (id: string, to = Infinity): IDBKeyRange => IDBKeyRange.bound([id, 0], [id, to]);
+const PEN = 'pen';
+/** Where the stroke under the pen stands: behind all numbers. */
+const penOf = (id: string): [string, string] => [id, PEN];
 
 // Entries of the list ----------------------------------------------------------------------------------------------
 
@@ -225,7 +239,7 @@ export async function documents(): Promise<(Entry & { picture: string })[]> {
   ])) as [Entry[], string[], string[]];
   const seen = new Map(keys.map((key, i) => [key, urls[i]]));
   const all = entries.map((e) => ({ ...e, picture: seen.get(e.id) ?? '' }));
-  const lost = await withoutEntry(new Set(all.map((e) => e.id)));
+  const lost = await withoutEntry(new Set(all.map((e) => e.id)), await held());
   all.push(...lost.map((e) => ({ ...e, picture: '' })));
   const gone = all.filter((e) => e.deleted > 0 && Date.now() - e.deleted > GRACE_MS);
   if (gone.length > 0)
@@ -233,15 +247,22 @@ export async function documents(): Promise<(Entry & { picture: string })[]> {
       for (const { id } of gone) {
         for (const store of [stores.documents, stores.pictures, stores.wholes]) store.delete(id);
         stores.journal.delete(rowsOf(id));
+        stores.journal.delete(penOf(id));
+        dropPen(id);
       }
     });
   return all.filter((e) => !gone.includes(e)).sort((x, y) => y.time - x.time);
 }
 
-/** Gives an entry to each document that has rows but none: its page died before the entry was written. */
-async function withoutEntry(known: ReadonlySet<string>): Promise<Entry[]> {
-  const [keys] = (await look(['journal'], ({ journal }) => [journal.getAllKeys()])) as [[string, number][]];
-  const ids = new Set(keys.map(([id]) => id).filter((id) => !known.has(id)));
+/**
+ * Gives an entry to each document that has rows but none: its page died before the entry was written. Where there is
+ * nothing but the stroke under the pen, and a tab has the document, it is being drawn.
+ */
+async function withoutEntry(known: ReadonlySet<string>, open: ReadonlySet<string>): Promise<Entry[]> {
+  type Key = [string, number | typeof PEN];
+  const [keys] = (await look(['journal'], ({ journal }) => [journal.getAllKeys()])) as [Key[]];
+  const lost = keys.filter(([id, row]) => !known.has(id) && !(row === PEN && open.has(id)));
+  const ids = new Set(lost.map(([id]) => id));
   const made = [...ids].map((id) => ({ id, name: '', time: Date.now(), deleted: 0, owner: '' }));
   // Where the page lives, it writes an entry of its own: this one is not put over it.
   const added = made.map((entry) =>
@@ -281,7 +302,7 @@ export async function setDeleted(id: string, on: boolean): Promise<void> {
 export async function rename(id: string, name: string): Promise<void> {
   if (!(await changed(id, { name }))) return;
   const stored = await read(id);
-  await write(id, [{ seq: stored.last + 1, request: naming(name) }]);
+  await write(id, numbered(stored.last, [...stored.unended, naming(name)]));
 }
 
 const naming = (name: string): Request => ({ kind: 'command', command: { scene: { rename: name } } });
@@ -298,8 +319,23 @@ export async function copy(id: string, to: string, name: string): Promise<void> 
     stores.documents.put({ ...entry, id: to, name, time: Date.now(), owner: '', deleted: 0 });
     if (picture !== undefined) stores.pictures.put(picture, to);
     if (stored.whole) stores.wholes.put(stored.whole, to);
-    for (const { seq, request } of stored.written) stores.journal.put(request, [to, seq]);
-    stores.journal.put(naming(name), [to, stored.last + 1]);
+    const more = numbered(stored.last, [...stored.unended, naming(name)]);
+    for (const { seq, request } of [...stored.written, ...more]) stores.journal.put(request, [to, seq]);
+  });
+}
+
+/** The place of the picture behind the plants, which belongs to no document: their numbers have no such letters. */
+const BACKDROP = '.backdrop';
+
+/** The picture behind the plants, a data URL. */
+export async function backdrop(): Promise<string | undefined> {
+  const [url] = await look(['pictures'], ({ pictures }) => [pictures.get(BACKDROP)]);
+  return url as string | undefined;
+}
+
+export function setBackdrop(url: string): Promise<void> {
+  return transact(['pictures'], ({ pictures }) => {
+    pictures.put(url, BACKDROP);
   });
 }
 
@@ -315,16 +351,19 @@ interface Stored {
   whole: Whole | undefined;
   /** What is not in the whole file. */
   written: Written[];
+  /** A stroke that was under the pen when its page ended. */
+  unended: readonly Request[];
   /** The number of the last row. */
   last: number;
 }
 
 /** The rows are read first: what is cut off meanwhile, since it was written whole, is in the whole file read then. */
 async function read(id: string): Promise<Stored> {
-  const [keys, requests] = (await look(['journal'], ({ journal }) => [
+  const [keys, requests, inBase] = (await look(['journal'], ({ journal }) => [
     journal.getAllKeys(rowsOf(id)),
     journal.getAll(rowsOf(id)),
-  ])) as [[string, number][], Written['request'][]];
+    journal.get(penOf(id)),
+  ])) as [[string, number][], Written['request'][], UnderPen | undefined];
   const rows = keys.map(([, seq], i) => ({ seq, request: requests[i]! }));
   const [found] = (await look(['wholes'], ({ wholes }) => [wholes.get(id)])) as [
     Whole | Uint8Array | undefined,
@@ -333,8 +372,20 @@ async function read(id: string): Promise<Stored> {
   const whole = found instanceof Uint8Array ? { bytes: found, seq: 0 } : found;
   const inWhole = whole?.seq ?? 0;
   const last = Math.max(inWhole, rows.at(-1)?.seq ?? 0);
-  return { whole, written: rows.filter((row) => row.seq > inWhole), last };
+  const written = rows.filter((row) => row.seq > inWhole);
+  const pen = laterPen(inBase, keptPen(id));
+  // What is asked after it began is its own end, or that of another owner: a correction is neither.
+  const ended =
+    !pen || inWhole > pen.after || written.some((row) => row.seq > pen.after && !isCorrection(row.request));
+  return { whole, written, unended: ended ? [] : pen.requests, last };
 }
+
+function isCorrection(r: Written['request']): r is Correction {
+  return r.kind === 'struck' || r.kind === 'mended';
+}
+
+const numbered = (last: number, requests: readonly Request[]): Row[] =>
+  requests.map((request, i) => ({ seq: last + 1 + i, request }));
 
 /** The requests of a journal as they were corrected later. */
 export function corrected(written: readonly Written[]): Row[] {
@@ -359,19 +410,20 @@ function write(id: string, rows: readonly Written[]): Promise<void> {
 /**
  * A document for reading, or for writing too, by this owner from now on. Undefined if it is not there.
  *
- * The last row of what an owner gets is its own: it says nothing but that the row is taken.
+ * An owner also gets the stroke that was under the pen, as one that ended. The last row of what an owner gets is its own: it says nothing but that the row is taken.
  */
 export async function take(id: string, owner?: string): Promise<Kept | undefined> {
   const entry = await (owner === undefined ? entryOf(id) : changed(id, { owner }));
   if (!entry) return undefined;
   for (;;) {
-    const { whole, written, last } = await read(id);
+    const { whole, written, unended, last } = await read(id);
     const kept = { entry, whole: whole?.bytes, rows: corrected(written) };
     if (owner === undefined) return kept;
-    const taken: Row = { seq: last + 1, request: { kind: 'abandon' } };
+    const taken = numbered(last, [...unended, { kind: 'abandon' }]);
     try {
-      await write(id, [taken]);
-      return { ...kept, rows: [...kept.rows, taken] };
+      await write(id, taken);
+      dropPen(id);
+      return { ...kept, rows: [...kept.rows, ...taken] };
     } catch (e) {
       // The old owner wrote something meanwhile: that belongs to it, too.
       if (!(e instanceof TakenError)) throw e;
@@ -385,7 +437,20 @@ export async function take(id: string, owner?: string): Promise<Kept | undefined
  * well.
  */
 export function append({ id }: Mine, rows: readonly Written[]): Promise<void> {
+  const requests = rows.flatMap(({ request }) => (isCorrection(request) ? [] : [request]));
+  // The page may end before they are written.
+  if (requests.some((r) => r.kind === 'stroke')) keepPen(id, { after: rows[0]!.seq - 1, requests });
   return write(id, rows);
+}
+
+/** Writes the stroke under the pen, of which row `after` is before it, in the place of what it was; without requests: it is none. */
+export function underPen({ id }: Mine, after: number, requests: readonly Request[]): Promise<void> {
+  if (requests.length === 0) dropPen(id);
+  else keepPen(id, { after, requests });
+  return transact(['journal'], ({ journal }) => {
+    if (requests.length === 0) journal.delete(penOf(id));
+    else journal.put({ after, requests } satisfies UnderPen, penOf(id));
+  });
 }
 
 /** Writes the document whole; what was asked before, up to `seq`, is in it. */

@@ -16,7 +16,7 @@ import { drawingSchema, named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
 import { safe } from './files';
-import { asToml, dropPreset, keepPreset, ownPresets } from './own';
+import { asToml, dropPreset, keepPreset, type OwnPreset, ownPresets } from './own';
 import { askName, button, download, el, icon, note } from './ui';
 
 export interface Catalogue {
@@ -325,13 +325,26 @@ export class MakerPanel {
       this.species = undefined;
       this.events.renew();
     };
+    /** Says what was done, and brings the preset back as it was. */
+    const undoable = (done: string, { name, spec }: OwnPreset): void => {
+      const act = (): void => {
+        if (!keepPreset(name, spec)) note(t('own.full'), 'bad');
+        renew();
+      };
+      note(done, 'good', { label: t('undo'), act });
+    };
     const keep = (): void => {
       const { plant } = this;
       const spec = plant?.tree?.spec;
       if (!plant || !spec) return;
       askName(t('own.keep'), t('own.name'), plant.name, (name) => {
-        if (keepPreset(name, spec)) renew();
-        else note(t('own.full'), 'bad');
+        const before = ownPresets().find((p) => p.name === name);
+        if (!keepPreset(name, spec)) {
+          note(t('own.full'), 'bad');
+          return;
+        }
+        renew();
+        if (before) undoable(t('own.replaced', { name }), before);
       });
     };
     const chips = ownPresets().map((preset) => {
@@ -353,11 +366,7 @@ export class MakerPanel {
       const drop = button('close', t('own.drop', { name }), () => {
         dropPreset(name);
         renew();
-        const back = (): void => {
-          keepPreset(name, spec);
-          renew();
-        };
-        note(t('own.dropped', { name }), 'good', { label: t('undo'), act: back });
+        undoable(t('own.dropped', { name }), preset);
       });
       return el('span', { class: 'own' }, take, give, drop);
     });

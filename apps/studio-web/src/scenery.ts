@@ -2,6 +2,7 @@
  * How the view shows the plants: stage, camera and guides, as the person set them. It belongs to the browser, not to the
  * document.
  */
+import { backdrop, setBackdrop } from './library';
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey } from './text';
 import { el, note, popover } from './ui';
@@ -22,8 +23,8 @@ import {
 import type { PlantView } from './view/view';
 import type { WalkMode } from './view/walk';
 
-/** The longest side of a picture behind the plants that is kept, pixels: the browser's storage is small. */
-const KEPT_PICTURE = 1600;
+/** The longest side of a picture behind the plants, pixels: as much as a large screen shows. */
+const KEPT_PICTURE = 2560;
 
 function parsed(name: string): unknown {
   try {
@@ -53,8 +54,7 @@ export class Scenery {
     view.setStage(this.stage);
     for (const guide of (setting('guides') ?? '').split(' '))
       if (GUIDES.some((g) => g === guide)) view.setGuide(guide as Guide, true);
-    const picture = setting('backdrop');
-    if (picture && this.stage.background === 'picture') void this.show(picture);
+    if (this.stage.background === 'picture') void this.show();
     view.onWalk = (mode) => {
       document.body.dataset['walk'] = mode ?? '';
       if (mode) note(t(`walk.${mode}.hint`));
@@ -125,7 +125,7 @@ export class Scenery {
     popover(this.anchor('stage'), panel, t('stage.title'));
   }
 
-  /** A picture behind the plants; it is kept a little smaller than it may be. */
+  /** A picture behind the plants; this browser keeps it, or says that it does not. */
   private async lay(file: File): Promise<void> {
     try {
       const image = await createImageBitmap(file);
@@ -136,19 +136,25 @@ export class Scenery {
       canvas.getContext('2d')!.drawImage(image, 0, 0, canvas.width, canvas.height);
       this.view?.setPicture(canvas);
       this.change({ background: 'picture' });
-      setSetting('backdrop', canvas.toDataURL('image/jpeg', 0.85));
+      const url = canvas.toDataURL('image/jpeg', 0.85);
+      await setBackdrop(url).catch(() => note(t('stage.picture.unkept'), 'bad'));
     } catch {
       note(t('note.unreadable', { name: file.name, why: t('stage.picture.bad') }), 'bad');
     }
   }
 
-  private async show(url: string): Promise<void> {
+  private async show(): Promise<void> {
     const image = new Image();
-    image.src = url;
-    await image.decode().then(
-      () => this.view?.setPicture(image),
-      () => undefined,
-    );
+    try {
+      // Among the settings, older pages kept it.
+      const url = (await backdrop()) ?? setting('backdrop');
+      if (url === undefined) return;
+      image.src = url;
+      await image.decode();
+      this.view?.setPicture(image);
+    } catch {
+      // What cannot be read is as if it had not been kept.
+    }
   }
 
   // Camera -------------------------------------------------------------------------------------------------------
@@ -175,14 +181,26 @@ export class Scenery {
       note(t('camera.full', { count: MOST_CAMERAS }), 'bad');
       return;
     }
-    this.poses = [...this.poses, view.rig.pose];
-    setSetting('cameras', JSON.stringify(this.poses));
+    this.setPoses([...this.poses, view.rig.pose]);
     note(t('camera.kept', { number: this.poses.length }));
   }
 
-  private drop(row: number): void {
-    this.poses = this.poses.filter((_, i) => i !== row);
-    setSetting('cameras', JSON.stringify(this.poses));
+  private setPoses(poses: Pose[]): void {
+    this.poses = poses;
+    setSetting('cameras', JSON.stringify(poses));
+  }
+
+  /** Removes a camera that was kept; `show`: shows those that there are. */
+  private drop(row: number, show: () => void): void {
+    const pose = this.poses[row];
+    if (!pose) return;
+    this.setPoses(this.poses.filter((_, i) => i !== row));
+    show();
+    const act = (): void => {
+      this.setPoses([...this.poses.slice(0, row), pose, ...this.poses.slice(row)]);
+      show();
+    };
+    note(t('camera.dropped', { number: row + 1 }), 'good', { label: t('undo'), act });
   }
 
   openCamera(): void {
@@ -196,15 +214,11 @@ export class Scenery {
           'data-camera': String(i + 1),
           title: t('camera.take', { number: i + 1 }),
         }),
-        chip(
-          '×',
-          false,
-          () => {
-            this.drop(i);
-            fill();
-          },
-          { class: 'chip drop', title: t('camera.drop', { number: i + 1 }) },
-        ),
+        chip('×', false, () => this.drop(i, fill), {
+          class: 'chip drop',
+          'data-camera-drop': String(i + 1),
+          title: t('camera.drop', { number: i + 1 }),
+        }),
       ]);
       const keep = chip(
         t('camera.keep'),

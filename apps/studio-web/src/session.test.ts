@@ -49,6 +49,8 @@ function sessionWith(events: Partial<SessionEvents> = {}): Session {
     'fault',
     'dead',
     'refused',
+    'drawing',
+    'undrawn',
   ];
   const quiet = Object.fromEntries(names.map((name) => [name, () => {}]));
   return new Session({ ...quiet, ...events } as SessionEvents);
@@ -81,11 +83,22 @@ describe('a session', () => {
     expect(kinds().slice(1)).toEqual(['begin', 'stroke', 'stroke', 'commit']);
   });
 
+  it('says of the stroke under the pen what it asks when the stroke ends', () => {
+    let told: Request[] = [];
+    const session = sessionWith({ drawing: (requests) => (told = requests()) });
+    for (const mirror of [undefined, MARKS]) {
+      session.setDraft('parts', MARKS, mirror);
+      worker.asked = [];
+      session.stroke('parts', MARKS, mirror);
+      expect(told).toEqual(worker.asked);
+    }
+    expect(told.length).toBe(4);
+  });
+
   it('sends one draft at a time, the newest', () => {
     const session = sessionWith();
-    session.setDraft('parts', MARKS);
-    session.setDraft('leaf-contour', MARKS);
-    session.setDraft('branch-contour', MARKS);
+    for (const mode of ['parts', 'leaf-contour', 'branch-contour'] as const)
+      session.setDraft(mode, MARKS, undefined);
     expect(kinds()).toEqual(['draft']);
     worker.events!.view({ plants: [] } as unknown as SceneView, []);
     expect(worker.asked.slice(1)).toEqual([{ kind: 'draft', mode: 'branch-contour', samples: MARKS }]);
@@ -95,7 +108,7 @@ describe('a session', () => {
     const session = sessionWith();
     session.dropDraft();
     expect(worker.asked).toEqual([]);
-    session.setDraft('parts', MARKS);
+    session.setDraft('parts', MARKS, undefined);
     session.dropDraft();
     expect(worker.asked[1]).toEqual({ kind: 'draft', mode: 'parts', samples: new Float64Array() });
     session.dropDraft();

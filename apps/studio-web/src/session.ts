@@ -27,6 +27,10 @@ export interface SessionEvents extends Omit<EngineEvents, 'state'> {
     other: boolean,
   ): void;
   refused(request: Request, why: string): void;
+  /** A stroke is under the pen; what would be asked if it ended now. */
+  drawing(requests: () => Request[]): void;
+  /** It was none. */
+  undrawn(): void;
 }
 
 export class Session {
@@ -145,14 +149,17 @@ export class Session {
   stroke(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void {
     this.draft = undefined;
     this.drafted = false;
+    for (const request of this.asking(mode, samples, mirror)) this.ask(request);
+  }
+
+  private asking(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): Request[] {
     const pen = this.pen();
-    if (mirror) this.begin('draw');
     const shown = this.shown();
-    this.ask({ kind: 'stroke', mode, samples, ...(pen && { pen }), ...(shown.length > 0 && { shown }) });
-    if (mirror) {
-      this.ask({ kind: 'stroke', mode, samples: mirror, ...(pen && { pen }) });
-      this.commit();
-    }
+    const worn = pen && { pen };
+    const stroke: Request = { kind: 'stroke', mode, samples, ...worn, ...(shown.length > 0 && { shown }) };
+    if (!mirror) return [stroke];
+    const other: Request = { kind: 'stroke', mode, samples: mirror, ...worn };
+    return [{ kind: 'begin', name: 'draw' }, stroke, other, { kind: 'commit' }];
   }
 
   /** What the strokes of the sheet are clearly shown as, where that is news. Nothing while what is seen is older. */
@@ -169,14 +176,16 @@ export class Session {
   }
 
   /** The stroke under the pen, as it is now. */
-  setDraft(mode: StrokeMode, samples: Float64Array): void {
+  setDraft(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void {
     const pen = this.pen();
+    this.events.drawing(() => this.asking(mode, samples, mirror));
     this.draft = { mode, samples, ...(pen && { pen }) };
     if (!this.engine.growing) this.sendDraft();
   }
 
   dropDraft(): void {
     this.draft = undefined;
+    this.events.undrawn();
     if (this.drafted) this.ask({ kind: 'draft', mode: 'parts', samples: new Float64Array() });
     this.drafted = false;
   }

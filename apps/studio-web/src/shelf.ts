@@ -1,7 +1,7 @@
 /** The list of the documents that this browser keeps: open, rename, copy, delete and bring back. */
-import { type Documents, held } from './documents';
+import type { Documents } from './documents';
 import { newId } from './keeper';
-import { copy, documents, rename, setDeleted } from './library';
+import { copy, documents, held, rename, setDeleted } from './library';
 import { currentLanguage, t } from './text';
 import { button, dialog, el, icon } from './ui';
 

@@ -117,7 +117,10 @@ export class Show {
     this.press('stats', this.statsOn);
     this.press('mirror', sheet.symmetric);
     this.press('lock', locked);
-    buttons.get('lock')!.replaceChildren(icon(locked ? 'lock' : 'unlock'));
+    buttons
+      .get('lock')!
+      .querySelector('svg')!
+      .replaceWith(icon(locked ? 'lock' : 'unlock'));
     stats.hidden = !this.statsOn;
     for (const name of ['dice', 'grid']) buttons.get(name)!.disabled = locked || !plant;
   }

@@ -9,6 +9,14 @@ export function setSetting(name: string, value: string): void {
   write(() => localStorage, name, value);
 }
 
+export function dropSetting(name: string): void {
+  try {
+    localStorage.removeItem(`burgeon.${name}`);
+  } catch {
+    // Where nothing may be written, there is nothing to be removed.
+  }
+}
+
 /** The same for this tab alone; it survives a reload. */
 export function tabSetting(name: string): string | undefined {
   return read(() => sessionStorage, name);

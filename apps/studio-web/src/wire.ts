@@ -1287,7 +1287,7 @@ export type Opened = {
   /** Every drawing of the file, at most a thousand. */
   names: string[];
   /** What is odd about it. */
-  warnings: string[];
+  warnings: WarningView[];
 };
 
 /** A material of leaves, petals or sepals. */

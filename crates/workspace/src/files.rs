@@ -17,7 +17,7 @@ use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_se
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::{Workspace, WorkspaceError};
+use crate::{WarningView, Workspace, WorkspaceError};
 
 /// What a file was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -49,7 +49,7 @@ pub struct Opened {
     /// Every drawing of the file, at most a thousand.
     pub names: Vec<String>,
     /// What is odd about it.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<WarningView>,
 }
 
 impl Opened {
@@ -165,7 +165,7 @@ impl Workspace {
     ) -> Result<Opened, WorkspaceError> {
         let mut report = Report::default();
         let model = read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut report)?;
-        let warnings = report.warnings.iter().map(ToString::to_string).collect();
+        let warnings = report.warnings.iter().map(WarningView::from).collect();
         let opened = Opened { warnings, ..Opened::new(FileKind::Model, &model.name) };
         self.guest = Some(model);
         Ok(opened)
@@ -234,7 +234,7 @@ fn pick(
             Ok(read) => {
                 if opened.names.len() == row {
                     opened.name.clone_from(&read.drawing.name);
-                    opened.warnings = read.warnings.iter().map(ToString::to_string).collect();
+                    opened.warnings = read.warnings.iter().map(WarningView::from).collect();
                     picked = Some(read.drawing.clone());
                 }
                 opened.names.push(read.drawing.name);

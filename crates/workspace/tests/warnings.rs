@@ -1,12 +1,24 @@
-//! What is told of a plant can be told in Chinese: each code of a warning has its text in the page.
+//! What is told of plants and files can be told in Chinese: each code of a warning has its text in the page.
 
 use std::fs;
 use std::path::Path;
 
+use workspace::Workspace;
+
 const CRATES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TEXTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/text/zh-errors.ts");
-/// Those that make plants. What readers of files warn of is told when a file is opened, in the core's words.
-const MAKERS: [&str; 7] = ["bloom", "growth", "ink", "leaf", "reading", "sketch", "studio"];
+/// Those that make plants, and those that read the files which a page opens.
+const TOLD: [&str; 9] = [
+    "bloom/src",
+    "formats/src/drawing",
+    "formats/src/model",
+    "growth/src",
+    "ink/src",
+    "leaf/src",
+    "reading/src",
+    "sketch/src",
+    "studio/src",
+];
 /// Told in other ways than by a call of `warn` with the code in it.
 const NAMED: [(&str, &[&str]); 5] = [
     ("unlike-a-plant", &[]),
@@ -44,11 +56,11 @@ fn codes(folder: &Path, found: &mut Vec<Found>) {
 }
 
 #[test]
-fn each_warning_of_a_plant_has_a_chinese_text() {
+fn each_warning_has_a_chinese_text() {
     let named = NAMED.map(|(code, fields)| (code.to_owned(), fields.iter().map(|&f| f.to_owned()).collect()));
     let mut found: Vec<Found> = named.into();
-    for name in MAKERS {
-        codes(&Path::new(CRATES).join(name).join("src"), &mut found);
+    for folder in TOLD {
+        codes(&Path::new(CRATES).join(folder), &mut found);
     }
     found.sort_unstable();
     found.dedup();
@@ -65,4 +77,22 @@ fn each_warning_of_a_plant_has_a_chinese_text() {
             assert!(text.contains(&format!("{{{field}}}")), "{code}: {field} is not in \"{text}\"");
         }
     }
+}
+
+/// What a file that was opened has of odd things comes with codes and numbers, not as sentences alone.
+#[test]
+fn files_are_warned_of_with_codes() {
+    let mut workspace = Workspace::default();
+    let svg = br#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99"><text>a</text>
+<path id="p" stroke="black" fill="none" d="M10 10L20 60L30 5 L"/></svg>"#;
+    let opened = workspace.open("a.svg", svg, 0, false).unwrap();
+    let told: Vec<_> = opened.warnings.iter().map(|w| (w.code, w.fields.clone())).collect();
+    let fields = |pairs: &[(&'static str, &str)]| pairs.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
+    let broken = fields(&[("attribute", "d"), ("line", "2"), ("name", "<path> `p`")]);
+    let left_out = fields(&[("count", "1"), ("what", "text")]);
+    assert_eq!(told, [("svg-broken", broken), ("svg-left-out", left_out)]);
+    let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n";
+    let opened = workspace.open("a.obj", obj, 0, false).unwrap();
+    let told: Vec<_> = opened.warnings.iter().map(|w| (w.code, w.fields["count"].as_str())).collect();
+    assert_eq!(told, [("obj-left-out", "1")]);
 }

@@ -23,7 +23,7 @@ export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'pull';
 export interface SheetEvents {
   /** `mirror`: the same stroke on the other side of the line of symmetry. */
   stroke(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void;
-  draft(mode: StrokeMode, samples: Float64Array): void;
+  draft(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void;
   undraft(): void;
   erase(ids: number[]): void;
   /** A drag that changes strokes or the photograph: what it comes to replaces what it came to before. */
@@ -403,6 +403,12 @@ export class Sheet {
     for (const c of all.length > 0 ? all : [e]) pen.add(c, left, top, this.view, last);
   }
 
+  /** The stroke on the other side of the line of symmetry, if it has one there. */
+  private mirrored(pen: Pen): Float64Array | undefined {
+    const { axis } = this;
+    return axis !== undefined && pen.beside(axis) ? pen.mirrored(axis) : undefined;
+  }
+
   private move(e: PointerEvent): void {
     const at = this.place(e);
     if (this.pointers.has(e.pointerId)) this.pointers.set(e.pointerId, at);
@@ -423,7 +429,7 @@ export class Sheet {
     switch (act.kind) {
       case 'draw':
         this.trace(e, act.pen, false);
-        if (act.pen.length > 2) this.events.draft(act.mode, act.pen.samples);
+        if (act.pen.length > 2) this.events.draft(act.mode, act.pen.samples, this.mirrored(act.pen));
         break;
       case 'erase':
         this.rub(at, reachOf(e.pointerType));
@@ -498,9 +504,7 @@ export class Sheet {
         // A dot is a slip of the hand.
         if (act.pen.length > 2) {
           this.pending = { pen: act.pen, mode: act.mode };
-          const { axis } = this;
-          const mirror = axis !== undefined && act.pen.beside(axis) ? act.pen.mirrored(axis) : undefined;
-          this.events.stroke(act.mode, act.pen.samples, mirror);
+          this.events.stroke(act.mode, act.pen.samples, this.mirrored(act.pen));
         } else {
           this.events.undraft();
         }

@@ -137,8 +137,12 @@ fn read_stroke(
     };
     let color = stroke.color.as_deref().and_then(parse_color);
     if let (None, Some(word)) = (color, &stroke.color) {
-        report
-            .warn("color-unknown", format!("stroke {index}: color {word:?} is not #rrggbb and was ignored"));
+        base::warn!(
+            report,
+            "color-unknown",
+            { stroke = index, color = word },
+            "stroke {stroke}: color {color:?} is not #rrggbb and was ignored"
+        );
     }
     let mut samples = Vec::with_capacity(stroke.points.len());
     for (k, p) in stroke.points.iter().enumerate() {

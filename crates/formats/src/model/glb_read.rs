@@ -80,9 +80,12 @@ pub(super) fn read(
     };
     for (material, lost) in materials {
         if lost {
-            let message =
-                format!("the texture of material `{}` could not be read and was left out", material.name);
-            reader.report.warn("texture-missing", message);
+            base::warn!(
+                reader.report,
+                "texture-missing",
+                { name = material.name },
+                "the texture of material `{name}` could not be read and was left out"
+            );
         }
         reader.model.materials.push(material);
     }
@@ -165,8 +168,12 @@ impl Reader<'_> {
             stack.extend(node.children.iter().rev().map(|&c| (c, world, depth + 1)));
         }
         if self.skipped > 0 {
-            let message = format!("left out: {} meshes made of lines", self.skipped);
-            self.report.warn("gltf-left-out", message);
+            base::warn!(
+                self.report,
+                "gltf-left-out",
+                { count = self.skipped },
+                "left out: {count} meshes made of lines"
+            );
         }
         Ok(())
     }

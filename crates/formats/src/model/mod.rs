@@ -146,8 +146,12 @@ pub fn write_model(
 /// Says so where a model has wind and goes into a format that has no room for it.
 pub fn warn_of_wind(model: &Model, format: &str, report: &mut Report) {
     if model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
-        let message = format!("{format} has no room for wind: it was left out; .glb and .usda have");
-        report.warn("wind-left-out", message);
+        base::warn!(
+            report,
+            "wind-left-out",
+            { format = format },
+            "{format} has no room for wind: it was left out; .glb and .usda have"
+        );
     }
 }
 

@@ -63,7 +63,12 @@ pub(super) fn read(
         }
     }
     if reader.lines > 0 {
-        report.warn("obj-left-out", format!("left out: {} lines, points or curves", reader.lines));
+        base::warn!(
+            report,
+            "obj-left-out",
+            { count = reader.lines },
+            "left out: {count} lines, points or curves"
+        );
     }
     if reader.positions.is_empty() {
         return Err(fail(1, "it has no vertices", "is it really an OBJ file?"));
@@ -188,8 +193,13 @@ impl Reader {
 
     fn library(&mut self, name: &str, resolve: Resolver<'_>, report: &mut Report) {
         let Some(bytes) = resolve(name) else {
-            let message = format!("the material file {name:?} was not found: materials are plain");
-            return report.warn("obj-material-file", message);
+            base::warn!(
+                report,
+                "obj-material-file",
+                { file = name },
+                "the material file {file:?} was not found: materials are plain"
+            );
+            return;
         };
         let text = String::from_utf8_lossy(&bytes);
         let mut textures: LiteMap<String, Option<Arc<Texture>>> = LiteMap::new();
@@ -220,8 +230,12 @@ impl Reader {
                         .or_insert_with(|| resolve(file).and_then(|b| read_picture(&b)).map(Arc::new))
                         .clone();
                     if m.texture.is_none() {
-                        let message = format!("the texture {file:?} could not be read and was left out");
-                        report.warn("texture-missing", message);
+                        base::warn!(
+                            report,
+                            "texture-missing",
+                            { name = file },
+                            "the texture {name:?} could not be read and was left out"
+                        );
                     }
                 }
                 "map_d" => m.alpha = AlphaMode::Mask,

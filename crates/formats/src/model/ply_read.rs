@@ -101,7 +101,12 @@ pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Mode
         }
     }
     if !left_out.is_empty() {
-        report.warn("ply-left-out", format!("left out: elements {}", left_out.join(", ")));
+        base::warn!(
+            report,
+            "ply-left-out",
+            { elements = left_out.join(", ") },
+            "left out: elements {elements}"
+        );
     }
     if mesh.positions.is_empty() {
         return Err(fail(Place::File, "it has no vertices with x, y and z"));

@@ -22,7 +22,7 @@ use self::path::SubPath;
 use self::style::{Paint, Sheet, Style};
 use super::{number_end, xml};
 use crate::DrawingFormat;
-use crate::error::{DrawingError, FileFault};
+use crate::error::{DrawingError, FileFault, Place};
 
 const FORMAT: DrawingFormat = DrawingFormat::Svg;
 
@@ -61,7 +61,14 @@ struct Reader<'a> {
     pieces: usize,
     work: usize,
     left_out: LiteMap<&'static str, usize>,
-    broken: Vec<String>,
+    broken: Vec<Broken>,
+}
+
+/// An attribute that cannot be read to its end, and where it stands.
+struct Broken {
+    name: String,
+    line: u64,
+    attribute: &'static str,
 }
 
 pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawing, DrawingError> {
@@ -314,27 +321,36 @@ impl<'a> Reader<'a> {
         *self.left_out.entry(what).or_default() += 1;
     }
 
-    fn broken(&mut self, node: Node<'_, '_>, attribute: &str) {
+    fn broken(&mut self, node: Node<'_, '_>, attribute: &'static str) {
         // The place of an element costs a walk over the text: a few are enough for the user to find the rest.
         if self.broken.len() < 5 {
-            let place = xml::place(node).to_string();
-            let place = place.trim_start_matches(", ");
-            self.broken.push(format!("{place}: the attribute `{attribute}` is broken"));
+            if let Place::Element { name, line } = xml::place(node) {
+                self.broken.push(Broken { name, line, attribute });
+            }
         } else {
             self.leave_out("further broken attribute");
         }
     }
 
     fn tell(&self, report: &mut Report) {
-        for message in &self.broken {
-            report.warn("svg-broken", format!("{message}; what could be read before the fault was kept"));
+        for broken in &self.broken {
+            base::warn!(
+                report,
+                "svg-broken",
+                { line = broken.line, name = broken.name, attribute = broken.attribute },
+                "line {line}, {name}: the attribute `{attribute}` is broken; what could be read before the fault was kept"
+            );
         }
         for (what, count) in &self.left_out {
-            report.warn("svg-left-out", format!("left out: {what} ({count})"));
+            base::warn!(report, "svg-left-out", { what = what, count = count }, "left out: {what} ({count})");
         }
         if self.sheet.ignored > 0 {
-            let message = format!("{} compound style selectors were not looked at", self.sheet.ignored);
-            report.warn("svg-style", message);
+            base::warn!(
+                report,
+                "svg-style",
+                { count = self.sheet.ignored },
+                "{count} compound style selectors were not looked at"
+            );
         }
     }
 }
@@ -445,12 +461,12 @@ fn strokes(shapes: &[Shape], layers: &[Layer], report: &mut Report) -> Vec<Strok
         }
     }
     if reduced > 0 {
-        report.warn(
+        base::warn!(
+            report,
             "filled-outline",
-            format!(
-                "{reduced} filled shapes are strokes of a variable-width pen: their centre lines were taken, \
-                 and their widths as pressure"
-            ),
+            { count = reduced },
+            "{count} filled shapes are strokes of a variable-width pen: their centre lines were taken, \
+             and their widths as pressure"
         );
     }
     out
