@@ -6,7 +6,8 @@ use std::path::Path;
 
 use burgeon::document::StrokeId;
 use burgeon::formats::{self, DrawingFormat};
-use burgeon::ink::{Drawing, Stroke, StrokeClass};
+use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, InkSample, Stroke, StrokeClass};
 use burgeon::{Run, StrokeReport};
 use workspace::Workspace;
 
@@ -41,6 +42,16 @@ fn strokes(workspace: &mut Workspace) -> Vec<StrokeReport> {
     view.plants[0].item.as_ref().map_or_else(Vec::new, |i| i.strokes.clone())
 }
 
+fn is_clear(s: &StrokeReport) -> bool {
+    s.confidence >= DOUBTFUL
+}
+
+/// What a page says that strokes were clearly shown as.
+fn shown(seen: &[StrokeReport]) -> Shown {
+    let class = |s: &StrokeReport| StrokeClass::ALL.into_iter().find(|c| c.word() == s.class);
+    seen.iter().map(|s| (StrokeId(s.index), class(s).filter(|_| is_clear(s)))).collect()
+}
+
 /// Draws as with a page that keeps what it shows, or not: the requests, how often a stroke that was there became what it is
 /// not when the drawing is done, and how many were kept as shown.
 fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [usize; 2]) {
@@ -48,14 +59,7 @@ fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [us
     let (mut before, mut became, mut kept) = (BTreeMap::new(), Vec::new(), 0);
     for stroke in &drawing.strokes {
         let seen = strokes(&mut workspace);
-        let shown: Shown = seen
-            .iter()
-            .filter(|_| keeps)
-            .map(|s| {
-                let class = StrokeClass::ALL.into_iter().find(|c| c.word() == s.class);
-                (StrokeId(s.index), class.filter(|_| s.confidence >= DOUBTFUL))
-            })
-            .collect();
+        let shown = if keeps { shown(&seen) } else { Shown::new() };
         workspace.add_stroke(stroke.clone(), shown.clone()).expect("a drawing of our own");
         asked.push((stroke.clone(), shown));
         for s in strokes(&mut workspace) {
@@ -121,4 +125,58 @@ fn what_was_shown_is_forgotten_when_it_is_asked() {
     let ids: Vec<StrokeId> = workspace.document().plants()[0].strokes().iter().map(|s| s.id).collect();
     workspace.run(burgeon::document::SketchCommand::SetClass(ids, None).of(plant)).unwrap();
     assert_eq!(shown(&workspace), 0);
+}
+
+/// Where a person adds lines to a tree that was opened: the ends of each, in shares of the drawing's box (y up).
+const LINES: [(&str, [[f64; 4]; 3]); 5] = [
+    ("twigs in the crown", [[0.5, 0.7, 0.35, 0.85], [0.5, 0.6, 0.7, 0.8], [0.45, 0.55, 0.25, 0.6]]),
+    ("twigs at the trunk", [[0.5, 0.3, 0.3, 0.4], [0.5, 0.35, 0.7, 0.45], [0.5, 0.2, 0.6, 0.28]]),
+    ("grass at the foot", [[0.06, -0.06, 0.05, 0.05], [0.16, -0.06, 0.17, 0.08], [1.0, -0.06, 1.0, 0.05]]),
+    ("grass beside it", [[0.1, 0.0, 0.08, 0.1], [0.2, 0.0, 0.22, 0.12], [0.9, 0.0, 0.92, 0.1]]),
+    ("long lines across", [[0.05, 0.5, 0.95, 0.55], [0.1, 0.1, 0.9, 0.9], [0.5, 0.02, 0.5, 0.98]]),
+];
+/// Points of each line.
+const POINTS: usize = 24;
+
+/// A line with the slight arc of a hand.
+fn line(drawing: &Drawing, [x0, y0, x1, y1]: [f64; 4]) -> Stroke {
+    let points = || drawing.strokes.iter().flat_map(|s| s.samples.iter().map(|p| p.at));
+    let low = points().fold(DVec2::INFINITY, DVec2::min);
+    let size = points().fold(DVec2::NEG_INFINITY, DVec2::max) - low;
+    let (from, to) = (low + DVec2::new(x0, y0) * size, low + DVec2::new(x1, y1) * size);
+    let aside = 0.04 * (to - from).perp();
+    let at = |i| {
+        let t = i as f64 / (POINTS - 1) as f64;
+        InkSample::from(from.lerp(to, t) + aside * 4.0 * t * (1.0 - t))
+    };
+    Stroke { samples: (0..POINTS).map(at).collect(), ..Stroke::default() }
+}
+
+/// Trees that once became a petal or a leaf by a line or three more: each stroke stays what it was clearly shown as, and
+/// none becomes a blade.
+#[test]
+fn lines_more_make_nothing_else_of_a_tree() {
+    // The apple tree became a petal by the first line, the others leaves by the third.
+    for (name, most) in [("apple-tree", 1), ("oak", 3), ("pine", 3)] {
+        let bytes = fs::read(Path::new(GALLERY).join(format!("{name}.svg"))).expect("a drawing of our own");
+        let drawing = formats::read_drawings(bytes.as_slice(), DrawingFormat::Svg, name);
+        let drawing = drawing.map(|d| d.expect("a drawing of our own").drawing).next().expect("one drawing");
+        for (what, lines) in LINES {
+            let mut workspace = Workspace::default();
+            workspace.open(&format!("{name}.svg"), &bytes, 0, false).expect("a drawing of our own");
+            let mut before = strokes(&mut workspace);
+            let opened = before.len();
+            for (count, ends) in lines.into_iter().take(most).enumerate() {
+                workspace.add_stroke(line(&drawing, ends), shown(&before)).expect("a line");
+                let now = strokes(&mut workspace);
+                for (was, is) in before[..opened].iter().zip(&now) {
+                    let stays = is.organ == was.organ && is.class == was.class;
+                    assert!(stays || !is_clear(was), "{name}: {} of {what}: {was:?}, then {is:?}", count + 1);
+                    let flat = ["petal", "leaf"].contains(&is.organ.as_str());
+                    assert!(stays || !flat, "{name}: {} of {what}: {was:?}, then {is:?}", count + 1);
+                }
+                before = now;
+            }
+        }
+    }
 }
