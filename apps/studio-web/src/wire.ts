@@ -209,7 +209,7 @@ export type Action =
       plant: PlantId;
     };
   }
-  | /** Looks at the scene again, not at a model. */
+  | /** Shows the scene again, not a model. */
   "close-model"
   | /** Copies of a plant in many places. */
   {
@@ -495,7 +495,7 @@ export type FileKind =
   "project"
   | /** Took the document's place. */
   "drawing"
-  | /** Is looked at. */
+  | /** Is shown. */
   "model"
   | /** Marks that went to a leaf. */
   "leaf"
@@ -1653,7 +1653,7 @@ export type SceneCommand =
 
 /** Every plant of a scene, as it was made last. */
 export type SceneView = {
-  /** A model that is looked at instead. */
+  /** A model that is shown instead. */
   guest: 
     | PlantView
     | null;
