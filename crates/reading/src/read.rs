@@ -8,11 +8,12 @@ use plant::AxisKind;
 
 use crate::built::pointed;
 use crate::draft::Draft;
+use crate::near::bounds;
 use crate::rules::GREEN_LEAVES;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
-    BESIDE_THE_PLANT, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers,
-    inertia, kinds, outlines, pressed, rules, several, veins,
+    BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
+    flowers, inertia, kinds, outlines, pressed, rules, several, veins,
 };
 
 /// Understands a drawing.
@@ -197,6 +198,8 @@ const MOST_STROKES: usize = 200;
 /// A drawing of more strokes is not compared with other kinds at all: the numbers of the whole would take two fifths of
 /// the time of each stroke that is added, and the model learnt from none so large.
 const MOST_JUDGED: usize = 1000;
+/// A blade on wood that is larger than this share of the drawing's diagonal is a crown: that is most of a tree (*geometry*).
+const CROWN_BLADE: f64 = 0.35;
 /// A palm has at least so many fronds where the whole is known to be one.
 const FEWEST_FRONDS: usize = 2;
 /// Readings that are told.
@@ -224,7 +227,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let own = group(&scores, s.kind);
         !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
     };
-    let other = scores.iter().find(likelier).copied();
+    // The kind may be right, and still a crown be taken for a blade.
+    let half = built.is_like(Kind::Tree) && bears_its_crown_as_blade(&reading);
+    let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
+    let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
     if let Some(wanted) = asked.kind {
         (said, kind) = (Report::default(), wanted);
         reading = attempt(asked, asked.kind, ink, classes, &mut said);
@@ -232,7 +238,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let mut again = Report::default();
         let tried = attempt(asked, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.
-        if is_built(other.kind, &tried) {
+        if is_built(other.kind, &tried) && !(half && bears_its_crown_as_blade(&tried)) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
         }
     }
@@ -279,6 +285,13 @@ fn is_built(kind: Kind, reading: &Reading) -> bool {
         _ => false,
     };
     kind.is_like(Kind::of(reading)) || (no_flower && needed)
+}
+
+/// Whether wood bears no crown, but a leaf or petal of the size of one.
+fn bears_its_crown_as_blade(reading: &Reading) -> bool {
+    let petals = reading.flowers.iter().flat_map(|f| &f.petals);
+    let large = |b: &BladeReading| bounds(&b.outline).is_some_and(|(lo, hi)| lo.distance(hi) > CROWN_BLADE);
+    reading.woody && reading.regions.is_empty() && petals.chain(&reading.leaves).any(large)
 }
 
 /// A fruit and a root are built alike: the model says which of them it is.
