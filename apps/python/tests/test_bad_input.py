@@ -56,7 +56,7 @@ def test_ranges_are_told_with_field_value_and_unit():
         (lambda: bg.schema("fern"), "maker", '"fern"', "tree, flower, leaf, sketch or skin"),
         (lambda: bg.set_threads(1000), "count", "1000", "0 to 256"),
         (lambda: bg.leaf().render(view="back"), "view", '"back"', "front, three-quarter"),
-        (lambda: bg.leaf().render(sise=3), "a picture.sise", None, "view, azimuth"),
+        (lambda: bg.leaf().render(sizes=3), "a picture.sizes", None, "view, azimuth"),
         (lambda: bg.leaf().save("x.docx"), "path", ".docx", ".glb, .obj"),
         (lambda: bg.leaf().save("x.obj", pack="meshopt"), "pack", "given", "left out"),
         (lambda: bg.leaf().shape([{"op": "nothing"}]), "edits[0].op", "nothing", "prune"),

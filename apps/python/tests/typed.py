@@ -25,7 +25,7 @@ plants: int = manifest["plants"]
 
 # What is wrong is seen before it runs.
 oak.render((64, 64), view="back")  # type: ignore[arg-type]
-oak.render((64, 64), sise=3)  # type: ignore[call-arg]
+oak.render((64, 64), sizes=3)  # type: ignore[call-arg]
 oak.masks("large")  # type: ignore[arg-type]
 bg.grow(3)  # type: ignore[arg-type]
 bg.forest(spacing="wide")  # type: ignore[arg-type]

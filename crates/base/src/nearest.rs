@@ -53,7 +53,7 @@ mod tests {
         for far in ["", "o", "k", "palm", "\u{1f339}"] {
             assert_eq!(nearest(far, trees), None, "{far}");
         }
-        assert_eq!(nearest("heigth", ["width_m", "height_m"]), Some("height_m"));
+        assert_eq!(nearest("height", ["width_m", "height_m"]), Some("height_m"));
         assert_eq!(nearest("depth", ["width_m", "height_m"]), None);
         assert_eq!(nearest("anything", []), None);
     }
