@@ -544,6 +544,7 @@ async function preview({ page, url, shot }) {
   await page.click('#b-exportview-close');
   await page.locator('#b-exportview').waitFor({ state: 'detached' });
   await page.waitForTimeout(800);
+  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
   assert.equal(await sways(page, crown), 0, 'the plant itself stands still');
 }
 
@@ -822,7 +823,9 @@ async function keptStage({ page, url, shot }) {
   await page.addInitScript(() => {
     const { put } = IDBObjectStore.prototype;
     IDBObjectStore.prototype.put = function write(...rest) {
-      if (sessionStorage.getItem('full')) throw new DOMException('full', 'QuotaExceededError');
+      // A storage that has no room for more than a document.
+      if (sessionStorage.getItem('full') && rest[1] === '.backdrop')
+        throw new DOMException('full', 'QuotaExceededError');
       return put.apply(this, rest);
     };
   });
