@@ -242,12 +242,14 @@ def test_other_threads_of_python_go_on_meanwhile():
     try:
         started = time.perf_counter()
         before = counted[0]
-        bg.grow("oak", seed=1, detail=1)
+        for seed in range(5):
+            bg.grow("oak", seed=seed, detail=1)
         took, after = time.perf_counter() - started, counted[0]
     finally:
         over.set()
         thread.join()
-    assert took > 0.1 and after - before > 10 * took, (took, after - before)
+    # Between two trees the other thread has a moment in any case.
+    assert after - before > max(50 * took, 10), (took, after - before)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
