@@ -128,9 +128,14 @@ fn obovate() -> Vec<DVec2> {
     (1..=8).map(at).collect()
 }
 
+/// A right margin by its points.
+fn margin(points: &[(f64, f64)]) -> Vec<DVec2> {
+    points.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
+}
+
 /// Two round ears below the root, a drawn-out tip.
 fn cordate() -> Vec<DVec2> {
-    [
+    margin(&[
         (0.09, -0.065),
         (0.2, -0.075),
         (0.31, -0.015),
@@ -141,16 +146,20 @@ fn cordate() -> Vec<DVec2> {
         (0.18, 0.67),
         (0.095, 0.8),
         (0.035, 0.91),
-    ]
-    .map(|(x, y)| DVec2::new(x, y))
-    .to_vec()
+    ])
 }
 
 /// A triangle with round corners.
 fn deltoid() -> Vec<DVec2> {
-    [(0.16, -0.01), (0.3, 0.05), (0.385, 0.16), (0.36, 0.28), (0.28, 0.44), (0.18, 0.62), (0.08, 0.82)]
-        .map(|(x, y)| DVec2::new(x, y))
-        .to_vec()
+    margin(&[
+        (0.16, -0.01),
+        (0.3, 0.05),
+        (0.385, 0.16),
+        (0.36, 0.28),
+        (0.28, 0.44),
+        (0.18, 0.62),
+        (0.08, 0.82),
+    ])
 }
 
 /// Four round lobes a side between narrow notches, the third the largest, on a wedge that widens upwards from small ears
@@ -177,7 +186,7 @@ fn lobed() -> Vec<DVec2> {
 /// Half of five lobes around the end of the stalk, each drawn out to a point with a tooth or two beside it (Acer
 /// platanoides): two of each side, the middle one is the tip.
 fn palmate() -> Vec<DVec2> {
-    [
+    margin(&[
         (0.1, -0.06),
         (0.22, -0.11),
         (0.36, -0.13),
@@ -201,9 +210,7 @@ fn palmate() -> Vec<DVec2> {
         (0.18, 0.78),
         (0.18, 0.87),
         (0.09, 0.87),
-    ]
-    .map(|(x, y)| DVec2::new(x, y))
-    .to_vec()
+    ])
 }
 
 /// Five leaflets a side.
@@ -246,7 +253,7 @@ fn feather() -> Vec<DVec2> {
 
 /// Straight sides, and a wavy edge that is notched in the middle (Ginkgo biloba).
 fn fan() -> Vec<DVec2> {
-    [
+    margin(&[
         (0.045, 0.1),
         (0.19, 0.3),
         (0.36, 0.52),
@@ -259,9 +266,7 @@ fn fan() -> Vec<DVec2> {
         (0.15, 1.14),
         (0.07, 1.12),
         (0.022, 1.07),
-    ]
-    .map(|(x, y)| DVec2::new(x, y))
-    .to_vec()
+    ])
 }
 
 /// Three needles a side and one in the middle, which is the tip.

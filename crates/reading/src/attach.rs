@@ -269,9 +269,10 @@ fn bursts(draft: &Draft<'_>, flower: &FlowerDraft, line: &Line) -> bool {
     let (foot, top) = if a.length() < b.length() { (a, b) } else { (b, a) };
     flower.petals.iter().any(|&i| {
         let blade = &draft.blades[i];
+        // Most lines of a drawing are far away.
+        let near = foot.length() < BURST_FOOT * blade.size && top.length() < BURST_LONG * blade.size;
         let axis = blade.middle - flower.centre;
-        let along = axis.dot(top) > BURST_WAY * axis.length() * top.length();
-        along && foot.length() < BURST_FOOT * blade.size && top.length() < BURST_LONG * blade.size
+        near && axis.dot(top) > BURST_WAY * axis.length() * top.length()
     })
 }
 
@@ -283,13 +284,10 @@ pub(crate) fn stamens(
     veins: &mut Veins,
 ) {
     over_petals(draft, flowers, veins);
-    for k in draft
-        .of_class(StrokeClass::Other)
-        .into_iter()
-        .filter(|&k| draft.rule[k] == Some(STAMENS))
-        .collect::<Vec<_>>()
-    {
-        draft.organ[k] = OrganWord::Stamen;
+    for k in draft.of_class(StrokeClass::Other) {
+        if draft.rule[k] == Some(STAMENS) {
+            draft.organ[k] = OrganWord::Stamen;
+        }
     }
     if flowers.is_empty() || draft.lines.is_empty() {
         return;
@@ -322,13 +320,13 @@ pub(crate) fn stamens(
                 (a.distance(centre).min(b.distance(centre)), a.distance(centre).max(b.distance(centre)));
             near < disc.max(STAMEN_FOOT * reach[f]) && far < reach[f] && length < STAMEN_LENGTH * reach[f]
         });
+        if let Some(f) = burst {
+            let centre = flowers[f].centre;
+            flowers[f].stamens.push(oriented(&line.points, b.distance(centre) < a.distance(centre)));
+            draft.set_organ(line.source, OrganWord::Stamen);
+            continue;
+        }
         match found {
-            _ if burst.is_some() => {
-                let f = burst.unwrap_or_default();
-                let centre = flowers[f].centre;
-                flowers[f].stamens.push(oriented(&line.points, b.distance(centre) < a.distance(centre)));
-                draft.set_organ(line.source, OrganWord::Stamen);
-            }
             Some((e, _)) if !alone && (length < NO_STEM * longest || draft.lines.is_empty()) => {
                 let last = b.distance(e.point) < a.distance(e.point);
                 flowers[e.owner].stamens.push(oriented(&line.points, last));
