@@ -8,7 +8,7 @@
 
 use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
-use burgeon::{CancelToken, Made, Run, Seed, SketchOptions, make_from_sketch};
+use burgeon::{Budget, CancelToken, Evaluator, Made, Run, Seed, SketchOptions, make_from_sketch};
 use burgeon_bench::{Stopwatch, TABLE1, TwoThreads, table1};
 
 fn main() {
@@ -18,7 +18,8 @@ fn main() {
 
 fn make(drawing: &Drawing) -> Made {
     let (cancel, clock) = (CancelToken::new(), Stopwatch::start());
-    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock, ..Run::plain() };
+    let budget = Budget { times: 10.0, ..Budget::default() };
+    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock, budget, ..Run::plain() };
     make_from_sketch(drawing, &SketchOptions::default(), Seed::new(1), &run).unwrap()
 }
 
@@ -50,6 +51,34 @@ fn stage_shares() {
 fn table1_sketch(bencher: divan::Bencher<'_, '_>, name: &str) {
     let drawing = table1(name);
     bencher.bench(|| make(&drawing));
+}
+
+/// A pen draws one more stroke on a drawing that is there: from each of its points to meshes, on one thread as in a browser.
+#[divan::bench(args = TABLE1)]
+fn under_the_pen(bencher: divan::Bencher<'_, '_>, name: &str) {
+    let (drawing, options) = (table1(name), SketchOptions::default());
+    let (seed, run) = (Seed::new(1), Run::plain());
+    let mut whole = Evaluator::default();
+    whole.update(&drawing, &options, seed, &run).unwrap();
+    let mut pen = Evaluator::previewing();
+    assert!(pen.follow(&whole, &drawing), "what is known of the drawing helps");
+    let points = || drawing.strokes.iter().flat_map(|s| &s.samples).map(|s| s.at);
+    let (lo, hi) =
+        points().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let (middle, unit) = (lo.midpoint(hi), lo.distance(hi) / 1000.0);
+    let line: Vec<DVec2> = (0..=30)
+        .map(|i| {
+            middle
+                + DVec2::new(2.0 * f64::from(i), 3.0 * f64::from(i) - 8.0 * (f64::from(i) / 4.0).sin()) * unit
+        })
+        .collect();
+    let mut end = 1;
+    bencher.bench_local(|| {
+        end = end % 30 + 2;
+        let mut now = drawing.clone();
+        now.strokes.extend(Drawing::from_polylines("", &[line[..end.min(31)].to_vec()]).strokes);
+        pen.update(&now, &options, seed, &run).unwrap()
+    });
 }
 
 /// Every leaf is a stroke of its own: the time must grow linearly.

@@ -2,6 +2,8 @@
 //!
 //! `Drawing -> Ink`
 
+use std::sync::{Arc, OnceLock};
+
 use base::{Report, ops};
 use geom::polyline_length;
 use glam::DVec2;
@@ -83,6 +85,33 @@ pub struct InkStroke {
     pub length: f64,
     /// Distance of neighbouring points before smoothing.
     pub step: f64,
+    pub(crate) found: Arc<Found>,
+}
+
+/// What was found out of the points of a stroke when it was first asked for. It follows from them: two strokes are equal
+/// whatever is known of them.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    hull: OnceLock<Vec<DVec2>>,
+    outline: OnceLock<Option<Vec<DVec2>>>,
+}
+
+impl PartialEq for Found {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl InkStroke {
+    /// The convex hull of its points ([`geom::convex_hull`]), found once.
+    pub fn hull(&self) -> &[DVec2] {
+        self.found.hull.get_or_init(|| geom::convex_hull(&self.points))
+    }
+
+    /// Its points as a closed outline ([`geom::simple_outline`]), if they are one, found once.
+    pub fn outline(&self) -> Option<&[DVec2]> {
+        self.found.outline.get_or_init(|| geom::simple_outline(&self.points)).as_deref()
+    }
 }
 
 /// A clean drawing: y up, its bounding box has diagonal 1 and its lower left corner at the origin.
@@ -211,6 +240,7 @@ fn even(strokes: &mut [InkStroke], before: &[InkStroke]) {
         let known = at.ok().map(|at| &before[at]);
         if let Some(known) = known.filter(|k| k.step == stroke.step && k.raw == stroke.raw) {
             (stroke.points, stroke.length) = (known.points.clone(), known.length);
+            stroke.found = Arc::clone(&known.found);
             continue;
         }
         stroke.points = smooth(&resample(&stroke.raw, stroke.length, stroke.step), stroke.step);

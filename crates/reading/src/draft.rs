@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use base::{LiteMap, Report};
-use geom::{contains, convex_hull, polyline_length, signed_area};
+use geom::{contains, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass, StrokeMode};
 use plant::AxisKind;
@@ -321,9 +321,9 @@ impl<'a> Draft<'a> {
             return;
         }
         for k in self.of_class(StrokeClass::Scribble) {
-            let hull = convex_hull(&self.ink.strokes[k].points);
-            let free = self.organ[k] == OrganWord::Ignored && signed_area(&hull) > SCRIBBLE_AREA;
-            let shading = hull.len() > 2 && self.forest.nearest(geom::centroid(&hull), 0.005).is_some();
+            let hull = self.ink.strokes[k].hull();
+            let free = self.organ[k] == OrganWord::Ignored && signed_area(hull) > SCRIBBLE_AREA;
+            let shading = hull.len() > 2 && self.forest.nearest(geom::centroid(hull), 0.005).is_some();
             if free && !shading && self.regions.len() < MOST_REGIONS {
                 self.crown_from(k, report);
             }
@@ -351,10 +351,7 @@ impl<'a> Draft<'a> {
             || !self.regions.is_empty()
             || !self.forest.axes.is_empty()
             || !discs.is_empty()
-            || self
-                .of_class(StrokeClass::Fruit)
-                .into_iter()
-                .any(|k| geom::simple_outline(&self.ink.strokes[k].points).is_some());
+            || self.of_class(StrokeClass::Fruit).into_iter().any(|k| self.ink.strokes[k].outline().is_some());
         if something {
             return;
         }
@@ -381,11 +378,11 @@ impl<'a> Draft<'a> {
 
     /// Stems begin at the pot's rim: what was drawn inside the pot is cut off.
     pub(crate) fn trim_at_pots(&mut self) {
-        let pots: Vec<Vec<DVec2>> = self
+        let pots: Vec<&[DVec2]> = self
             .of_class(StrokeClass::Pot)
             .into_iter()
             .take(MOST_REGIONS)
-            .filter_map(|k| geom::simple_outline(&self.ink.strokes[k].points))
+            .filter_map(|k| self.ink.strokes[k].outline())
             .collect();
         let deep = |p: DVec2| {
             pots.iter().any(|pot| contains(pot, p) && blade::nearest_on_ring(pot, p).1 > STOPPED_SHORT)
@@ -414,7 +411,7 @@ impl<'a> Draft<'a> {
         let mut fruits = Vec::new();
         for k in self.joined_fruits(&mut strokes, &mut fruits) {
             let s = &self.ink.strokes[k];
-            if let Some(outline) = geom::simple_outline(&s.points) {
+            if let Some(outline) = s.outline().map(<[DVec2]>::to_vec) {
                 self.organ[k] = OrganWord::Fruit;
                 fruits.push(FruitReading { outline, bearer: None, source: Some(s.index), color: s.color });
             }

@@ -94,10 +94,10 @@ pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {
     for k in draft.of_class(StrokeClass::Disc) {
         let stroke = &draft.ink.strokes[k];
         let Some((lo, hi)) = bounds(&stroke.points) else { continue };
-        let hull = geom::convex_hull(&stroke.points);
-        let centre = if hull.len() > 2 { geom::centroid(&hull) } else { lo.midpoint(hi) };
+        let hull = stroke.hull();
+        let centre = if hull.len() > 2 { geom::centroid(hull) } else { lo.midpoint(hi) };
         let radius =
-            if hull.len() > 2 { (geom::signed_area(&hull) / ops::PI).sqrt() } else { 0.25 * lo.distance(hi) };
+            if hull.len() > 2 { (geom::signed_area(hull) / ops::PI).sqrt() } else { 0.25 * lo.distance(hi) };
         let disc = DiscReading { centre, radius: radius.max(1e-4), source: Some(stroke.index) };
         discs.push((disc, k));
     }

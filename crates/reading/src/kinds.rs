@@ -85,9 +85,11 @@ pub fn kind_features(ink: &Ink, classes: &[Classified], first: &Reading) -> Vec<
         let sum: f64 = ink.strokes.iter().enumerate().map(|(k, s)| share(k, class) * s.length).sum();
         row.push(sum / total);
     }
-    row.extend(shape(ink, total));
+    let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
+    let hull = convex_hull(&all);
+    row.extend(shape(ink, (&all, &hull), total));
     row.extend(class_bands(ink, &share, total));
-    row.extend(look::look(ink));
+    row.extend(look::look(ink, (&all, &hull)));
     debug_assert_eq!(row.len(), COUNT, "one number for each name");
     row
 }
@@ -116,15 +118,12 @@ fn class_bands(ink: &Ink, share: &dyn Fn(usize, StrokeClass) -> f64, total: f64)
     sums
 }
 
-/// How the whole looks.
-fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
-    let points = || ink.strokes.iter().flat_map(|s| s.points.iter().copied());
-    let all: Vec<DVec2> = points().collect();
-    let Some((lo, hi)) = bounds(&all) else { return [0.0; SHAPE.len()] };
+/// How the whole looks. `all`: its points, and their hull.
+fn shape(ink: &Ink, (all, hull): (&[DVec2], &[DVec2]), total: f64) -> [f64; SHAPE.len()] {
+    let Some((lo, hi)) = bounds(all) else { return [0.0; SHAPE.len()] };
     let (wide, tall) = ((hi.x - lo.x).max(1e-6), (hi.y - lo.y).max(1e-6));
     let count = all.len().max(1) as f64;
-    let hull = convex_hull(&all);
-    let hull_area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
+    let hull_area = if hull.len() > 2 { signed_area(hull) } else { 0.0 };
     let open = |k: usize| {
         let s = &ink.strokes[k];
         s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-9)
@@ -132,20 +131,20 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
     let n = ink.strokes.len();
     let closed: Vec<usize> = (0..n).filter(|&k| open(k) < LOOP).collect();
     let area_of = |k: usize| {
-        let hull = convex_hull(&ink.strokes[k].points);
-        if hull.len() > 2 { signed_area(&hull) } else { 0.0 }
+        let hull = ink.strokes[k].hull();
+        if hull.len() > 2 { signed_area(hull) } else { 0.0 }
     };
     let largest = (0..n).map(|k| (area_of(k), k)).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (area, k) = largest.unwrap_or_default();
     let ring = &ink.strokes[k].points;
     let (l, h) = bounds(ring).unwrap_or_default();
-    let own = convex_hull(ring);
-    let within = |p: &DVec2| p.cmpge(l).all() && p.cmple(h).all() && contains(&own, *p);
+    let own = ink.strokes[k].hull();
+    let within = |p: &DVec2| p.cmpge(l).all() && p.cmple(h).all() && contains(own, *p);
     let inside = all.iter().filter(|p| own.len() > 2 && within(p)).count() as f64 / count;
-    let full = geom::simple_outline(ring).map_or(0.0, |o| signed_area(&o)) / area.max(1e-9);
+    let full = ink.strokes[k].outline().map_or(0.0, signed_area) / area.max(1e-9);
     let part = |from: f64, to: f64| -> (f64, f64) {
         let band: Vec<DVec2> =
-            points().filter(|p| p.y >= lo.y + from * tall && p.y <= lo.y + to * tall).collect();
+            all.iter().copied().filter(|p| p.y >= lo.y + from * tall && p.y <= lo.y + to * tall).collect();
         let across = bounds(&band).map_or(0.0, |(a, b)| b.x - a.x);
         (band.len() as f64 / count, across / wide)
     };

@@ -4,7 +4,7 @@
 //! right, or on the size of the sheet; on their order only where more than eight strokes end in one place. The model (`kinds`) says what they are worth.
 
 use base::ops;
-use geom::{convex_hull, signed_area};
+use geom::signed_area;
 use glam::DVec2;
 use ink::{Ink, InkStroke};
 
@@ -164,8 +164,8 @@ fn place(share: f64, n: usize) -> usize {
     ((share * n as f64) as usize).min(n - 1)
 }
 
-/// All numbers, in the order of [`GROUPS`]; zeros of an empty drawing. Linear in points.
-pub(crate) fn look(ink: &Ink) -> Vec<f64> {
+/// All numbers, in the order of [`GROUPS`]; zeros of an empty drawing. `all`: its points, and their hull. Linear in points.
+pub(crate) fn look(ink: &Ink, all: (&[DVec2], &[DVec2])) -> Vec<f64> {
     let Some(frame) = Frame::new(ink) else { return vec![0.0; COUNT] };
     let (fine, wide) = (Grid::new(ink, FINE), Grid::new(ink, WIDE));
     let mut row = Vec::with_capacity(COUNT);
@@ -175,7 +175,7 @@ pub(crate) fn look(ink: &Ink) -> Vec<f64> {
     turns(&frame, &mut row);
     row.extend(fine.symmetric());
     rings(&frame, &fine, &mut row);
-    silhouette(&frame, &fine, &mut row);
+    silhouette(&frame, all, &fine, &mut row);
     row.extend(foot(&fine));
     strokes(&frame, &mut row);
     ends(&frame, &fine, &mut row);
@@ -365,10 +365,8 @@ fn rings(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
 }
 
 /// The outline of all, filled.
-fn silhouette(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
-    let all: Vec<DVec2> = frame.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
-    let hull = convex_hull(&all);
-    let hull_area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
+fn silhouette(frame: &Frame<'_>, (all, hull): (&[DVec2], &[DVec2]), fine: &Grid, row: &mut Vec<f64>) {
+    let hull_area = if hull.len() > 2 { signed_area(hull) } else { 0.0 };
     let (filled, rim, inked) = fine.areas();
     let cell = fine.cell * fine.cell;
     row.extend([
@@ -382,7 +380,7 @@ fn silhouette(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
     ]);
     let centre = fine.middle(0.0);
     let mut reach = [0.0_f64; 7];
-    for p in &all {
+    for p in all {
         let r = *p - centre;
         let sector = place(ops::atan2(r.y, r.x.abs()) / ops::PI + 0.5, 7);
         reach[sector] = reach[sector].max(r.length() / frame.long);
@@ -571,7 +569,9 @@ mod tests {
     }
 
     fn looks(lines: &[Vec<DVec2>]) -> Vec<f64> {
-        look(&ink::clean(&Drawing::from_polylines("drawing", lines), &mut Report::default()))
+        let ink = ink::clean(&Drawing::from_polylines("drawing", lines), &mut Report::default());
+        let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
+        look(&ink, (&all, &geom::convex_hull(&all)))
     }
 
     fn names() -> Vec<String> {

@@ -437,9 +437,9 @@ pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
         return;
     }
     let found = draft.of_class(StrokeClass::Scribble).into_iter().find_map(|k| {
-        let hull = convex_hull(&draft.ink.strokes[k].points);
-        let (lo, hi) = bounds(&hull)?;
-        let middle = centroid(&hull);
+        let hull = draft.ink.strokes[k].hull();
+        let (lo, hi) = bounds(hull)?;
+        let middle = centroid(hull);
         let below = draft
             .regions
             .iter()
@@ -448,7 +448,7 @@ pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
     });
     if let Some((k, hull)) = found {
         let source = Some(draft.ink.strokes[k].index);
-        let ring = Ring { points: hull, ..Ring::default() };
+        let ring = Ring { points: hull.to_vec(), ..Ring::default() };
         let row = draft.forest.add_body(limbs(&ring, None), None, source);
         draft.open_top |= row.is_some();
         draft.bodies.extend(row);

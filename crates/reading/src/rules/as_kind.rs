@@ -3,7 +3,7 @@
 //! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the user
 //! set stay.
 
-use geom::{contains, convex_hull, polyline_length, signed_area, simple_outline};
+use geom::{contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -133,7 +133,7 @@ pub(crate) fn take_for(draft: &mut Draft<'_>, kind: Kind) {
 fn part(draft: &Draft<'_>, stroke: usize) -> Option<Part> {
     let s = &draft.ink.strokes[stroke];
     let (lo, hi) = bounds(&s.points)?;
-    let hull = convex_hull(&s.points);
+    let hull = s.hull().to_vec();
     let area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
     Some(Part { stroke, lo, hi, area, hull, open: openness(s) })
 }
@@ -195,10 +195,9 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
 
 /// An outline with hollows and no neck goes round a trunk and its limbs.
 fn is_limbs(draft: &Draft<'_>, p: &Part) -> bool {
-    let points = &draft.ink.strokes[p.stroke].points;
-    let outline = simple_outline(points);
-    let hollow = outline.as_ref().is_none_or(|o| signed_area(o) < HOLLOW * p.area);
-    hollow && outline.is_none_or(|o| neck(&o, true).is_none())
+    let outline = draft.ink.strokes[p.stroke].outline();
+    let hollow = outline.is_none_or(|o| signed_area(o) < HOLLOW * p.area);
+    hollow && outline.is_none_or(|o| neck(o, true).is_none())
 }
 
 /// What might be a crown encloses too little of the tree: bare branches, a fir of single twigs.

@@ -1,6 +1,6 @@
 //! Rules about rings: fruits that hang from twigs, and outlines that are no twigs.
 
-use geom::{closest_on_polyline, convex_hull, signed_area, simple_outline};
+use geom::{closest_on_polyline, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -77,7 +77,7 @@ fn ring(draft: &Draft<'_>, k: usize) -> Option<Ring> {
     let s = &draft.ink.strokes[k];
     let (lo, hi) = bounds(&s.points).filter(|_| openness(s) < CLOSED)?;
     let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
-    let area = signed_area(&simple_outline(&s.points)?);
+    let area = signed_area(s.outline()?);
     (wide.min(tall) > ROUND * wide.max(tall) && area > FILLS * wide * tall).then_some(Ring {
         stroke: k,
         lo,
@@ -105,9 +105,9 @@ pub(super) fn outlines_are_no_twigs(draft: &Draft<'_>) -> Findings {
             continue;
         }
         let small = bounds(&s.points).is_some_and(|(lo, hi)| lo.distance(hi) < LEAF);
-        let hull = convex_hull(&s.points);
-        let area = simple_outline(&s.points).map_or(0.0, |o| signed_area(&o));
-        if small && hull.len() > 2 && area > OPEN * s.length * s.length && area > 0.5 * signed_area(&hull) {
+        let hull = s.hull();
+        let area = s.outline().map_or(0.0, signed_area);
+        if small && hull.len() > 2 && area > OPEN * s.length * s.length && area > 0.5 * signed_area(hull) {
             found.settle(k, StrokeClass::Blade);
         }
     }

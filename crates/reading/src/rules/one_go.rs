@@ -6,6 +6,7 @@ use ink::StrokeClass;
 
 use super::{Findings, free, unsure};
 use crate::draft::{Draft, OneGo};
+use crate::thresholds::ROUNDING;
 
 /// Stems with leaves at least, where the whole is taken for something that has none.
 const FEWEST: usize = 2;
@@ -58,14 +59,7 @@ fn apart(points: &[DVec2]) -> Option<OneGo> {
     let (mut loops, mut stem, mut from) = (Vec::new(), Vec::new(), 0);
     let mut j = 0;
     while j < p.len() {
-        let closing = |j: usize| {
-            let near = |i: usize| {
-                let (gap, long) = (p[i].distance(p[j]), way[j] - way[i]);
-                (long > LOOP * length && gap < CLOSES.min(CLOSES_MOST * long).max(CLOSES_SHARE * long))
-                    .then_some((gap, i, j))
-            };
-            (from..j).filter_map(near).min_by(|a, b| a.0.total_cmp(&b.0))
-        };
+        let closing = |j: usize| closing((&p, &way), from, j, LOOP * length);
         let Some(first) = closing(j) else {
             j += 1;
             continue;
@@ -96,6 +90,27 @@ fn apart(points: &[DVec2]) -> Option<OneGo> {
     });
     (!loops.is_empty() && loops.iter().all(slim) && leads && left > STEM * length && apart)
         .then_some(OneGo { loops, stem })
+}
+
+/// Where the line from `from` on comes nearest to its point `j` and closes a loop of at least that length: how near, and
+/// from where to where.
+fn closing((p, way): (&[DVec2], &[f64]), from: usize, j: usize, least: f64) -> Option<(f64, usize, usize)> {
+    let mut best: Option<(f64, usize, usize)> = None;
+    let mut i = from;
+    while i < j && way[j] - way[i] > least {
+        let (gap, long) = (p[i].distance(p[j]), way[j] - way[i]);
+        let closes = CLOSES.min(CLOSES_MOST * long).max(CLOSES_SHARE * long);
+        if gap < closes && best.is_none_or(|b| gap < b.0) {
+            best = Some((gap, i, j));
+        }
+        // It comes nearer by no more than it goes on, and shorter loops close nearer.
+        let far = way[i] + (gap - closes) - ROUNDING;
+        i += 1;
+        while i < j && way[i] < far {
+            i += 1;
+        }
+    }
+    best
 }
 
 fn is_loop(line: &[DVec2], length: f64) -> bool {

@@ -1,8 +1,8 @@
 //! Rules about what a plant stands in or on: its pot, and the ground over its roots.
 
-use geom::{polyline_length, signed_area, simple_outline};
+use geom::{polyline_length, signed_area};
 use glam::DVec2;
-use ink::StrokeClass;
+use ink::{InkStroke, StrokeClass};
 
 use super::{Findings, any, openness, unsure, upright};
 use crate::contour::width_at;
@@ -83,10 +83,10 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
         let nothing_beside = (0..boxes.len())
             .all(|j| j == k || boxes[j].0.y > lo.y + 0.5 * tall || contained(boxes[j], (lo, hi)));
         let is_pot = match draft.class[k] {
-            TrunkOutline | Fruit => simple_outline(points).is_some_and(|o| {
-                let at = |t: f64| width_at(&o, lo.y + t * tall);
+            TrunkOutline | Fruit => draft.ink.strokes[k].outline().is_some_and(|o| {
+                let at = |t: f64| width_at(o, lo.y + t * tall);
                 let flat = at(UPPER) > RIM * wide && at(UPPER) >= WIDENS * at(LOWER);
-                flat && signed_area(&o) > FULL * wide * tall && feet.iter().any(|f| f.1 < FOOT * wide)
+                flat && signed_area(o) > FULL * wide * tall && feet.iter().any(|f| f.1 < FOOT * wide)
             }),
             Corolla | Scribble => feet.len() >= 3,
             _ => false,
@@ -128,7 +128,7 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
             others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
         // What has a bottom is a pot.
         let line = |j: usize| openness(&strokes[j]) > 0.5 && !level(j);
-        let lines = below.iter().all(|&j| unsure(draft, j) && (line(j) || tapers(&strokes[j].points, y)));
+        let lines = below.iter().all(|&j| unsure(draft, j) && (line(j) || tapers(&strokes[j], y)));
         let taproot = below.iter().any(|&j| !line(j)) && others().any(|(_, b)| b.1.y > y + RISES * NEAR);
         let stands = others().any(|(j, b)| {
             b.1.y > y + RISES * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
@@ -145,9 +145,9 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
 }
 
 /// An outline that hangs from a level, open there or closed, and runs to a point below: a taproot.
-fn tapers(points: &[DVec2], level: f64) -> bool {
-    let Some((outline, (lo, hi))) = simple_outline(points).zip(bounds(points)) else { return false };
-    let at = |share: f64| width_at(&outline, lo.y + share * (hi.y - lo.y));
+fn tapers(stroke: &InkStroke, level: f64) -> bool {
+    let Some((outline, (lo, hi))) = stroke.outline().zip(bounds(&stroke.points)) else { return false };
+    let at = |share: f64| width_at(outline, lo.y + share * (hi.y - lo.y));
     (hi.y - level).abs() < NEAR
         && hi.y - lo.y > hi.x - lo.x
         && at(2.0 * LOWER) < POINTED * at(1.0 - 2.0 * LOWER)

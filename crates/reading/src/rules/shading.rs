@@ -1,7 +1,6 @@
 //! The rule about shading: lines that make a part of the plant dark and are no parts themselves.
 
 use base::ops;
-use geom::simple_outline;
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -33,9 +32,9 @@ pub(super) fn shading(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Disc, Scribble, TrunkOutline, Vein};
     let mut found = Findings::default();
     let strokes = &draft.ink.strokes;
-    let outlines: Vec<(usize, Vec<DVec2>)> = (0..draft.class.len())
+    let outlines: Vec<(usize, &[DVec2])> = (0..draft.class.len())
         .filter(|&k| [Blade, Crown, TrunkOutline].contains(&draft.class[k]) && openness(&strokes[k]) < CLOSED)
-        .filter_map(|k| Some((k, simple_outline(&strokes[k].points)?)))
+        .filter_map(|k| Some((k, strokes[k].outline()?)))
         .collect();
     let within = |k: usize, outline: &[DVec2]| share_inside(&strokes[k].points, STRIDE, outline) > MOSTLY;
     // The disc of a flower is often a coil.

@@ -1,6 +1,5 @@
 //! The rule about stems that spread, each to a leaf of its own.
 
-use geom::simple_outline;
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -14,10 +13,10 @@ const TOUCH: f64 = 0.025;
 /// its own, are stems.
 pub(super) fn stems(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
-    let blades: Vec<Vec<DVec2>> = draft
+    let blades: Vec<&[DVec2]> = draft
         .of_class(StrokeClass::Blade)
         .into_iter()
-        .filter_map(|k| simple_outline(&draft.ink.strokes[k].points))
+        .filter_map(|k| draft.ink.strokes[k].outline())
         .collect();
     let sides = standing(draft, StrokeClass::TrunkOutline);
     if blades.len() < 2 || sides.len() < 2 {
@@ -26,7 +25,7 @@ pub(super) fn stems(draft: &Draft<'_>) -> Findings {
     let leads: Vec<(usize, usize, DVec2, DVec2)> = sides
         .iter()
         .filter_map(|&(k, top, foot)| {
-            let reached = (0..blades.len()).map(|b| (outside(&blades[b], top), b));
+            let reached = (0..blades.len()).map(|b| (outside(blades[b], top), b));
             let (near, b) = reached.min_by(|a, b| a.0.total_cmp(&b.0))?;
             (near < TOUCH).then_some((k, b, top, foot))
         })

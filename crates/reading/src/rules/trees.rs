@@ -1,6 +1,6 @@
 //! Rules about trees: trunks, crowns, and what lies in a crown.
 
-use geom::{convex_hull, signed_area, simple_outline};
+use geom::{signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -72,10 +72,10 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     if lines.len() < 2 {
         lines.extend(standing(draft, StrokeClass::Axis));
     }
-    let crowns: Vec<Vec<DVec2>> = [StrokeClass::Crown, StrokeClass::Scribble]
+    let crowns: Vec<&[DVec2]> = [StrokeClass::Crown, StrokeClass::Scribble]
         .into_iter()
         .flat_map(|c| draft.of_class(c))
-        .map(|k| convex_hull(&draft.ink.strokes[k].points))
+        .map(|k| draft.ink.strokes[k].hull())
         .filter(|h| h.len() > 2)
         .collect();
     let all_ends: Vec<(usize, DVec2)> = (0..draft.class.len())
@@ -211,7 +211,7 @@ fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
         .partition(|&k| openness(&strokes[k]) < CLOSED);
     let mut found: Vec<(f64, Vec<usize>, Vec<DVec2>)> = shut
         .into_iter()
-        .filter_map(|k| simple_outline(&strokes[k].points).map(|o| (signed_area(&o), vec![k], o)))
+        .filter_map(|k| strokes[k].outline().map(|o| (signed_area(o), vec![k], o.to_vec())))
         .collect();
     let open: Vec<usize> = open.into_iter().filter(|&k| !upright(draft, k) && unsure(draft, k)).collect();
     let lines: Vec<&[DVec2]> = open.iter().map(|&k| strokes[k].points.as_slice()).collect();
@@ -240,16 +240,16 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
         }
         let s = &draft.ink.strokes[k];
         let around = crowns.iter().find(|c| share_inside(&s.points, FRUIT_STRIDE, c) >= IN_CROWN);
-        let (Some(crown), hull) = (around, convex_hull(&s.points)) else { continue };
+        let (Some(crown), hull) = (around, s.hull()) else { continue };
         let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };
         let round = (hi.x - lo.x).min(hi.y - lo.y) > ROUND * (hi.x - lo.x).max(hi.y - lo.y);
-        let full = signed_area(&hull) > FILLS * (hi.x - lo.x) * (hi.y - lo.y);
-        if openness(s) > CLOSED || signed_area(&hull) > SMALL * signed_area(crown) {
+        let full = signed_area(hull) > FILLS * (hi.x - lo.x) * (hi.y - lo.y);
+        if openness(s) > CLOSED || signed_area(hull) > SMALL * signed_area(crown) {
             continue;
         }
         if round && full {
             found.set(k, Fruit);
-        } else if signed_area(&hull) > OPEN * s.length * s.length {
+        } else if signed_area(hull) > OPEN * s.length * s.length {
             found.set(k, Blade);
         }
     }

@@ -3,7 +3,7 @@
 //! As in the rule about a whole tree, only shapes and places count.
 
 use base::ops;
-use geom::{contains, convex_hull, signed_area, simple_outline};
+use geom::{contains, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -109,9 +109,9 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
     if openness(s) > SHUT {
         return None;
     }
-    let hull = convex_hull(&s.points);
+    let hull = s.hull();
     let (lo, hi) = bounds(&s.points).filter(|_| hull.len() > 2)?;
-    let area = signed_area(&hull);
+    let area = signed_area(hull);
     // Not a scribble.
     if area < NO_AREA || s.length * s.length > SCRIBBLE * area {
         return None;
@@ -119,10 +119,10 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
     let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
     Some(Loop {
         stroke: k,
-        middle: geom::centroid(&hull),
+        middle: geom::centroid(hull),
         radius: (area / ops::PI).sqrt(),
         round: wide.min(tall) > ROUND * wide.max(tall),
-        hull,
+        hull: hull.to_vec(),
     })
 }
 
@@ -213,11 +213,11 @@ fn lobed(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Vec<(usize, usize
         let disc = &loops[d];
         let central = disc.middle.distance(outer.middle) < CENTRAL * outer.radius;
         let sized = disc.radius > SIZED.start * outer.radius && disc.radius < SIZED.end * outer.radius;
-        let points = &draft.ink.strokes[outer.stroke].points;
-        let away: Vec<f64> = points.iter().map(|q| q.distance(disc.middle)).collect();
+        let stroke = &draft.ink.strokes[outer.stroke];
+        let away: Vec<f64> = stroke.points.iter().map(|q| q.distance(disc.middle)).collect();
         let reach = away.iter().copied().fold(0.0, f64::max);
         let lobes = dips(&away, LOBE * reach).len();
-        if central && sized && disc.round && lobes > FEWEST && simple_outline(points).is_some() {
+        if central && sized && disc.round && lobes > FEWEST && stroke.outline().is_some() {
             found.push((i, d));
         }
     }

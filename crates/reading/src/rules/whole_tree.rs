@@ -128,7 +128,7 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
         .filter_map(|&k| {
             let s = &draft.ink.strokes[k];
             let (lo, hi) = bounds(&s.points)?;
-            Some(Part { stroke: k, lo, hi, hull: convex_hull(&s.points), open: openness(s) })
+            Some(Part { stroke: k, lo, hi, hull: s.hull().to_vec(), open: openness(s) })
         })
         .collect();
     // The line of the ground is neither.
@@ -261,9 +261,9 @@ fn crown(draft: &Draft<'_>, green: &[Part], wood: Wood) -> Option<Green> {
 
 /// One outline that fills its hull.
 fn outlined(draft: &Draft<'_>, p: &Part) -> bool {
-    let points = &draft.ink.strokes[p.stroke].points;
-    geom::simple_outline(points).is_some_and(|o| signed_area(&o) > FULL * p.area())
-        && draft.ink.strokes[p.stroke].length < LONG * perimeter(&p.hull)
+    let stroke = &draft.ink.strokes[p.stroke];
+    stroke.outline().is_some_and(|o| signed_area(o) > FULL * p.area())
+        && stroke.length < LONG * perimeter(&p.hull)
 }
 
 fn perimeter(hull: &[DVec2]) -> f64 {
