@@ -1,7 +1,7 @@
 //! The project file: a zip of versioned JSON.
 //!
-//! `manifest.json` says what the file is and which form it has; `document.json` is the document in that form. Each
-//! form has its own structs here, so that the types of the program may change without breaking files.
+//! `manifest.json` says what the file is and which version it has; `document.json` is the document in that version. Each
+//! version has its own structs here, so that the types of the program may change without breaking files.
 
 use std::sync::Arc;
 
@@ -17,21 +17,21 @@ use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::fault::MAX_PICTURES;
-use crate::forms::{
-    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV6, EditV4, FlowerV5, LeafV3,
-    MakerV5, ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
-};
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 use crate::names::shortened;
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault};
+use crate::versions::{
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV6, EditV4, FlowerV5, LeafV3,
+    MakerV5, ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
+};
 use crate::{
     Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PictureError, PlantId, SettingFault,
     Settings, WornPicture, WornPictures,
 };
 
-/// The form that this version writes, as `manifest.json` names it.
+/// The version that is written, as `manifest.json` names it.
 pub const PROJECT_SCHEMA: &str = "project/6";
-/// Earlier forms that are read.
+/// Earlier versions that are read.
 const EARLIER: [&str; 5] = ["project/1", "project/2", "project/3", "project/4", "project/5"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
@@ -43,7 +43,7 @@ const MAX_POINTS: usize = 4_000_000;
 
 const MANIFEST: &str = "manifest.json";
 const DOCUMENT: &str = "document.json";
-/// The photograph of forms 1 and 2; later ones have `photo-ROW.png`.
+/// The photograph of versions 1 and 2; later ones have `photo-ROW.png`.
 const PHOTO: &str = "photo.png";
 
 /// Why a project could not be read or written.
@@ -58,13 +58,13 @@ pub enum ProjectError {
     Missing(String),
     /// Made by a version that this one does not know.
     #[error(
-        "project file: its form is {found:?}, this version reads {PROJECT_SCHEMA:?}; take a newer Burgeon"
+        "project file: its version is {found:?}, this program reads {PROJECT_SCHEMA:?}; take a newer Burgeon"
     )]
     Version {
         /// What `manifest.json` says.
         found: String,
     },
-    /// An entry is no JSON, or not of the form.
+    /// An entry is no JSON, or not of the version.
     #[error("project file, {entry}: {}", base::brief(&source.to_string()))]
     Json {
         /// Which entry.
@@ -227,17 +227,17 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     let manifest = entries.remove(MANIFEST).ok_or_else(|| missing(MANIFEST))?;
     let manifest: Manifest =
         from_json(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
-    let form = manifest.burgeon.as_str();
-    if form != PROJECT_SCHEMA && !EARLIER.contains(&form) {
+    let version = manifest.burgeon.as_str();
+    if version != PROJECT_SCHEMA && !EARLIER.contains(&version) {
         return Err(ProjectError::Version { found: base::quoted(&manifest.burgeon) });
     }
     let document = entries.remove(DOCUMENT).ok_or_else(|| missing(DOCUMENT))?;
     let json = |source| ProjectError::Json { entry: DOCUMENT, source };
-    // Every form is read by its own structs and then brought forward; each has a file in fixtures/projects.
+    // Every version is read by its own structs and then brought forward; each has a file in fixtures/projects.
     let second = |v1: DocumentV1| DocumentV2::from(v1);
     let third = |v2: DocumentV2| DocumentV3::from(v2);
     let fifth = |v4: DocumentV4| DocumentV5::try_from(v4).map_err(ProjectError::Setting);
-    let file = match form {
+    let file = match version {
         "project/1" => fifth(third(second(from_json(&document).map_err(json)?)).into())?,
         "project/2" => fifth(third(from_json(&document).map_err(json)?).into())?,
         "project/3" => fifth(from_json::<DocumentV3>(&document).map_err(json)?.into())?,
@@ -245,7 +245,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
         _ => from_json(&document).map_err(json)?,
     };
     drop(document);
-    let earlier = matches!(form, "project/1" | "project/2");
+    let earlier = matches!(version, "project/1" | "project/2");
     let entry = |name: String| {
         let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
         png.ok_or(ProjectError::Missing(name))

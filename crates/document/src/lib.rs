@@ -10,7 +10,7 @@
 //! | `event` | [`Event`]: what happened; applied forwards and backwards |
 //! | `editor` | [`Editor`]: named, unlimited undo; a gesture is one step |
 //! | `file` | [`read_project`], [`write_project`]: a zip of versioned JSON |
-//! | `forms` | the structs of each form of the file |
+//! | `versions` | the structs of each version of the file |
 //! | `photo`, `picture` | [`Photo`]: what lies under the drawing; [`WornPicture`]: what organs wear |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
@@ -22,13 +22,13 @@ mod editor;
 mod event;
 mod fault;
 mod file;
-mod forms;
 mod ids;
 mod makers;
 mod names;
 mod photo;
 mod picture;
 mod state;
+mod versions;
 
 pub use archive::{ArchiveError, pack};
 pub use command::{

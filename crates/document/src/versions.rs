@@ -1,4 +1,4 @@
-//! The structs of each form of `document.json`, and how a form becomes the next.
+//! The structs of each version of `document.json`, and how a version becomes the next.
 
 use std::sync::Arc;
 
@@ -16,14 +16,14 @@ use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
 use crate::state::is_width;
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
 
-/// Form 6: as form 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so the structs
-/// of form 5 have them too.
+/// Version 6: as version 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so the structs
+/// of version 5 have them too.
 pub(crate) type DocumentV6 = DocumentV5;
 
-/// Form 5: as form 4, with the whole spec of a flower, and plants that stay where they stand.
+/// Version 5: as version 4, with the whole spec of a flower, and plants that stay where they stand.
 pub(crate) type DocumentV5 = DocumentV4<MakerV5>;
 
-/// Form 4: as form 3, and edits by hand.
+/// Version 4: as version 3, and edits by hand.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DocumentV4<M = MakerV3> {
@@ -49,10 +49,10 @@ pub(crate) struct PlantV4<M> {
     pub(crate) yaw_deg: f64,
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    /// From form 6 on; of strokes, see [`StrokeV1::material`].
+    /// From version 6 on; of strokes, see [`StrokeV1::material`].
     #[serde(default, skip_serializing_if = "is_bare", deserialize_with = "spec::through_json::read")]
     pub(crate) wear: Wear,
-    /// The names of its pictures `picture-NAME.png`; from form 6 on.
+    /// The names of its pictures `picture-NAME.png`; from version 6 on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) pictures: Vec<String>,
     pub(crate) maker: M,
@@ -214,7 +214,7 @@ pub(crate) struct SketchV3 {
     #[serde(default)]
     pub(crate) skin: SkinV1,
     pub(crate) strokes: Vec<StrokeV1>,
-    /// From below upwards; from form 6 on.
+    /// From below upwards; from version 6 on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) layers: Vec<Layer>,
     /// How `photo-ROW.png` lies under the drawing, with ROW the plant's.
@@ -343,7 +343,7 @@ impl From<DocumentV2> for DocumentV3 {
     }
 }
 
-/// Form 2: as form 1, and a photograph.
+/// Version 2: as version 1, and a photograph.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DocumentV2 {
@@ -418,13 +418,13 @@ pub(crate) struct StrokeV1 {
     pub(crate) shown: Option<StrokeClass>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) color: Option<[u8; 3]>,
-    /// From form 6 on.
+    /// From version 6 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) width: Option<f64>,
-    /// Name of its layer; from form 6 on.
+    /// Name of its layer; from version 6 on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) layer: Option<Arc<str>>,
-    /// From form 6 on.
+    /// From version 6 on.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "spec::through_json::read")]
     pub(crate) material: Option<OrganMaterial>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -501,7 +501,7 @@ fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
     let edits = |e: &Editor| e.document().plants()[0].settings().edits.clone();
     assert_eq!((edits(&editor).len(), &edits(&editor)[0].edit), (1, &cut(0.25)));
     assert!(editor.run(ShapeCommand::Remove(vec![1]).of(id)).is_err());
-    for name in ["shape-remove", "shape-change", "shape-leave", "shape-prune", "shape-prune"] {
+    for name in ["shape-remove", "shape-change", "shape-leave", "prune", "prune"] {
         assert_eq!(editor.undo(), Some(name));
     }
     assert!(edits(&editor).is_empty());

@@ -34,19 +34,7 @@ impl ShapeCommand {
 
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::Add(edit) => match &**edit {
-                HandEdit::Rotate { .. } => "shape-rotate",
-                HandEdit::Move { .. } => "shape-move",
-                HandEdit::Copy { .. } => "shape-copy",
-                HandEdit::Prune { .. } => "shape-prune",
-                HandEdit::Regrow { .. } => "shape-regrow",
-                HandEdit::SketchBranch { .. } => "shape-sketch",
-                HandEdit::Brush { .. } => "shape-brush",
-                HandEdit::Silhouette { .. } => "shape-silhouette",
-                HandEdit::Grow { .. } => "shape-grow",
-                HandEdit::LeafDensity { .. } => "shape-leaves",
-                _ => "shape-change",
-            },
+            Self::Add(edit) => edit.word(),
             Self::Replace(..) => "shape-change",
             Self::Leave(..) => "shape-leave",
             Self::Remove(_) => "shape-remove",

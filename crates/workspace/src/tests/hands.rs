@@ -105,7 +105,7 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     assert!(turned.len() == foresaw.len() && worst < 1e-9, "as it was carried: {worst}");
     assert!(after["item"]["digest"].as_str().is_some_and(|d| d.len() == 32));
     assert_eq!(after["item"]["edits"][0]["done"], true);
-    assert_eq!(s.undo(), Some("shape-rotate"));
+    assert_eq!(s.undo(), Some("rotate"));
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
     // Escape leaves nothing behind.
     gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
