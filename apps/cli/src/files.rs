@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
     CloudFormat, DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, Packing, PngCache,
-    ReadDrawing, obj_files, usd_files, warn_of_wind, write_glb_packed, write_glb_with, write_mtg,
+    ReadDrawing, StructureFormat, obj_files, usd_files, warn_of_wind, write_glb_packed, write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
 use burgeon::{Report, Spec, Warning};
 use serde::Deserialize;
 
-use crate::args::{AxesArgs, PlantFormat, StructureFormat, UnitWord, UpWord};
+use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 use crate::output::{self, Outputs};
@@ -371,10 +371,7 @@ pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
     match extension(path).and_then(PlantFormat::from_extension) {
         Some(structure @ PlantFormat::Structure(_)) => Ok(structure),
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
-        None => Err(Failure::at(
-            path,
-            "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz, .mtg or .opf; end the name with one of them",
-        )),
+        None => Err(Failure::at(path, format!("{}; end the name with one of them", PlantFormat::endings()))),
     }
 }
 
@@ -477,16 +474,12 @@ pub(crate) fn write_structure(
     args: &AxesArgs,
 ) -> Outcome {
     let axes = field_axes(args);
-    outputs.write(by, path, |out| match format {
-        StructureFormat::Mtg => write_mtg(plant, &axes, out),
-        StructureFormat::Opf => burgeon::write_opf(plant, &axes, out),
-    })
+    outputs.write(by, path, |out| burgeon::write_structure(plant, format, &axes, out))
 }
 
 /// Writes a plant's cylinders, with +Z up unless `args` say otherwise.
 pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
-    let axes = field_axes(args);
-    outputs.write("--qsm", path, |out| burgeon::formats::write_qsm(plant, &axes, out))
+    write_structure(outputs, ("--qsm", path), plant, StructureFormat::Qsm, args)
 }
 
 // The programs that read MTG, OPF and QSM files have Z upwards.

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::formats::{ExportSpec, ModelFormat, StructureFormat};
 use burgeon::glam::DVec3;
 use burgeon::scan::{FoundTree, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
 use serde::Serialize;
 
-use crate::args::{PlantFormat, ScanArgs, Seen, StructureFormat, UpWord};
+use crate::args::{PlantFormat, ScanArgs, Seen, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::materials::Materials;

@@ -47,7 +47,7 @@ fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
     let folder = batch && args.output.is_some();
     given.only_if(folder, &["format"], "folders of models", "-o names none")?;
     let format = match &args.output {
-        Some(_) if batch => Some(args.format.format()),
+        Some(_) if batch => Some(args.format.0),
         Some(path) => Some(files::plant_writable(path)?),
         None => None,
     };
@@ -89,15 +89,8 @@ impl<'a> Job<'a> {
         let model = |e: &str| PlantFormat::from_extension(e).is_some();
         let picture = |e: &str| e.eq_ignore_ascii_case("png");
         let table = |e: &str| e.eq_ignore_ascii_case("csv");
-        let output = self.args.output.as_deref().map(|p| {
-            names_folder(
-                p,
-                "-o",
-                model,
-                "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz, .mtg or .opf",
-                many,
-            )
-        });
+        let output =
+            self.args.output.as_deref().map(|p| names_folder(p, "-o", model, &PlantFormat::endings(), many));
         let png = self
             .args
             .png
@@ -408,10 +401,10 @@ impl<'a> Job<'a> {
     }
 
     fn target(&self, name: &str) -> Target {
-        let extension = self.args.format.extension();
+        let extension = self.args.format.0.extension();
         let file = |folder: &PathBuf, extension: &str| folder.join(format!("{name}.{extension}"));
         Target {
-            plant: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.format())),
+            plant: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.0)),
             png: self.args.png.as_ref().map(|f| file(f, "png")),
             qsm: self.args.qsm.as_ref().map(|f| file(f, "csv")),
             of_many: true,

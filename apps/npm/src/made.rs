@@ -91,7 +91,12 @@ impl Made {
             ("glb", Some(level)) => formats::write_glb(&level.model, &mut bytes),
             ("mtg", _) => formats::write_mtg(&self.plant, &ExportSpec::default(), &mut bytes),
             #[cfg(feature = "makers")]
-            ("opf", _) => burgeon::write_opf(&self.plant, &ExportSpec::default(), &mut bytes),
+            ("opf", _) => burgeon::write_structure(
+                &self.plant,
+                formats::StructureFormat::Opf,
+                &ExportSpec::default(),
+                &mut bytes,
+            ),
             (other, _) => {
                 let known = if cfg!(feature = "makers") { "glb, mtg, opf" } else { "glb, mtg" };
                 return Err(Refused::choice("files", other, known));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
+use burgeon::formats::StructureFormat;
 use burgeon::plant::Organ;
 use burgeon::{SceneError, Seed, SurveySpec, Surveyed};
 use pyo3::exceptions::PyKeyError;
@@ -191,7 +192,7 @@ impl RawPlant {
         cloud(py, made.map_err(|e| refused(py, &e))?)
     }
 
-    /// The structure as a file: `mtg`, `opf` or `qsm`.
+    /// The structure as a file, in one of the words of [`StructureFormat`].
     fn structure<'py>(
         &self,
         py: Python<'py>,
@@ -200,12 +201,11 @@ impl RawPlant {
         up: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let (spec, held) = (axes(unit, up)?, Arc::clone(&self.0));
-        match format {
-            "mtg" => bytes_of(py, move |bytes| burgeon::formats::write_mtg(held.plant(), &spec, bytes)),
-            "opf" => bytes_of(py, move |bytes| burgeon::write_opf(held.plant(), &spec, bytes)),
-            "qsm" => bytes_of(py, move |bytes| burgeon::formats::write_qsm(held.plant(), &spec, bytes)),
-            other => Err(beyond("format", format!("{other:?}"), "mtg, opf or qsm")),
-        }
+        let Some(wanted) = StructureFormat::from_word(format) else {
+            let known = StructureFormat::ALL.map(StructureFormat::word).join(", ");
+            return Err(beyond("format", format!("{format:?}"), &known));
+        };
+        bytes_of(py, move |bytes| burgeon::write_structure(held.plant(), wanted, &spec, bytes))
     }
 
     /// The plant after more edits by hand: the list of edits of an edits file.

@@ -1,5 +1,8 @@
 //! What kind of file it is: by its name, by its first bytes.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// The file formats that hold scans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CloudFormat {
@@ -200,5 +203,86 @@ impl ModelFormat {
     /// Files of this format have room for how wind moves each vertex.
     pub const fn carries_wind(self) -> bool {
         matches!(self, Self::Glb | Self::Gltf | Self::Usda | Self::Usdz)
+    }
+}
+
+/// The file formats that hold the structure of a plant, as text; written only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StructureFormat {
+    /// The structure of each plant as a multiscale tree graph.
+    Mtg,
+    /// The structure of each plant with the meshes of its organs, as Open Plant Format.
+    Opf,
+    /// The structure of each plant as a table of cylinders.
+    Qsm,
+}
+
+/// What is known of a format of structure.
+struct StructureRow {
+    word: &'static str,
+    extension: &'static str,
+    /// Files are told to be of it by their extension.
+    is_named: bool,
+    about: &'static str,
+}
+
+impl StructureFormat {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::Mtg, Self::Opf, Self::Qsm];
+
+    const fn row(self) -> StructureRow {
+        let (word, extension, is_named, about) = match self {
+            Self::Mtg => ("mtg", "mtg", true, "Multiscale tree graph: axes, nodes and organs as text"),
+            Self::Opf => {
+                ("opf", "opf", true, "Open Plant Format: axes, internodes and organs with their meshes")
+            }
+            // A table may be anything.
+            Self::Qsm => ("qsm", "csv", false, "Quantitative structure model: a table of cylinders"),
+        };
+        StructureRow { word, extension, is_named, about }
+    }
+
+    /// The word by which it is asked for.
+    pub const fn word(self) -> &'static str {
+        self.row().word
+    }
+
+    /// How the names of its files end, without the dot.
+    pub const fn extension(self) -> &'static str {
+        self.row().extension
+    }
+
+    /// What it is, in a line.
+    pub const fn about(self) -> &'static str {
+        self.row().about
+    }
+
+    /// Organs are written with their meshes.
+    pub const fn has_meshes(self) -> bool {
+        matches!(self, Self::Opf)
+    }
+
+    /// The format of a word, such as `mtg`.
+    ///
+    /// ```
+    /// use formats::StructureFormat;
+    /// assert_eq!(StructureFormat::from_word("qsm"), Some(StructureFormat::Qsm));
+    /// assert_eq!(StructureFormat::from_word("csv"), None);
+    /// ```
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|f| f.word() == word)
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for; none for that of tables, which may hold
+    /// anything.
+    ///
+    /// ```
+    /// use formats::StructureFormat;
+    /// assert_eq!(StructureFormat::from_extension("MTG"), Some(StructureFormat::Mtg));
+    /// assert_eq!(StructureFormat::from_extension("csv"), None);
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|f| f.row().is_named && f.row().extension.eq_ignore_ascii_case(extension))
     }
 }

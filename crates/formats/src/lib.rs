@@ -1,8 +1,8 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
 //! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
-//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_mtg`],
-//! [`write_opf`], [`write_qsm`] -> bytes.
+//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_structure`]
+//! -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -20,7 +20,7 @@ mod summary;
 pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
-pub use kind::{CloudFormat, DrawingFormat, ModelFormat};
+pub use kind::{CloudFormat, DrawingFormat, ModelFormat, StructureFormat};
 pub use leaves::{
     GrowthEntry, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadGrowth, ReadMarks,
     ReadProfile, ReadProfiles, ReadRays, is_rays, marks_template, read_growth, read_leaf_file, read_marks,
@@ -32,5 +32,5 @@ pub use model::{
     write_glb_levels, write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with,
     write_model, write_ply, write_png, write_stl,
 };
-pub use plant::{write_mtg, write_opf, write_qsm};
+pub use plant::{write_mtg, write_opf, write_qsm, write_structure};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

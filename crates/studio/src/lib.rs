@@ -68,7 +68,7 @@ pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surf
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
-pub use structure::write_opf;
+pub use structure::write_structure;
 pub use survey::{
     NOTHING, PARTS, Stood, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey,
     survey_stand, triangle_labels,

@@ -1,16 +1,22 @@
-//! The structure of a plant with the meshes of its organs, as a file.
+//! The structure of a plant as a file, with the meshes of its organs where the format has them.
 
 use std::io::Write;
 
-use formats::{ExportSpec, WriteError, write_opf as write};
+use formats::{ExportSpec, StructureFormat, WriteError};
 use plant::Plant;
 use skin::{SkinSpec, shape_meshes};
 
-/// Writes a plant as Open Plant Format: its structure, and its organs as [`skin::skin`] draws them with the usual
-/// fineness. See [`formats::write_opf`].
+/// Writes the structure of a plant; where the format has meshes, its organs as [`skin::skin`] draws them with the usual
+/// fineness. See [`formats::write_structure`].
 ///
 /// # Errors
 /// [`WriteError::Io`].
-pub fn write_opf(plant: &Plant, spec: &ExportSpec, out: impl Write) -> Result<(), WriteError> {
-    write(plant, &shape_meshes(plant, &SkinSpec::default()), spec, out)
+pub fn write_structure(
+    plant: &Plant,
+    format: StructureFormat,
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    let shapes = if format.has_meshes() { shape_meshes(plant, &SkinSpec::default()) } else { Vec::new() };
+    formats::write_structure(plant, &shapes, format, spec, out)
 }

@@ -1,7 +1,7 @@
 //! Exports: the scene or one plant, in every format that the command line writes.
 
 use burgeon::document::{self, Document, DocumentPlant, PlantId};
-use burgeon::formats::{self, ExportSpec, ModelFormat, PngCache, obj_files, usd_files};
+use burgeon::formats::{self, ExportSpec, ModelFormat, PngCache, StructureFormat, obj_files, usd_files};
 use burgeon::mesh::{Model, Standing};
 use burgeon::plant::Plant;
 use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing};
@@ -34,16 +34,13 @@ pub enum ExportFormat {
     Ply,
     /// Bare triangles.
     Stl,
-    /// The structure of each plant as a multiscale tree graph.
-    Mtg,
-    /// The structure of each plant with the meshes of its organs, as Open Plant Format.
-    Opf,
-    /// The structure of each plant as a table of cylinders.
-    Qsm,
     /// The current drawing in our JSON.
     Json,
     /// The current drawing as SVG, with its layers.
     Svg,
+    /// The structure of each plant.
+    #[serde(untagged)]
+    Structure(StructureFormat),
 }
 
 impl ExportFormat {
@@ -54,9 +51,7 @@ impl ExportFormat {
             Self::Obj => ModelFormat::Obj,
             Self::Ply => ModelFormat::Ply,
             Self::Stl => ModelFormat::Stl,
-            Self::Mtg => return Err(WorkspaceError::Format("mtg")),
-            Self::Opf => return Err(WorkspaceError::Format("opf")),
-            Self::Qsm => return Err(WorkspaceError::Format("qsm")),
+            Self::Structure(format) => return Err(WorkspaceError::Format(format.word())),
             Self::Json => return Err(WorkspaceError::Format("json")),
             Self::Svg => return Err(WorkspaceError::Format("svg")),
         })
@@ -204,18 +199,11 @@ fn export(
         scene
     };
     let made = made(scene, document, only, run)?;
-    let structures = made.iter().map(|p| (p.id(), scene.get(p.id()).and_then(|made| made.plant)));
-    match wanted.format {
-        ExportFormat::Mtg => {
-            return structure(structures, "mtg", |plant, out| formats::write_mtg(plant, &wanted.spec(), out));
-        }
-        ExportFormat::Opf => {
-            return structure(structures, "opf", |plant, out| burgeon::write_opf(plant, &wanted.spec(), out));
-        }
-        ExportFormat::Qsm => {
-            return structure(structures, "csv", |plant, out| formats::write_qsm(plant, &wanted.spec(), out));
-        }
-        _ => {}
+    if let ExportFormat::Structure(format) = wanted.format {
+        let plants = made.iter().map(|p| (p.id(), scene.get(p.id()).and_then(|made| made.plant)));
+        return structure(plants, format.extension(), |plant, out| {
+            burgeon::write_structure(plant, format, &wanted.spec(), out)
+        });
     }
     let (format, spec) = (wanted.format.model()?, wanted.spec());
     let levels = wanted.levels.clamp(1, MOST_LEVELS);

@@ -219,6 +219,7 @@ fn bytes(mesh: &TriMesh) -> u64 {
 #[cfg(test)]
 mod tests {
     use burgeon::document::{PlantCommand, SceneCommand};
+    use burgeon::formats::StructureFormat;
     use burgeon::glam::DVec3;
     use serde_json::Value;
 
@@ -319,7 +320,10 @@ mod tests {
         let vertices = |v: &ExportView| v.parts.iter().map(|p| p.vertices).sum::<u64>();
         assert_eq!(vertices(&stl), 3 * told(&stl)[0]);
         assert_eq!(vertices(&ply), vertices(&glb));
-        let mtg = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
+        let mtg = ExportRequest {
+            format: ExportFormat::Structure(StructureFormat::Mtg),
+            ..ExportRequest::default()
+        };
         assert!(matches!(s.preview_export(&mtg, 0, &Run::plain()), Err(WorkspaceError::Format("mtg"))));
     }
 }

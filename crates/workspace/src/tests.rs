@@ -140,7 +140,10 @@ fn every_format_opens_and_a_bad_file_changes_nothing() {
         let view = look(&mut other);
         assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
         assert!(other.file(ExportFormat::Glb).starts_with(b"glTF"));
-        let structure = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
+        let structure = ExportRequest {
+            format: ExportFormat::Structure(formats::StructureFormat::Mtg),
+            ..ExportRequest::default()
+        };
         assert!(matches!(other.export(&structure, &run()), Err(WorkspaceError::Format("mtg"))));
     }
     assert!(s.file(ExportFormat::Obj).starts_with(b"PK"));

@@ -1,12 +1,14 @@
 //! Options that commands share, and their words.
 
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
-use burgeon::formats::{ModelFormat, Packing};
+use burgeon::formats::{ModelFormat, Packing, StructureFormat};
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
 use burgeon::spec::Spec;
 use burgeon::{Seed, Unit, UpAxis};
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
 /// Options of every command.
@@ -264,47 +266,29 @@ impl FormatWord {
     }
 }
 
-/// What a plant is written as.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum PlantFormatWord {
-    /// Binary glTF: one file with textures and materials
-    Glb,
-    /// Wavefront OBJ with its material file and textures beside it
-    Obj,
-    /// PLY: one mesh with colours
-    Ply,
-    /// Universal Scene Description as text, with textures beside it
-    Usda,
-    /// Universal Scene Description with its textures in one file
-    Usdz,
-    /// Multiscale tree graph: axes, nodes and organs as text
-    Mtg,
-    /// Open Plant Format: axes, internodes and organs with their meshes
-    Opf,
-}
+/// What a plant is written as, by the ending of its file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlantFormatWord(pub(crate) PlantFormat);
 
 impl PlantFormatWord {
-    pub(crate) const fn format(self) -> PlantFormat {
-        match self {
-            Self::Glb => PlantFormat::Model(ModelFormat::Glb),
-            Self::Obj => PlantFormat::Model(ModelFormat::Obj),
-            Self::Ply => PlantFormat::Model(ModelFormat::Ply),
-            Self::Usda => PlantFormat::Model(ModelFormat::Usda),
-            Self::Usdz => PlantFormat::Model(ModelFormat::Usdz),
-            Self::Mtg => PlantFormat::Structure(StructureFormat::Mtg),
-            Self::Opf => PlantFormat::Structure(StructureFormat::Opf),
-        }
+    pub(crate) const GLB: Self = Self(PlantFormat::Model(ModelFormat::Glb));
+}
+
+impl ValueEnum for PlantFormatWord {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<PlantFormatWord>> =
+            LazyLock::new(|| PlantFormat::written().into_iter().map(PlantFormatWord).collect());
+        &ALL
     }
 
-    pub(crate) const fn extension(self) -> &'static str {
-        match self {
-            Self::Glb => "glb",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-            Self::Usda => "usda",
-            Self::Usdz => "usdz",
-            Self::Mtg => "mtg",
-            Self::Opf => "opf",
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self.0 {
+            PlantFormat::Model(model) => {
+                FormatWord::value_variants().iter().find(|f| f.format() == model)?.to_possible_value()
+            }
+            PlantFormat::Structure(structure) => {
+                Some(PossibleValue::new(structure.extension()).help(structure.about()))
+            }
         }
     }
 }
@@ -372,37 +356,45 @@ pub(crate) enum PlantFormat {
     Structure(StructureFormat),
 }
 
-/// What the structure of a plant is written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StructureFormat {
-    /// A multiscale tree graph.
-    Mtg,
-    /// Open Plant Format.
-    Opf,
-}
-
-impl StructureFormat {
-    pub(crate) const fn word(self) -> &'static str {
-        match self {
-            Self::Mtg => "MTG",
-            Self::Opf => "OPF",
-        }
-    }
-}
-
 impl PlantFormat {
     /// The axes and the unit are the format's own.
     pub(crate) const fn fixed_axes(self) -> bool {
         matches!(self, Self::Model(format) if format.fixed_axes())
     }
 
-    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
-        for structure in [StructureFormat::Mtg, StructureFormat::Opf] {
-            if extension.eq_ignore_ascii_case(structure.word()) {
-                return Some(Self::Structure(structure));
-            }
+    /// How names of its files end, without the dot.
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Model(model) => FormatWord::value_variants()
+                .iter()
+                .find(|f| f.format() == model)
+                .map_or("stl", |f| f.extension()),
+            Self::Structure(structure) => structure.extension(),
         }
-        ModelFormat::from_extension(extension).map(Self::Model)
+    }
+
+    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
+        StructureFormat::from_extension(extension)
+            .map(Self::Structure)
+            .or_else(|| ModelFormat::from_extension(extension).map(Self::Model))
+    }
+
+    /// All that are told by the ending of a file, but bare triangles.
+    fn written() -> Vec<Self> {
+        let models = FormatWord::value_variants().iter().map(|f| Self::Model(f.format()));
+        let structures = StructureFormat::ALL
+            .into_iter()
+            .filter(|f| Self::from_extension(f.extension()) == Some(Self::Structure(*f)));
+        models.chain(structures.map(Self::Structure)).collect()
+    }
+
+    /// How files of plants may end, for messages.
+    pub(crate) fn endings() -> String {
+        let structures = Self::written().into_iter().map(Self::extension);
+        let mut all: Vec<&str> = structures.collect();
+        all.insert(3, "stl");
+        let last = all.pop().unwrap_or_default();
+        format!("plants are written as .{} or .{last}", all.join(", ."))
     }
 }
 

@@ -25,7 +25,7 @@ pub(crate) struct SketchArgs {
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "split", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the files in a folder.
-    #[arg(long, value_enum, default_value_t = PlantFormatWord::Glb)]
+    #[arg(long, value_enum, default_value_t = PlantFormatWord::GLB)]
     pub(crate) format: PlantFormatWord,
     /// Also write the branches as cylinders, one a row, as `TreeQSM` has them. For several drawings a folder.
     #[arg(long, value_name = "FILE.csv")]

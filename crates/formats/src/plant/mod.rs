@@ -8,11 +8,46 @@ pub use mtg::write_mtg;
 pub use opf::write_opf;
 pub use qsm::write_qsm;
 
+use std::io::Write;
+
 use base::{Unit, UpAxis};
 use glam::DVec3;
+use mesh::TriMesh;
 use plant::{AxisId, NodeId, Plant};
 
-use crate::ExportSpec;
+use crate::{ExportSpec, StructureFormat, WriteError};
+
+/// Writes the structure of a sound plant. `shapes`: the meshes of its shapes, which a format with meshes
+/// ([`StructureFormat::has_meshes`]) writes with its organs ([`write_opf`]); the others need none. Cost: linear.
+///
+/// # Errors
+/// [`WriteError::Io`].
+///
+/// ```
+/// use formats::{ExportSpec, StructureFormat, write_structure};
+/// use glam::DVec3;
+/// let mut p = plant::Plant::default();
+/// p.add_axis(plant::AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+/// for format in StructureFormat::ALL {
+///     let mut out = Vec::new();
+///     write_structure(&p, &[], format, &ExportSpec::default(), &mut out)?;
+///     assert!(!out.is_empty());
+/// }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn write_structure(
+    plant: &Plant,
+    shapes: &[TriMesh],
+    format: StructureFormat,
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    match format {
+        StructureFormat::Mtg => write_mtg(plant, spec, out),
+        StructureFormat::Opf => write_opf(plant, shapes, spec, out),
+        StructureFormat::Qsm => write_qsm(plant, spec, out),
+    }
+}
 
 /// A length in metres as the file has it.
 fn length(spec: &ExportSpec, metres: f64) -> f64 {

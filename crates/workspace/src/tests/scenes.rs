@@ -106,8 +106,8 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     let whole = s.exported(&all).len();
     s.ask(r#"{"plant":[3,{"hide":true}]}"#).unwrap();
     assert!(s.exported(&all).len() < whole);
-    assert!(s.file(ExportFormat::Mtg).len() > 200);
-    let opf = String::from_utf8(s.file(ExportFormat::Opf)).unwrap();
+    assert!(s.file(ExportFormat::Structure(formats::StructureFormat::Mtg)).len() > 200);
+    let opf = String::from_utf8(s.file(ExportFormat::Structure(formats::StructureFormat::Opf))).unwrap();
     assert!(opf.contains("<opf ") && opf.contains("class=\"Leaf\"") && opf.trim_end().ends_with("</opf>"));
     s.ask(r#"{"scene":{"remove":[2]}}"#).unwrap();
     assert_eq!(scene(&mut s)[0].1, before[0].1, "its own leaf again");
