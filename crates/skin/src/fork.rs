@@ -247,9 +247,13 @@ impl Bearer<'_> {
         if plane(k, low)?.0 < 0.0 || plane(k, high)?.0 > 0.0 {
             return None;
         }
+        // On which side of the plane at u of the piece p lies: the sign of a square function of u.
+        let (from, to) = (p - self.spine.p[k], self.spine.p[k + 1] - self.spine.p[k]);
+        let (a, turn) = (self.planes[k], self.planes[k + 1] - self.planes[k]);
+        let [c0, c1, c2] = [from.dot(a), from.dot(turn) - to.dot(a), to.dot(turn)];
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if plane(k, middle)?.0 > 0.0 {
+            if c0 + middle * (c1 - middle * c2) > 0.0 {
                 low = middle;
             } else {
                 high = middle;
