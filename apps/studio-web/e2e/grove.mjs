@@ -353,8 +353,40 @@ async function fingers({ page, url, shot }) {
     await page.keyboard.press('Escape');
     await page.waitForTimeout(200);
   }
+  await page.keyboard.press('v');
+  await page.keyboard.press('Tab');
+  await page.locator('.card').first().waitFor();
+  await look('the card of a stroke');
+  await page.keyboard.press('Escape');
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel');
+  await settled(page);
+  await look('the panel of a tree');
+  await page.click('.scene .fold');
+  await look('the list of the scene');
+  await page.click('.scene .fold');
+  // On foot by a finger.
+  await page.keyboard.press('n');
+  await page.locator('#b-walk-stick').waitFor();
+  await look('the stick');
+  const eye = () => page.evaluate(() => JSON.parse(document.querySelector('.view').dataset.eye).position);
+  const from = await eye();
+  const box = await page.locator('#b-walk-stick').boundingBox();
+  const at = { x: box.x + box.width / 2, y: box.y + box.height * 0.1, id: 1 };
+  const client = await page.context().newCDPSession(page);
+  await client.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [at] });
+  await page.waitForTimeout(1500);
+  await client.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  await page.waitForTimeout(500);
+  const to = await eye();
+  assert.ok(Math.hypot(...to.map((x, i) => x - from[i])) > 0.05, `the stick leads: ${from} to ${to}`);
+  await shot('grove-walk');
+  await page.click('#b-walk-end');
+  await page.waitForFunction(() => document.body.dataset.walk === '');
+  assert.equal(await page.locator('.walkpad').count(), 0);
 }
 
+const TABLET = { viewport: { width: 820, height: 1180 }, hasTouch: true };
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
 /** A large tree is seen before it is whole, and what is seen at the end is the whole. */
@@ -437,4 +469,5 @@ export const grove = [
   ['grove: settings of a drawing', settings, WIDE],
   ['grove: anybody can use it', anybody, WIDE],
   ['grove: fingers on a phone', fingers, PHONE],
+  ['grove: fingers on a tablet', fingers, TABLET],
 ];

@@ -709,6 +709,13 @@ async function own({ page, url, shot }) {
   await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
   const plain = await settled(page);
   await slide(page, 'keep', 0.3);
+  // What the head changed goes back to what the species has.
+  const back = page.locator('.maker-head .f-reset');
+  assert.equal(await back.count(), 1, 'one value is another than at first');
+  await back.click();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  assert.equal(await back.count(), 0);
+  await slide(page, 'keep', 0.3);
   const mine = await changed(page, plain, 'fewer leaves');
   await page.click('#b-own-keep');
   await page.locator('dialog .field').fill('Thin hazel');
@@ -740,6 +747,19 @@ async function own({ page, url, shot }) {
   await page.waitForFunction(() => !document.querySelector('[data-own]'));
   await page.locator('.note button', { hasText: 'Undo' }).click();
   await page.locator('[data-own="Thin hazel"]').waitFor();
+  // Flowers have presets of their own.
+  await add(page, 'flower');
+  await until(page, 'triangles', ['above', 1000], 'a flower has opened');
+  const lily = await settled(page);
+  assert.equal(await page.locator('[data-own]').count(), 0, 'none of trees');
+  await page.click('#b-own-keep');
+  await page.locator('dialog .field').fill('My lily');
+  await page.keyboard.press('Enter');
+  await page.locator('[data-own="My lily"]').waitFor();
+  await page.click('[data-flower=tulip]');
+  const tulip = await changed(page, lily, 'a tulip');
+  await page.click('[data-own="My lily"]');
+  assert.notEqual(await changed(page, tulip, 'the lily again'), tulip);
   // Another person opens the file.
   await page.click('#b-fresh');
   await until(page, 'triangles', ['is', 0], 'a new document');

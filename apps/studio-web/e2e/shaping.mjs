@@ -61,7 +61,7 @@ async function prune({ page, url, shot }) {
   await page.waitForTimeout(900);
   await shot('shape-prune');
   await unfold(page);
-  assert.match(await page.locator('.edits li').textContent(), /Pruned−\d+ branches/);
+  assert.match(await page.locator('.edits li').textContent(), /prune−\d+ branches/);
   assert.match(await page.locator('#b-undo').getAttribute('title'), /prune/);
   // Left out, done again, removed; each is a step.
   await page.click('[data-key=eye0]');
@@ -202,7 +202,7 @@ async function draw({ page, url, shot }) {
   await page.waitForTimeout(800);
   await shot('shape-sketch');
   await unfold(page);
-  assert.match(await page.locator('.edits li').textContent(), /Drawn branch\+\d+ branches/);
+  assert.match(await page.locator('.edits li').textContent(), /draw a branch\+\d+ branches/);
 }
 
 async function brush({ page, url, shot }) {

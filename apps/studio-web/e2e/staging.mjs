@@ -1,6 +1,6 @@
 // Plants shown: the stage, the camera, pictures and films.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { inflateRawSync } from 'node:zlib';
 import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
@@ -451,10 +451,12 @@ async function lookedAt(page) {
     const rows = [...document.querySelectorAll('#b-exportview tr[data-part]')];
     const { seen } = document.querySelector('#b-exportview').dataset;
     const file = document.querySelector('#b-exportview [data-figure=file]').dataset.value;
+    const written = document.querySelector('#b-exportview [data-figure=written]')?.dataset.value;
     return {
       parts: Object.fromEntries(rows.map((r) => [r.dataset.part, of(r)])),
       seen: Number(seen),
       file: Number(file),
+      written: written && Number(written),
     };
   });
 }
@@ -532,6 +534,17 @@ async function preview({ page, url, shot }) {
   const level = unzipped(levels.bytes, 'plant_LOD2.glb');
   assert.equal(coarse.parts.all.triangles, heldBy(level).triangles);
   assert.equal(coarse.file, level.length);
+  assert.equal(await page.inputValue('#b-exported-levels'), '3', 'what is looked at is written');
+  assert.equal(coarse.written, levels.bytes.length, 'all levels together');
+  // All in one file, with views from all sides.
+  await page.check('#b-exported-impostor');
+  await page.selectOption('#b-exported-files', 'one');
+  const joined = await lookedAt(page);
+  await page.click('#b-exportview-go');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
+  const { size } = statSync(await download.path());
+  assert.equal(joined.written, size, 'levels and views in one file');
+  await page.uncheck('#b-exported-impostor');
   // Formats without wind say so; a zip is counted as one.
   await page.selectOption('[data-exported=format]', 'obj');
   await slide(page, 'level', 0);

@@ -361,18 +361,20 @@ export class App implements Page {
   /** Throws where the browser has no WebGL 2. */
   private makeView(): PlantView {
     const { session } = this;
-    const view = new PlantView(t('view.label'));
-    view.onFrontChange = (on) => this.show.press('front', on);
-    view.onPlaceBegin = () => session.begin('place');
-    view.onPlace = (plant, position, yaw_deg, scale) =>
-      session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] });
-    view.onPlaceEnd = () => session.commit();
-    view.onObstacle = (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] });
-    view.onPick = (plant) => session.select(plant);
-    view.onContext = (lost) => {
-      if (lost) note(t('note.context'), 'bad');
-    };
-    return view;
+    return new PlantView(t('view.label'), {
+      pick: (plant) => session.select(plant),
+      drawn: () => this.shaping?.drawn(),
+      front: (on) => this.show.press('front', on),
+      walked: (mode) => this.scenery.walked(mode),
+      context: (lost) => {
+        if (lost) note(t('note.context'), 'bad');
+      },
+      placeBegin: () => session.begin('place'),
+      place: (plant, position, yaw_deg, scale) =>
+        session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] }),
+      placeEnd: () => session.commit(),
+      obstacle: (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] }),
+    });
   }
 
   private makeShaping(view: PlantView): Shaping {

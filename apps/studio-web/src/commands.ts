@@ -14,7 +14,7 @@ import type { Shaping } from './shaping';
 import type { Sheet, Tool } from './sheet/sheet';
 import type { TextKey } from './text';
 import type { Theme } from './theme';
-import { CLIMB_KEYS, SHAPE_TOOLS, SHEET_TOOLS } from './tools';
+import { CLIMB_KEYS, isBrush, rowOf, SHAPE_WORDS, SHEET_TOOLS } from './tools';
 import { SIDES } from './view/camera';
 import { GUIDES } from './view/guides';
 import { PRESETS } from './view/moods';
@@ -81,7 +81,7 @@ const hasLayer = (p: Page): boolean => p.panels.heldLayer !== undefined;
 const isPicking = (p: Page): boolean => p.shaping?.word === 'pick';
 const hasView = (p: Page): boolean => p.view !== undefined;
 const isMoving = (p: Page): boolean => p.gizmo === 'translate';
-const isBrushing = (p: Page): boolean => p.shaping?.word === 'brush' || p.shaping?.word === 'leaves';
+const isBrushing = (p: Page): boolean => isBrush(p.shaping?.word);
 /** How much the brackets change a brush. */
 const BRUSH_STEP = 1.15;
 /** How far an arrow moves strokes, pixels; with Shift five times as far. */
@@ -169,10 +169,10 @@ const TABLE = [
   { id: 'place-size', label: 'place.scale', keys: 'S', when: hasView, run: (p) => p.place('scale') },
   { id: 'place-x', keys: 'X', when: isMoving, run: (p) => p.bind('x') },
   { id: 'place-z', keys: 'Z', when: isMoving, run: (p) => p.bind('z') },
-  ...SHAPE_TOOLS.map(([word, keys]) => ({
+  ...SHAPE_WORDS.map((word) => ({
     id: `shape-${word}` as const,
     label: `shape.${word}` as const,
-    keys,
+    keys: rowOf(word).keys,
     shaping: true as const,
     run: (p: Page) => p.shaping?.take(word),
   })),

@@ -1,21 +1,8 @@
 /** The list of what was done to a plant by hand: what came of each edit, left out, taken back. */
 import { number, t, tOf } from './text';
-import { button, el, icon, type IconName } from './ui';
+import { iconOfEdit } from './tools';
+import { button, el, icon } from './ui';
 import type { EditReport, PlantState, PlantView as Seen, ShapeCommand } from './wire';
-
-/** The step of undo that an edit makes is called by the same word. */
-const EDIT_ICONS: Record<string, IconName> = {
-  rotate: 'rotate',
-  move: 'slide',
-  copy: 'copy',
-  prune: 'prune',
-  regrow: 'regrow',
-  'sketch-branch': 'branch',
-  brush: 'brush',
-  silhouette: 'silhouette',
-  'leaf-density': 'leaf',
-  grow: 'tree',
-};
 
 export class EditList {
   readonly element = el('section', { class: 'edits' });
@@ -48,7 +35,7 @@ export class EditList {
       const what = el(
         'span',
         { class: 'what' },
-        el('span', {}, name),
+        el('span', { class: 'name' }, name),
         el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''),
       );
       const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () =>
@@ -64,7 +51,7 @@ export class EditList {
           'data-edit': op,
           title: report && !off ? `${name}: ${said(report)}` : name,
         },
-        icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')),
+        icon(bad ? 'warning' : iconOfEdit(op)),
         what,
         eye,
         gone,

@@ -1,26 +1,22 @@
 /** The export dialogue: what for, which format, how fine. */
-import type { ExportFormat, ExportRequest, MakerWord } from './wire';
+import type { ExportFormat, ExportRequest, MakerWord, StructureFormat } from './wire';
 import { t, type TextKey } from './text';
 import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
 export type ExportOptions = Omit<ExportRequest, 'format'>;
-const FORMATS: readonly Target[] = [
-  'glb',
-  'usda',
-  'obj',
-  'ply',
-  'stl',
-  'mtg',
-  'opf',
-  'qsm',
-  'png',
-  'svg',
-  'json',
-];
+const MODELS = ['glb', 'usda', 'obj', 'ply', 'stl'] as const satisfies readonly Target[];
+/** What is written of the structure of plants, and what kind of file that is. */
+const STRUCTURES = {
+  mtg: { type: 'text/plain', extension: 'mtg' },
+  opf: { type: 'application/xml', extension: 'opf' },
+  qsm: { type: 'text/csv', extension: 'csv' },
+} as const satisfies Record<StructureFormat, { type: string; extension: string }>;
+const STRUCTURE_WORDS = Object.keys(STRUCTURES) as StructureFormat[];
+const FORMATS: readonly Target[] = [...MODELS, ...STRUCTURE_WORDS, 'png', 'svg', 'json'];
 /** Formats with levels of detail. */
-export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
-const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'opf', 'qsm']);
+export const LEVELS: ReadonlySet<Target> = new Set(MODELS);
+const AXES: ReadonlySet<Target> = new Set([...FORMATS.slice(1, MODELS.length), ...STRUCTURE_WORDS]);
 /** Formats with room for wind. */
 export const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
@@ -45,7 +41,106 @@ export function optionsOf(): typeof last {
   return last;
 }
 
+/** The type and the extension of a file of structure; none of other formats. */
+export function structureFile(format: Target): { type: string; extension: string } | undefined {
+  return format in STRUCTURES ? STRUCTURES[format as StructureFormat] : undefined;
+}
+
 export const nameOf = (format: Target): string => NAMES[format] ?? format.toUpperCase();
+
+type Choice<T extends string> = readonly (readonly [T, string])[];
+
+function choice<T extends string>(
+  text: TextKey,
+  words: Choice<T>,
+  value: T,
+  set: (v: T) => void,
+  id = '',
+): HTMLLabelElement {
+  const select = el('select', { id, onchange: () => set(select.value as T) });
+  for (const [word, label] of words) select.append(el('option', { value: word }, label));
+  select.value = value;
+  return el('label', { class: 'option' }, el('span', {}, t(text)), select);
+}
+
+/**
+ * How fine a model is written, and in how many files: rows for `options`, of which those are shown that count for a format.
+ * `changed`: another is chosen. `id`: before the names of the fields.
+ */
+export function levelRows(
+  options: ExportOptions,
+  changed: () => void,
+  id: string,
+): { rows: HTMLElement[]; show(format: Target): void } {
+  const levels = choice(
+    'export.levels',
+    [
+      ['1', t('export.levels.one')],
+      ['2', '2'],
+      ['3', '3'],
+      ['4', '4'],
+    ],
+    String(options.levels) as '1' | '2' | '3' | '4',
+    (v) => {
+      options.levels = Number(v);
+      changed();
+    },
+    `${id}levels`,
+  );
+  const files = choice(
+    'export.files',
+    [
+      ['each', t('export.files.each')],
+      ['one', t('export.files.one')],
+    ],
+    options.one_file ? 'one' : 'each',
+    (v) => {
+      options.one_file = v === 'one';
+      changed();
+    },
+    `${id}files`,
+  );
+  const impostor = tick(options, 'impostor', changed, id);
+  const sway = tick(options, 'sway', changed, id);
+  const show = (format: Target): void => {
+    const glb = format === 'glb';
+    levels.hidden = !LEVELS.has(format);
+    levels.querySelector('select')!.value = String(options.levels);
+    impostor.hidden = !glb;
+    files.hidden = !glb || (options.levels === 1 && !options.impostor);
+    // Joints want files of their own.
+    sway.hidden = !glb || (!files.hidden && options.one_file);
+    if (sway.hidden) {
+      options.sway = false;
+      sway.querySelector('input')!.checked = false;
+    }
+  };
+  return { rows: [levels, impostor, files, sway], show };
+}
+
+function tick(
+  options: ExportOptions,
+  key: 'wind' | 'sway' | 'impostor',
+  changed: () => void,
+  id: string,
+): HTMLLabelElement {
+  const box = el('input', {
+    type: 'checkbox',
+    id: `${id}${key}`,
+    onchange: () => {
+      options[key] = box.checked;
+      changed();
+    },
+  });
+  box.checked = options[key];
+  box.style.justifySelf = 'start';
+  return el(
+    'label',
+    { class: 'option', title: t(`export.${key}.help`) },
+    el('span', {}, t(`export.${key}`)),
+    box,
+  );
+}
 
 /** `several`: there is a scene to choose; `kind`: the maker of the plant that is chosen. */
 export function openExport(
@@ -54,17 +149,6 @@ export function openExport(
   act: (format: Target, options: ExportOptions) => void,
   look: () => void,
 ): void {
-  const choice = <T extends string>(
-    text: TextKey,
-    words: readonly (readonly [T, string])[],
-    value: T,
-    set: (v: T) => void,
-  ): HTMLLabelElement => {
-    const select = el('select', { onchange: () => set(select.value as T) });
-    for (const [word, label] of words) select.append(el('option', { value: word }, label));
-    select.value = value;
-    return el('label', { class: 'option' }, el('span', {}, t(text)), select);
-  };
   let { format, options } = last;
   options = { ...options, whole: several };
   const formats = FORMATS.filter((f) => (f !== 'json' && f !== 'svg') || kind === 'sketch');
@@ -81,20 +165,6 @@ export function openExport(
     },
   );
   what.hidden = !several;
-  const levels = choice(
-    'export.levels',
-    [
-      ['1', t('export.levels.one')],
-      ['2', '2'],
-      ['3', '3'],
-      ['4', '4'],
-    ],
-    String(options.levels) as '1' | '2' | '3' | '4',
-    (v) => {
-      options.levels = Number(v);
-      show();
-    },
-  );
   const up = choice(
     'export.up',
     [
@@ -118,51 +188,13 @@ export function openExport(
       options.unit = v;
     },
   );
-  levels.querySelector('select')!.id = 'b-levels';
-  const tick = (
-    id: string,
-    key: 'wind' | 'sway' | 'impostor',
-    text: TextKey,
-    help: TextKey,
-  ): HTMLLabelElement => {
-    const box = el('input', {
-      type: 'checkbox',
-      id,
-      onchange: () => {
-        options[key] = box.checked;
-        show();
-      },
-    });
-    box.checked = options[key];
-    box.style.justifySelf = 'start';
-    return el('label', { class: 'option', title: t(help) }, el('span', {}, t(text)), box);
-  };
-  const wind = tick('b-wind', 'wind', 'export.wind', 'export.wind.help');
-  const sway = tick('b-sway', 'sway', 'export.sway', 'export.sway.help');
-  const impostor = tick('b-impostor', 'impostor', 'export.impostor', 'export.impostor.help');
-  const files = choice(
-    'export.files',
-    [
-      ['each', t('export.files.each')],
-      ['one', t('export.files.one')],
-    ],
-    options.one_file ? 'one' : 'each',
-    (v) => {
-      options.one_file = v === 'one';
-      show();
-    },
-  );
-  files.querySelector('select')!.id = 'b-files';
+  const fine = levelRows(options, () => show(), 'b-');
+  const wind = tick(options, 'wind', () => show(), 'b-');
   const show = (): void => {
-    levels.hidden = see.hidden = !LEVELS.has(format);
+    see.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
     wind.hidden = !WIND.has(format);
-    const glb = format === 'glb';
-    impostor.hidden = !glb;
-    files.hidden = !glb || (options.levels === 1 && !options.impostor);
-    // Joints want files of their own.
-    sway.hidden = !glb || (!files.hidden && options.one_file);
-    if (sway.hidden) options.sway = false;
+    fine.show(format);
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
   for (const f of formats) {
@@ -216,11 +248,8 @@ export function openExport(
     },
     list,
     what,
-    levels,
-    impostor,
-    files,
+    ...fine.rows,
     wind,
-    sway,
     up,
     unit,
     el('p', { class: 'muted' }, t('export.note')),

@@ -1,5 +1,5 @@
 /** The export as it will be, before it is written: its level of detail and wind in the view, its figures beside it. */
-import { nameOf, LEVELS, optionsOf, type Target, WIND } from './exporting';
+import { nameOf, LEVELS, levelRows, optionsOf, type Target, WIND } from './exporting';
 import type { SentExport } from './protocol';
 import type { Session } from './session';
 import { number, t, type TextKey, tOf } from './text';
@@ -61,11 +61,7 @@ export class ExportPreview {
         type: 'button',
         class: 'primary',
         id: 'b-exportview-go',
-        onclick: () => {
-          const options = optionsOf();
-          options.options.levels = Math.max(options.options.levels, last.level + 1);
-          page.write(options.format);
-        },
+        onclick: () => page.write(optionsOf().format),
       },
       t('exported.write'),
     );
@@ -89,10 +85,12 @@ export class ExportPreview {
     this.rows.querySelector('select')?.focus();
   }
 
+  /** What will be written; the level that is shown is one of it. */
   private get request(): ExportRequest {
     const { format, options } = optionsOf();
+    options.levels = Math.max(options.levels, last.level + 1);
     const whole = options.whole || !this.isSeveral;
-    return { format: format as ExportFormat, ...options, levels: 1, whole, wind: last.wind > 0 };
+    return { format: format as ExportFormat, ...options, whole, wind: last.wind > 0 };
   }
 
   private get isSeveral(): boolean {
@@ -109,6 +107,12 @@ export class ExportPreview {
     const notes: string[] = [];
     if (!carries) notes.push(t('exported.windless'));
     else if (this.calm) notes.push(t('exported.calm'));
+    const again = (): void => {
+      fine.show(format);
+      this.ask();
+    };
+    const fine = levelRows(options, again, 'b-exported-');
+    fine.show(format);
     this.rows.replaceChildren(
       select('exported.format', 'format', formats, format as ExportFormat, (f) => {
         optionsOf().format = f;
@@ -142,9 +146,11 @@ export class ExportPreview {
         true,
         (x) => {
           last.level = x;
-          this.ask();
+          options.levels = Math.max(options.levels, x + 1);
+          again();
         },
       ),
+      ...fine.rows,
       slider('exported.wind', 'wind', last.wind, 1, 0.05, percent, carries, (x) => {
         const before = last.wind;
         last.wind = x;
@@ -207,6 +213,7 @@ export class ExportPreview {
           return this.shown;
         });
         this.tell(sent.view, request.format);
+        await this.weigh(request, done);
       } catch (e) {
         if (this.closed || done !== this.wanted) continue;
         this.shown = undefined;
@@ -216,6 +223,16 @@ export class ExportPreview {
       this.element.dataset['shown'] = String(done);
     }
     this.asking = false;
+  }
+
+  /** How much all of it comes to, where it is more than what is shown. */
+  private async weigh(request: ExportRequest, asked: number): Promise<void> {
+    if (request.levels === 1 && !request.impostor && !request.sway) return;
+    const bytes = await this.page.session.engine.ask<number>({ kind: 'weigh', request });
+    if (this.closed || asked !== this.wanted) return;
+    const written = line('exported.written', 'written', bytes);
+    written.title = t('exported.file.help');
+    this.table.append(written);
   }
 
   private tell(
@@ -250,14 +267,6 @@ export class ExportPreview {
     const head = (['part', 'triangles', 'vertices', 'draws', 'geometry'] as const).map((key) =>
       el('th', { scope: 'col', title: t(`exported.${key}.help`) }, t(`exported.${key}`)),
     );
-    const line = (key: TextKey, figure: string, bytes: number, more = ''): HTMLElement =>
-      el(
-        'p',
-        {},
-        el('span', {}, t(key), ' '),
-        el('b', { 'data-figure': figure, 'data-value': String(bytes) }, `${megabytes(bytes)} MB`),
-        more,
-      );
     const file = line(ZIPPED.has(format) ? 'exported.zip' : 'exported.file', 'file', file_bytes);
     file.title = t('exported.file.help');
     this.table.replaceChildren(
@@ -281,6 +290,16 @@ export class ExportPreview {
     // Age and season go back to their panel.
     this.page.closed();
   }
+}
+
+function line(key: TextKey, figure: string, bytes: number, more = ''): HTMLElement {
+  return el(
+    'p',
+    {},
+    el('span', {}, t(key), ' '),
+    el('b', { 'data-figure': figure, 'data-value': String(bytes) }, `${megabytes(bytes)} MB`),
+    more,
+  );
 }
 
 function select<T extends string>(

@@ -2,7 +2,7 @@
 import type { Documents } from './documents';
 import type { Engine } from './engine';
 import type { MakerWord, Opened } from './wire';
-import { LEVELS, PLAIN, openExport, type Target, type ExportOptions } from './exporting';
+import { LEVELS, PLAIN, openExport, structureFile, type Target, type ExportOptions } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
@@ -18,9 +18,6 @@ const TYPES: Record<string, string> = {
   ply: 'application/octet-stream',
   stl: 'model/stl',
   json: 'application/json',
-  mtg: 'text/plain',
-  opf: 'application/xml',
-  qsm: 'text/csv',
 };
 
 export interface FilesEvents {
@@ -239,9 +236,10 @@ export class Files {
     try {
       const levelled = LEVELS.has(format);
       if (!levelled) options.levels = 1;
-      const structure = ['mtg', 'opf', 'qsm'].includes(format) && options.whole && this.events.several();
-      const zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);
-      const extension = format === 'qsm' ? 'csv' : format;
+      const structure = structureFile(format);
+      const several = structure !== undefined && options.whole && this.events.several();
+      const zipped = format === 'obj' || format === 'usda' || several || (options.levels > 1 && levelled);
+      const extension = structure?.extension ?? format;
       const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;
       if (format === 'png') {
         const picture = await this.events.picture();
@@ -251,7 +249,7 @@ export class Files {
         download(
           name,
           await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request: { format, ...options } }),
-          zipped ? 'application/zip' : (TYPES[format] ?? ''),
+          zipped ? 'application/zip' : (structure?.type ?? TYPES[format] ?? ''),
         );
       }
       note(t('note.exported', { name }));

@@ -74,6 +74,16 @@ export function withField<T extends object>(settings: T, [key, ...rest]: string[
   return { ...settings, [key!]: rest.length > 0 ? withField(inner as object, rest, value) : value };
 }
 
+/** Brings a value back to what it was at first. */
+export function resetButton(name: string, act: () => void): HTMLElement {
+  const label = t('form.reset', { name });
+  const onclick = (e: Event): void => {
+    e.preventDefault();
+    act();
+  };
+  return el('button', { type: 'button', class: 'f-reset', title: label, 'aria-label': label, onclick }, '↺');
+}
+
 /** A form with fewer rows is seen as a whole. */
 const FEW = 8;
 
@@ -221,18 +231,7 @@ export class Form {
     const first = valueAt(this.origin(), path) ?? s.default;
     const now = valueAt(this.values, path);
     if (first === undefined || now === undefined || JSON.stringify(first) === JSON.stringify(now)) return [];
-    const act = (e: Event): void => {
-      e.preventDefault();
-      this.events.set(path, first);
-    };
-    const label = t('form.reset', { name: fieldName(name, s['x-help']) });
-    return [
-      el(
-        'button',
-        { type: 'button', class: 'f-reset', title: label, 'aria-label': label, onclick: act },
-        '↺',
-      ),
-    ];
+    return [resetButton(fieldName(name, s['x-help']), () => this.events.set(path, first))];
   }
 
   private number(

@@ -1,11 +1,12 @@
 /** The left side of plants that are not drawn: species, age, obstacles; marks and surface; species and day. */
 import type { Engine } from './engine';
-import { Form, type Fields, withField } from './form';
+import { Form, type Fields, resetButton, withField } from './form';
 import type {
   Action,
   Command,
   DocumentState,
   Json,
+  LeafSpec,
   Obstacle,
   OrganMaterial,
   PlantState,
@@ -15,9 +16,9 @@ import type {
 import { drawingSchema, named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
-import { safe } from './files';
-import { asToml, dropPreset, keepPreset, type OwnPreset, ownPresets } from './own';
-import { askName, button, download, el, icon, note } from './ui';
+import { ownPresets } from './own';
+import { ownChips } from './ownchips';
+import { button, el, icon } from './ui';
 
 export interface Catalogue {
   /** Of a drawing, with its surface. */
@@ -88,9 +89,7 @@ const MAIN: Partial<Record<PlantState['maker'], readonly string[]>> = {
   leaf: ['/surface', '/curl', '/wilt', '/texture'],
 };
 /** Of a leaf that is made of numbers. */
-const LEAF_FORM = ['length_m', 'width', 'widest', 'veins', 'vein_angle_deg', 'lobes', 'fold_deg'].map(
-  (field) => `/form/${field}`,
-);
+const LEAF_FORM = ['length_m', 'width', 'widest', 'veins', 'lobes'].map((field) => `/form/${field}`);
 const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
 
 /** The season of leaves, -1 to 1, in a word. */
@@ -191,8 +190,8 @@ export class MakerPanel {
       ? document.activeElement?.getAttribute('data-path')
       : null;
     if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
-    if (plant.leaf) this.head.replaceChildren(...this.leaf(plant.id, plant.leaf));
-    if (plant.flower) this.head.replaceChildren(...this.flower(plant.id, plant.flower, catalogue));
+    if (plant.leaf) this.head.replaceChildren(...this.leaf(plant, plant.leaf));
+    if (plant.flower) this.head.replaceChildren(...this.flower(plant, plant.flower, catalogue));
     if (focused)
       this.head
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
@@ -232,6 +231,8 @@ export class MakerPanel {
     step: number,
     value: number,
     act: (x: number) => Command,
+    /** What it is at first: a button brings that back. */
+    origin: number = value,
   ): HTMLElement {
     const shown = el('output', {}, String(value));
     const input = el('input', {
@@ -248,7 +249,8 @@ export class MakerPanel {
       onchange: () => this.done(),
     });
     input.value = String(value);
-    return el('label', { class: 'f-row' }, el('span', {}, label), input, shown);
+    const reset = value === origin ? [] : [resetButton(label, () => this.events.run(act(origin)))];
+    return el('label', { class: 'f-row' }, el('span', {}, label, ...reset), input, shown);
   }
 
   private section(title: string, ...content: HTMLElement[]): HTMLElement {
@@ -278,21 +280,38 @@ export class MakerPanel {
       ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)),
     );
     leafOf.value = tree.leaf === null ? '' : String(tree.leaf);
-    const ages = this.slider('age', t('tree.age'), 1, most, 1, age ?? most, (x) => ({
-      tree: [plant.id, { 'set-field': ['/age', x >= most ? null : x] }],
-    }));
+    const first = catalogue.trees.find(({ key }) => key === tree.preset)?.spec ?? {};
+    const ages = this.slider(
+      'age',
+      t('tree.age'),
+      1,
+      most,
+      1,
+      age ?? most,
+      (x) => ({ tree: [plant.id, { 'set-field': ['/age', x >= most ? null : x] }] }),
+      typeof first['age'] === 'number' ? first['age'] : most,
+    );
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
     const look = spec['look'] as Fields | undefined;
     const season = Number(look?.['season'] ?? 0);
-    const seasons = this.slider('season', t('tree.season'), -1, 1, 0.01, season, (x) => {
-      seasons.querySelector('output')!.textContent = seasonOf(x);
-      return { tree: [plant.id, { 'set-field': ['/look/season', x] }] };
-    });
+    const seasons = this.slider(
+      'season',
+      t('tree.season'),
+      -1,
+      1,
+      0.01,
+      season,
+      (x) => {
+        seasons.querySelector('output')!.textContent = seasonOf(x);
+        return { tree: [plant.id, { 'set-field': ['/look/season', x] }] };
+      },
+      Number((first['look'] as Fields | undefined)?.['season'] ?? 0),
+    );
     const sheds = (look?.['autumn_color'] ?? null) !== null && spec['bare'] !== true;
     seasons.querySelector('output')!.textContent = sheds ? seasonOf(season) : t('tree.season.none');
     seasons.querySelector('input')!.disabled = !sheds;
     seasons.title = t(sheds ? 'tree.season.hint' : 'tree.season.none.hint');
-    const shown = `${plant.id} ${tree.preset} ${ownPresets().map((p) => p.name)}`;
+    const shown = `${plant.id} ${tree.preset} ${ownPresets('tree').map((p) => p.name)}`;
     // Kept while it shows the same: it has a place to which it was scrolled.
     if (this.species?.key !== shown) {
       this.species = {
@@ -300,7 +319,7 @@ export class MakerPanel {
         element: this.section(
           t('tree.species'),
           gallery(catalogue, tree.preset, (key) => this.events.act({ preset: { plant: plant.id, key } })),
-          this.own(),
+          this.own(plant, spec, (own) => ({ tree: [plant.id, { 'set-spec': [null, own] }] })),
         ),
       };
     }
@@ -310,72 +329,33 @@ export class MakerPanel {
         t('tree.main'),
         ages,
         seasons,
-        this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({
-          tree: [plant.id, { 'set-field': ['/leaves/leaf_keep', x] }],
-        })),
+        this.slider(
+          'keep',
+          t('tree.keep'),
+          0,
+          1,
+          0.01,
+          keep,
+          (x) => ({ tree: [plant.id, { 'set-field': ['/leaves/leaf_keep', x] }] }),
+          Number((first['leaves'] as Fields | undefined)?.['leaf_keep'] ?? 1),
+        ),
         el('label', { class: 'f-row', title: t('tree.leaf.hint') }, el('span', {}, t('tree.leaf')), leafOf),
       ),
       this.obstacles(tree),
     ];
   }
 
-  /** Presets of the person's own: taken by a click, given away as a file, dropped. */
-  private own(): HTMLElement {
-    const renew = (): void => {
-      this.species = undefined;
-      this.events.renew();
-    };
-    /** Says what was done, and brings the preset back as it was. */
-    const undoable = (done: string, { name, spec }: OwnPreset): void => {
-      const act = (): void => {
-        if (!keepPreset(name, spec)) note(t('own.full'), 'bad');
-        renew();
-      };
-      note(done, 'good', { label: t('undo'), act });
-    };
-    const keep = (): void => {
-      const { plant } = this;
-      const spec = plant?.tree?.spec;
-      if (!plant || !spec) return;
-      askName(t('own.keep'), t('own.name'), plant.name, (name) => {
-        const before = ownPresets().find((p) => p.name === name);
-        if (!keepPreset(name, spec)) {
-          note(t('own.full'), 'bad');
-          return;
-        }
-        renew();
-        if (before) undoable(t('own.replaced', { name }), before);
-      });
-    };
-    const chips = ownPresets().map((preset) => {
-      const { name, spec } = preset;
-      const take = el(
-        'button',
-        {
-          type: 'button',
-          class: 'chip',
-          'data-own': name,
-          onclick: () => this.treeRun({ 'set-spec': [null, spec] }),
-        },
-        name,
-      );
-      const give = button('export', t('own.give', { name }), () => {
-        const saved = asToml(preset).then((text) => download(`${safe(name)}.toml`, text, 'application/toml'));
-        saved.catch((e: Error) => note(t('note.refused', { why: e.message }), 'bad'));
-      });
-      const drop = button('close', t('own.drop', { name }), () => {
-        dropPreset(name);
-        renew();
-        undoable(t('own.dropped', { name }), preset);
-      });
-      return el('span', { class: 'own' }, take, give, drop);
+  /** Presets of the person's own. */
+  private own(plant: PlantState, spec: Fields, take: (own: Fields) => Command): HTMLElement {
+    return ownChips({
+      maker: plant.maker,
+      now: () => ({ name: plant.name, spec }),
+      take: (own) => this.events.run(take(own)),
+      renew: () => {
+        this.species = undefined;
+        this.events.renew();
+      },
     });
-    const more = el(
-      'button',
-      { type: 'button', class: 'chip', id: 'b-own-keep', onclick: keep },
-      t('own.keep'),
-    );
-    return el('div', { class: 'chips' }, ...chips, more);
   }
 
   private treeRun(command: TreeCommand): void {
@@ -485,7 +465,8 @@ export class MakerPanel {
 
   // Leaves -------------------------------------------------------------------------------------------------------
 
-  private leaf(id: number, leaf: NonNullable<PlantState['leaf']>): HTMLElement[] {
+  private leaf(plant: PlantState, leaf: NonNullable<PlantState['leaf']>): HTMLElement[] {
+    const { id } = plant;
     const empty = leaf.text === '';
     const table = el('textarea', {
       class: 'field marks',
@@ -542,6 +523,12 @@ export class MakerPanel {
         ),
         edit,
       ),
+      this.section(
+        t('leaf.own'),
+        this.own(plant, leaf.settings as unknown as Fields, (own) => ({
+          leaf: [id, { set: own as unknown as LeafSpec }],
+        })),
+      ),
     ];
   }
 
@@ -560,7 +547,12 @@ export class MakerPanel {
 
   // Flowers ------------------------------------------------------------------------------------------------------
 
-  private flower(id: number, flower: NonNullable<PlantState['flower']>, catalogue: Catalogue): HTMLElement[] {
+  private flower(
+    plant: PlantState,
+    flower: NonNullable<PlantState['flower']>,
+    catalogue: Catalogue,
+  ): HTMLElement[] {
+    const { id } = plant;
     const chips = el('div', { class: 'chips', role: 'group', 'aria-label': t('flower.species') });
     for (const { key: word } of catalogue.flowers) {
       chips.append(
@@ -608,7 +600,11 @@ export class MakerPanel {
         ),
       );
     return [
-      this.section(t('flower.species'), chips),
+      this.section(
+        t('flower.species'),
+        chips,
+        this.own(plant, flower.spec, (own) => ({ flower: [id, { 'set-spec': [null, own] }] })),
+      ),
       this.section(t('flower.day'), this.dayRow(flower.day)),
       this.section(t('flower.law'), law),
     ];

@@ -4,6 +4,8 @@ import { asToml, dropPreset, keepPreset, MOST, ownPresets } from './own';
 
 const spec = { species: 'Quercus', age: null, leaves: { length_m: 0.1, shape: null }, rules: ['a', 'b'] };
 
+const oak = { maker: 'tree', name: 'my oak', spec } as const;
+
 describe("presets of a person's own", () => {
   beforeEach(() => {
     const kept = new Map<string, string>();
@@ -14,21 +16,31 @@ describe("presets of a person's own", () => {
   });
 
   it('are kept by their names, and go', () => {
-    expect(keepPreset('my oak', spec)).toBe(true);
-    expect(keepPreset('my oak', { ...spec, age: 9 })).toBe(true);
-    expect(ownPresets()).toEqual([{ name: 'my oak', spec: { ...spec, age: 9 } }]);
-    dropPreset('my oak');
-    expect(ownPresets()).toEqual([]);
+    expect(keepPreset(oak)).toBe(true);
+    expect(keepPreset({ ...oak, spec: { ...spec, age: 9 } })).toBe(true);
+    expect(ownPresets('tree')).toEqual([{ ...oak, spec: { ...spec, age: 9 } }]);
+    dropPreset(oak);
+    expect(ownPresets('tree')).toEqual([]);
+  });
+
+  it('of other makers have names of their own, and the first ones were of trees', () => {
+    keepPreset(oak);
+    keepPreset({ maker: 'flower', name: 'my oak', spec: { name: 'a lily' } });
+    expect(ownPresets('flower').map((p) => p.spec)).toEqual([{ name: 'a lily' }]);
+    dropPreset(oak);
+    expect([ownPresets('tree'), ownPresets('flower').length]).toEqual([[], 1]);
+    localStorage.setItem('burgeon.presets', JSON.stringify([{ name: 'old', spec }]));
+    expect(ownPresets('tree')).toEqual([{ maker: 'tree', name: 'old', spec }]);
   });
 
   it('are no more than the browser can hold, and what cannot be read is none', () => {
-    for (let k = 0; k < MOST; k += 1) keepPreset(`oak ${k}`, spec);
-    expect(keepPreset('one more', spec)).toBe(false);
-    expect(keepPreset('oak 3', spec)).toBe(true);
+    for (let k = 0; k < MOST; k += 1) keepPreset({ ...oak, name: `oak ${k}` });
+    expect(keepPreset({ ...oak, name: 'one more' })).toBe(false);
+    expect(keepPreset({ ...oak, name: 'oak 3' })).toBe(true);
     localStorage.setItem('burgeon.presets', '[{"name":3},null,"x"]');
-    expect(ownPresets()).toEqual([]);
+    expect(ownPresets('tree')).toEqual([]);
     localStorage.setItem('burgeon.presets', '{');
-    expect(ownPresets()).toEqual([]);
+    expect(ownPresets('tree')).toEqual([]);
   });
 
   it('are TOML without what is left to the plant', async () => {

@@ -1,8 +1,11 @@
-/** Presets of a person's own: specs of trees that this browser keeps, and that travel as TOML files. */
+/** Presets of a person's own: settings of plants that this browser keeps; specs travel as TOML files, too. */
 import type { Fields } from './form';
 import { setSetting, setting } from './store';
+import type { MakerWord } from './wire';
 
 export interface OwnPreset {
+  /** Of what kind of plant. */
+  maker: MakerWord;
   name: string;
   spec: Fields;
 }
@@ -10,10 +13,14 @@ export interface OwnPreset {
 /** The browser gives a page some megabytes for small settings: a spec has a few kilobytes. */
 export const MOST = 100;
 
-export function ownPresets(): OwnPreset[] {
+/** Those for plants of one kind. */
+export const ownPresets = (maker: MakerWord): OwnPreset[] => all().filter((p) => p.maker === maker);
+
+function all(): OwnPreset[] {
   try {
     const kept: unknown = JSON.parse(setting('presets') ?? '[]');
-    return Array.isArray(kept) ? kept.filter(isPreset) : [];
+    // The first ones were of trees alone, and do not say so.
+    return Array.isArray(kept) ? kept.filter(isPreset).map((p) => ({ ...p, maker: p.maker ?? 'tree' })) : [];
   } catch {
     // What another program wrote there is nobody's preset.
     return [];
@@ -25,23 +32,29 @@ function isPreset(x: unknown): x is OwnPreset {
   return typeof name === 'string' && typeof spec === 'object' && spec !== null && !Array.isArray(spec);
 }
 
-/** Keeps a spec under a name, in the place of one of the same name; false if there are too many. */
-export function keepPreset(name: string, spec: Fields): boolean {
-  const all = ownPresets();
-  const same = all.findIndex((p) => p.name === name);
-  if (same < 0 && all.length >= MOST) return false;
-  if (same < 0) all.push({ name, spec });
-  else all[same] = { name, spec };
-  setSetting('presets', JSON.stringify(all));
-  return ownPresets().some((p) => p.name === name);
+const same = (a: OwnPreset) => (b: OwnPreset) => a.maker === b.maker && a.name === b.name;
+
+/** Keeps a preset, in the place of one of the same name; false if there are too many. */
+export function keepPreset(preset: OwnPreset): boolean {
+  const presets = all();
+  const row = presets.findIndex(same(preset));
+  if (row < 0 && presets.length >= MOST) return false;
+  if (row < 0) presets.push(preset);
+  else presets[row] = preset;
+  setSetting('presets', JSON.stringify(presets));
+  return all().some(same(preset));
 }
 
-export function dropPreset(name: string): void {
-  setSetting('presets', JSON.stringify(ownPresets().filter((p) => p.name !== name)));
+export function dropPreset(preset: OwnPreset): void {
+  const is = same(preset);
+  setSetting('presets', JSON.stringify(all().filter((p) => !is(p))));
 }
 
-/** The spec as `burgeon grow` and this page read it: what is left to the plant stands in no TOML. */
-export async function asToml({ name, spec }: OwnPreset): Promise<string> {
+/** Files of specs are read of these alone. */
+export const hasFile = (maker: MakerWord): boolean => maker === 'tree' || maker === 'flower';
+
+/** The spec as `burgeon grow`, `burgeon bloom` and this page read it: what is left to the plant stands in no TOML. */
+export async function asToml({ name, spec }: Pick<OwnPreset, 'name' | 'spec'>): Promise<string> {
   const { stringify } = await import('smol-toml');
   return `${stringify({ ...said(spec), name })}\n`;
 }

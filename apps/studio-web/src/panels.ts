@@ -213,6 +213,7 @@ export class Panels {
     const panel = new SettingsPanel(this.catalogue.drawing, lenders, {
       ...this.drawing(),
       now: () => session.drawn ?? first,
+      name: () => session.plant?.name ?? '',
       steady: this.steady,
       setSteady: (strength) => {
         this.steady = strength;

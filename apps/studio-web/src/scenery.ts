@@ -22,6 +22,7 @@ import {
 } from './view/moods';
 import type { PlantView } from './view/view';
 import type { WalkMode } from './view/walk';
+import { WalkPad } from './view/walkpad';
 
 /** The longest side of a picture behind the plants, pixels: as much as a large screen shows. */
 const KEPT_PICTURE = 2560;
@@ -41,6 +42,8 @@ const clock = (hour: number): string => {
 
 export class Scenery {
   private stage: StageSetting = settingFrom(parsed('stage'));
+  /** For whoever walks by a finger. */
+  private pad: WalkPad | undefined;
   private poses: Pose[] = posesFrom(parsed('cameras'));
 
   constructor(
@@ -55,10 +58,23 @@ export class Scenery {
     for (const guide of (setting('guides') ?? '').split(' '))
       if (GUIDES.some((g) => g === guide)) view.setGuide(guide as Guide, true);
     if (this.stage.background === 'picture') void this.show();
-    view.onWalk = (mode) => {
-      document.body.dataset['walk'] = mode ?? '';
-      if (mode) note(t(`walk.${mode}.hint`));
-    };
+  }
+
+  /** A person walks or flies through the scene, or not any more. */
+  walked(mode: WalkMode | undefined): void {
+    document.body.dataset['walk'] = mode ?? '';
+    this.pad?.element.remove();
+    this.pad = undefined;
+    const { view } = this;
+    if (!mode || !view) return;
+    const byFinger = matchMedia('(any-pointer: coarse)').matches;
+    note(t(byFinger ? 'walk.finger.hint' : `walk.${mode}.hint`));
+    if (!byFinger) return;
+    this.pad = new WalkPad(mode, {
+      go: (right, up, ahead) => view.rig.lead(right, up, ahead),
+      end: () => view.rig.setWalking(undefined),
+    });
+    view.element.append(this.pad.element);
   }
 
   // Stage --------------------------------------------------------------------------------------------------------

@@ -1,9 +1,10 @@
 /** The panel of a drawing: a form made of the schemas of drawing and surface, a lent leaf, and the pen. */
 import { Form, type Fields, withField } from './form';
+import { ownChips } from './ownchips';
 import type { Schema } from './schema';
 import { t, tOf } from './text';
 import { el } from './ui';
-import type { Json, PlantState, SketchCommand, SketchState } from './wire';
+import type { Json, PlantState, SketchCommand, SketchSpec, SketchState, SkinSpec } from './wire';
 
 export interface SettingsEvents {
   /** Asked of the drawing. */
@@ -13,26 +14,20 @@ export interface SettingsEvents {
   commit(): void;
   /** The drawing as it is. */
   now(): SketchState;
+  /** The name of the plant. */
+  name(): string;
   /** Strength of the stabiliser of the pen, 0 to 3. */
   steady: number;
   setSteady(strength: number): void;
 }
 
 /** What the panel shows first. */
-const MAIN = [
-  '/fill/density',
-  '/fill/tropism',
-  '/phototropism',
-  '/gravity',
-  '/skin/variation',
-  '/skin/petals',
-  '/leaf_depth',
-  '/branch_depth',
-];
+const MAIN = ['/fill/density', '/phototropism', '/gravity', '/skin/variation', '/skin/petals'];
 
 export class SettingsPanel {
   readonly element = el('div', { class: 'settings' });
   private readonly form: Form;
+  private own: HTMLElement = el('div');
   private dragging = false;
 
   constructor(
@@ -59,6 +54,7 @@ export class SettingsPanel {
         ),
       );
     this.element.append(
+      this.own,
       el('hr'),
       choice(
         t('set.steady'),
@@ -74,7 +70,29 @@ export class SettingsPanel {
   show(): void {
     if (this.dragging) return;
     const { sketch, skin } = this.events.now();
+    this.showOwn();
     this.form.show({ ...sketch, skin } as unknown as Fields, MAIN);
+  }
+
+  /** Settings that the person keeps: of the drawing and of its surface, not its strokes. */
+  private showOwn(): void {
+    const chips = ownChips({
+      maker: 'sketch',
+      now: () => {
+        const { sketch, skin } = this.events.now();
+        return { name: this.events.name(), spec: { sketch, skin } as unknown as Fields };
+      },
+      take: ({ sketch, skin }) => {
+        // Each of the two is a step of undo.
+        const now = this.events.now();
+        const differ = (a: unknown, b: unknown): boolean => JSON.stringify(a) !== JSON.stringify(b);
+        if (differ(sketch, now.sketch)) this.events.run({ 'set-sketch': sketch as unknown as SketchSpec });
+        if (differ(skin, now.skin)) this.events.run({ 'set-skin': skin as unknown as SkinSpec });
+      },
+      renew: () => this.showOwn(),
+    });
+    this.own.replaceWith(chips);
+    this.own = chips;
   }
 
   private command(path: string, value: Json): SketchCommand {

@@ -5,7 +5,6 @@ import type { Request } from './protocol';
 import type {
   CarriedPose,
   Command,
-  Growth,
   Mirror,
   PlantState,
   PlantView as Seen,
@@ -17,11 +16,11 @@ import type {
   ShapeStep,
   ViewPlane,
 } from './wire';
-import { number, t, type TextKey } from './text';
-import { SHAPE_TOOLS, type ShapeTool } from './tools';
+import { hasText, number, t } from './text';
+import { isBrush, rowOf, SHAPE_WORDS, type ShapeTool } from './tools';
 import { ToolSettings } from './toolsettings';
 import { type Hands, toolOptions } from './toolstrip';
-import { button, el, type IconName } from './ui';
+import { button, el } from './ui';
 import { Overlay } from './view/overlay';
 import type { PlantView } from './view/view';
 
@@ -39,46 +38,20 @@ export interface ShapingEvents {
 /** How far beside a branch a hand in space means it, metres of the plant. */
 export type SpaceReach = Pick<ShapeReach, 'metres' | 'per_metre'>;
 
-/** How the pointer of a tool leaves a trace. */
-const TRACES: Partial<Record<ShapeTool, 'line' | 'brush' | 'outline'>> = {
-  sketch: 'line',
-  brush: 'brush',
-  silhouette: 'outline',
-  leaves: 'brush',
-};
-/** Tools that mean a branch: in a dense crown, what bears the twig under the pointer. */
-const CLIMBS: ReadonlySet<ShapeTool | undefined> = new Set<ShapeTool>([
-  'pick',
-  'rotate',
-  'move',
-  'copy',
-  'prune',
-  'regrow',
-]);
 /** So near to a branch, in pixels, a pointer means it; a finger is thicker. */
 const NEAR = 9;
 const NEAR_TOUCH = 22;
 /** A step of the wheel, while a branch or a plane is held. */
 const TWIST_DEG = 5;
+/** So many times as wide a notch of the wheel makes a brush. */
+const WIDER = 1.12;
 const STILL = 5;
 /** Stands for the pointer of a hand in space. */
 const IN_SPACE = -1;
 
-const TOOL_ICONS: Record<ShapeTool, IconName> = {
-  pick: 'select',
-  rotate: 'rotate',
-  move: 'slide',
-  copy: 'copy',
-  prune: 'prune',
-  regrow: 'regrow',
-  sketch: 'branch',
-  brush: 'brush',
-  silhouette: 'silhouette',
-  leaves: 'leaf',
-  grow: 'tree',
-};
 /** Between two rounds of what grows while it is held, ms. */
 const ROUND_MS = 130;
+
 export class Shaping {
   readonly element = el('div', { class: 'shaping' });
   readonly overlay: Overlay;
@@ -152,9 +125,11 @@ export class Shaping {
     canvas.addEventListener('contextmenu', (e) => {
       if (this.tool) e.preventDefault();
     });
-    view.onDraw = () => {
-      if (this.tool) this.overlay.draw();
-    };
+  }
+
+  /** A picture of the plant was drawn: what lies over it may have moved. */
+  drawn(): void {
+    if (this.tool) this.overlay.draw();
   }
 
   get isOn(): boolean {
@@ -168,6 +143,16 @@ export class Shaping {
   /** The tool, if one is in the hand. */
   get word(): ShapeTool | undefined {
     return this.tool;
+  }
+
+  /** The tool in the hand chooses branches. */
+  private get isChoosing(): boolean {
+    return this.tool !== undefined && rowOf(this.tool).chooses === true;
+  }
+
+  /** The tool in the hand draws outlines, on a plane that can be placed in space. */
+  get isOutlining(): boolean {
+    return this.tool !== undefined && rowOf(this.tool).trace === 'outline';
   }
 
   /** All but single leaves have stems and branches. */
@@ -239,8 +224,9 @@ export class Shaping {
       return;
     const focused = this.element.contains(document.activeElement) ? document.activeElement?.id : undefined;
     const bar = el('div', { class: 'tools strip', role: 'toolbar', 'aria-label': t('shape.title') });
-    for (const [word, key] of SHAPE_TOOLS) {
-      const b = button(TOOL_ICONS[word], t(`shape.${word}` as TextKey), () => this.take(word), key);
+    for (const word of SHAPE_WORDS) {
+      const { icon, keys } = rowOf(word);
+      const b = button(icon, t(`shape.${word}`), () => this.take(word), keys);
       b.id = `b-shape-${word}`;
       b.setAttribute('aria-pressed', String(word === this.tool));
       bar.append(b);
@@ -258,7 +244,8 @@ export class Shaping {
       this.walk(by > 0 ? 'bearer' : 'borne');
       return;
     }
-    if (!CLIMBS.has(this.tool) || this.isBusy || (by > 0 ? this.top : this.bearers === 0)) return;
+    if (!this.tool || !rowOf(this.tool).climbs || this.isBusy || (by > 0 ? this.top : this.bearers === 0))
+      return;
     this.bearers += by;
     const at = this.chosen ? this.clicked : this.hover;
     // Not further before it is known whether there is more.
@@ -270,7 +257,7 @@ export class Shaping {
       return;
     }
     this.line = this.send({ up: at }).then((answer) => {
-      if (!answer?.picked || this.tool !== 'pick') return;
+      if (!answer?.picked || !this.isChoosing) return;
       this.chosen = answer.picked;
       this.showStrip();
     });
@@ -278,10 +265,10 @@ export class Shaping {
 
   /** From branch to branch by keys: the pointing tool chooses without a pointer. */
   walk(to: ShapeStep): void {
-    if (this.tool !== 'pick' || this.isBusy) return;
+    if (!this.isChoosing || this.isBusy) return;
     const from = this.chosen?.axis ?? null;
     this.line = this.send({ walk: { from, to } }).then((answer) => {
-      if (!answer?.picked || this.tool !== 'pick') return;
+      if (!answer?.picked || !this.isChoosing) return;
       this.chosen = answer.picked;
       this.clicked = undefined;
       this.bearers = 0;
@@ -308,48 +295,43 @@ export class Shaping {
     return Math.max(1e-3, ...max.map((x, i) => x - min[i]!));
   }
 
-  /** The brush in the hand, or that which was last there. */
-  private get brush(): { share: number } {
-    return this.settings[this.tool === 'leaves' ? 'leaves' : 'brush'];
-  }
-
+  /** Of the brush, metres. */
   private get radius(): number {
-    return this.brush.share * this.size;
-  }
-
-  private get brushes(): boolean {
-    return this.tool === 'brush' || this.tool === 'leaves';
+    return this.settings.radius(this.tool, this.size);
   }
 
   /** `[` and `]`: the brush smaller or larger; false if the tool is no brush. */
   resize(by: number): boolean {
-    if (!this.brushes) return false;
-    this.brush.share = Math.min(0.4, Math.max(0.01, this.brush.share * by));
-    this.tellBrush();
+    const { tool } = this;
+    if (!tool || !isBrush(tool)) return false;
+    this.settings.set(tool, 'radius_m', Number(this.settings.of(tool)['radius_m']) * by);
+    this.setTo();
     this.showStrip();
-    this.showRing();
     return true;
   }
 
-  private tellBrush(): void {
-    if (this.isBusy && this.tool === 'brush')
-      void this.send({ brush: { radius_m: this.radius, density: this.settings.brush.density } });
+  /** The tool in the hand is set to something else, which counts at once where the tool says so. */
+  private setTo(): void {
+    this.showRing();
+    const { tool } = this;
+    if (!tool || !this.isBusy || !rowOf(tool).live) return;
+    if (rowOf(tool).rounds) this.turned = true;
+    else void this.send({ [tool]: this.settings.fields(tool, this.size) } as unknown as ShapeInput);
   }
 
   /** As the strip sees them. */
   private get hands(): Hands {
-    const { settings, chosen, bearers, isMirrored, radius, plant } = this;
+    const { settings, chosen, bearers, isMirrored, size, plant } = this;
     return {
       settings,
       chosen,
       bearers,
       isMirrored,
-      radius,
+      size,
       editCount: plant?.edits.length ?? 0,
       turnMirror: () =>
         void this.mirror(isMirrored ? undefined : this.pointerAtMiddle()).then(() => this.showStrip()),
-      tellBrush: () => this.tellBrush(),
-      showRing: () => this.showRing(),
+      changed: () => this.setTo(),
       climb: (by) => this.climb(by),
       shapeChosen: (command) => this.shapeChosen(command),
       renew: () => this.showStrip(),
@@ -373,29 +355,29 @@ export class Shaping {
     return this.isBusy && this.growing !== 0;
   }
 
-  /** A number of growth more or less, by so many of its steps; it counts at once, also while something grows. */
-  turnGrowth(of: keyof Growth, steps: number): void {
-    this.settings.turnGrowth(of, steps);
-    this.turned = true;
+  /** A number of the tool in the hand more or less, by so many of its notches; that of what grows counts at once. */
+  turn(name: string, notches: number): void {
+    if (!this.tool) return;
+    this.settings.turn(this.tool, name, notches);
+    this.setTo();
   }
 
-  /** Numbers of growth in words. */
-  growthText(...of: (keyof Growth)[]): string {
-    return this.settings.growthText(...of);
+  /** Numbers of the tool in the hand, in words. */
+  settingsText(...names: string[]): string {
+    return this.tool ? this.settings.text(this.tool, this.size, ...names) : '';
   }
 
   /** The plane on which outlines are drawn, if one was placed. */
   get plane(): ViewPlane | undefined {
-    return this.settings.silhouette.plane;
+    return this.settings.plane;
   }
 
   /** Places the plane on which outlines are drawn where a hand is, facing it; undefined: outlines face the eyes again. */
   async placePlane(at: ShapePointer | undefined): Promise<void> {
     const answer = at && (await this.send({ plane: at }));
     if (at && !answer?.plane) return;
-    const { density, trim } = this.settings.silhouette;
-    this.settings.silhouette = { density, trim, ...(answer?.plane ? { plane: answer.plane } : {}) };
-    this.onPlane(answer?.plane ?? undefined, this.size);
+    this.settings.plane = answer?.plane ?? undefined;
+    this.onPlane(this.settings.plane, this.size);
   }
 
   /** Whether there is a plane of symmetry. */
@@ -417,14 +399,16 @@ export class Shaping {
 
   /** What is held grows by itself, a round after the other, as fast as it can be shown. */
   private beat(): void {
-    if ((this.once ?? this.tool) !== 'grow') return;
+    const tool = this.once ?? this.tool;
+    if (!tool || !rowOf(tool).rounds) return;
     let waiting = false;
     this.turned = false;
     this.growing = window.setInterval(() => {
       if (waiting) return;
       waiting = true;
       // Only the latest numbers are told, and with the next round.
-      if (this.turned) void this.send({ grow: { ...this.settings.grow } });
+      if (this.turned)
+        void this.send({ [tool]: this.settings.fields(tool, this.size) } as unknown as ShapeInput);
       this.turned = false;
       void this.send('round').finally(() => {
         waiting = false;
@@ -459,7 +443,7 @@ export class Shaping {
 
   /** How large the brush is, in words. */
   get brushText(): string {
-    return `${t('shape.radius')} ${Math.round(this.radius * 100) / 100} m`;
+    return this.settingsText('radius_m');
   }
 
   // Gestures -----------------------------------------------------------------------------------------------------
@@ -490,7 +474,7 @@ export class Shaping {
     this.near = e.pointerType === 'touch' ? NEAR_TOUCH : NEAR;
     this.from = [e.clientX, e.clientY];
     this.view.setZoom(false);
-    const trace = TRACES[this.tool];
+    const { trace } = rowOf(this.tool);
     if (trace) {
       this.overlay.begin(trace, 2 * this.pixels);
       this.overlay.add(...this.place(e));
@@ -509,7 +493,7 @@ export class Shaping {
       const at = this.pointer(c);
       if (!at) continue;
       this.moves.push(at);
-      if (this.isBusy && TRACES[this.tool]) this.overlay.add(...this.place(c));
+      if (this.isBusy && rowOf(this.tool).trace) this.overlay.add(...this.place(c));
     }
     // Between gestures only the latest place is of interest.
     if (!this.isBusy) {
@@ -541,7 +525,8 @@ export class Shaping {
     }
     void this.finish(at, (answer) => {
       if (answer.commit) return;
-      if (!still && this.tool === 'sketch') this.events.say(t('shape.sketch.sky'));
+      const nothing = `shape.${this.tool}.nothing`;
+      if (!still && hasText(nothing)) this.events.say(t(nothing));
       if (!still || answer.picked) return;
       const plant = this.view.plantAt(e.clientX, e.clientY);
       if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
@@ -558,7 +543,7 @@ export class Shaping {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
         if (answer.commit) this.edit({ add: answer.commit });
-        if (this.tool === 'pick') {
+        if (this.isChoosing) {
           this.chosen = answer.picked;
           this.clicked = at;
           this.showStrip();
@@ -589,7 +574,7 @@ export class Shaping {
 
   /** Delete: the branch that was pointed at goes. */
   remove(): boolean {
-    if (this.tool !== 'pick' || !this.chosen?.key) return false;
+    if (!this.isChoosing || !this.chosen?.key) return false;
     this.shapeChosen({ add: { op: 'prune', axis: this.chosen.key, at: 0 } });
     return true;
   }
@@ -598,29 +583,30 @@ export class Shaping {
   private wheel(e: WheelEvent): void {
     if (!this.tool) return;
     const up = e.deltaY < 0 || e.deltaX < 0;
-    const brush = this.brushes && (this.isBusy || e.shiftKey);
-    const grows = this.isBusy && this.tool === 'grow';
-    const twist = this.isBusy && (this.tool === 'rotate' || this.tool === 'sketch');
-    if (!brush && !twist && !grows) return;
+    const brush = isBrush(this.tool) && (this.isBusy || e.shiftKey);
+    const wheel = this.isBusy ? rowOf(this.tool).wheel : undefined;
+    if (!brush && !wheel) return;
     e.preventDefault();
     e.stopImmediatePropagation();
-    if (grows) {
-      this.turnGrowth(e.shiftKey ? 'angle_deg' : 'vigour', up ? 1 : -1);
+    if (brush) this.resize(up ? WIDER : 1 / WIDER);
+    else if (wheel === 'twist') void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
+    else {
+      this.turn(wheel![e.shiftKey ? 1 : 0], up ? 1 : -1);
       this.showStrip();
-    } else if (brush) this.resize(up ? 1.12 : 1 / 1.12);
-    else void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
+    }
   }
 
   /** One after another: the edit of a gesture is asked for before the next gesture begins, however long the core takes. */
   private send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
+    const tool = this.once ?? this.tool ?? 'pick';
     const reach = {
       ...(this.space ?? this.view.reach(this.near)),
-      bearers: CLIMBS.has(this.once ?? this.tool) ? this.bearers : 0,
+      bearers: rowOf(tool).climbs ? this.bearers : 0,
       ...(this.sides ? { mirror: this.sides } : {}),
     };
     const request: Request = {
       kind: 'shape',
-      tool: this.settings.wire(this.once ?? this.tool, this.radius),
+      tool: this.settings.wire(tool, this.size),
       reach,
       input,
     };
@@ -660,11 +646,14 @@ export class Shaping {
     document.body.dataset['picked'] = String(picked?.axis ?? '');
     document.body.dataset['bears'] = String(picked?.bears ?? '');
     // What moves under the hand is seen in the plant itself.
-    const moving = commit !== null || ((busy || this.isBusy) && this.tool !== 'sketch');
+    const row = this.tool && rowOf(this.tool);
+    const draws = row?.trace !== undefined;
+    const isLine = row?.trace === 'line';
+    const moving = commit !== null || ((busy || this.isBusy) && !isLine);
     this.light(
-      moving || this.tool === 'silhouette' || this.brushes
+      moving || (draws && !isLine)
         ? undefined
-        : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)),
+        : (picked?.axis ?? (row?.chooses ? this.chosen?.axis : undefined)),
     );
   }
 
@@ -736,7 +725,7 @@ export class Shaping {
 
   private showRing(): void {
     this.overlay.setRing(
-      this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
+      isBrush(this.tool) && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
     );
   }
 }

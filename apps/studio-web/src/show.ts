@@ -10,7 +10,7 @@ import type { Session } from './session';
 import type { Shaping } from './shaping';
 import type { Sheet } from './sheet/sheet';
 import { statsTable } from './stats';
-import { number, t, tOf, warning } from './text';
+import { hasText, number, t, tOf, warning } from './text';
 import type { Theme } from './theme';
 import { el, icon, popover, relabel } from './ui';
 import type { ViewModes } from './viewmode';
@@ -85,13 +85,16 @@ export class Show {
     this.emptySheet();
   }
 
-  /** What would be undone and done again. */
+  /** What would be undone and done again: a step by its word, or an edit by hand by its own. */
   private steps(state: DocumentState): void {
     for (const which of ['undo', 'redo'] as const) {
       const step = state[which];
       const b = this.parts.buttons.get(which)!;
       b.disabled = step === null;
-      const label = step === null ? t(which) : t(`${which}.step`, { step: tOf('step', step) });
+      const label =
+        step === null
+          ? t(which)
+          : t(`${which}.step`, { step: tOf(hasText(`step.${step}`) ? 'step' : 'edit', step) });
       relabel(b, label, keyOf(which));
     }
   }

@@ -1,70 +1,77 @@
 /** What the tools of the view are set to, each by itself, and how the core is told. */
-import { t } from './text';
-import type { ShapeTool } from './tools';
-import type { Growth, ToolKind, ViewPlane } from './wire';
+import { tOf } from './text';
+import { isBrush, isNumber, type NumberSetting, rowOf, SHAPE_WORDS, type ShapeTool } from './tools';
+import type { ToolKind, ViewPlane } from './wire';
 
-/** One step of a number, by a key of the wrist or a notch of the wheel; of the vigour, the share of it. */
-const GROWTH_STEPS: Record<keyof Growth, number> = {
-  vigour: 0.12,
-  apical: 0.04,
-  angle_deg: 5,
-  lift: 0.04,
-  apart: 0.2,
-};
-/** Within these its numbers are set by hand. */
-export const GROWTH = {
-  vigour: [0.5, 8],
-  apical: [0, 1],
-  angle_deg: [15, 110],
-  lift: [-0.6, 0.6],
-  apart: [0, 4],
-} as const satisfies Record<keyof Growth, readonly [number, number]>;
+type Values = Record<string, number | boolean>;
+
+/** To hundredths. */
+const rounded = (x: number): string => String(Math.round(x * 100) / 100);
 
 /** None takes over what another was set to. */
 export class ToolSettings {
-  readonly prune = { whole: false };
-  readonly sketch = { twigs: 1, tilt_deg: 0 };
-  readonly brush = { share: 0.07, density: 1 };
-  silhouette: { density: number; trim: boolean; plane?: ViewPlane } = { density: 1, trim: true };
-  readonly leaves = { share: 0.07, more: false };
-  readonly grow: Growth = { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12, apart: 1 };
+  /** Where outlines are drawn, if that was placed in space. */
+  plane: ViewPlane | undefined;
+  private readonly values = new Map<ShapeTool, Values>(
+    SHAPE_WORDS.map((word) => [
+      word,
+      Object.fromEntries(Object.entries(rowOf(word).settings).map(([name, { is }]) => [name, is])),
+    ]),
+  );
 
-  /** The tool as the core knows it. `radius_m`: of the brush. */
-  wire(word: ShapeTool | undefined, radius_m: number): ToolKind {
-    switch (word) {
-      case undefined:
-        return 'pick';
-      case 'prune':
-        return { prune: { ...this.prune } };
-      case 'sketch':
-        return { sketch: { ...this.sketch } };
-      case 'brush':
-        return { brush: { radius_m, density: this.brush.density } };
-      case 'silhouette':
-        return { silhouette: { ...this.silhouette } };
-      case 'grow':
-        return { grow: { ...this.grow } };
-      case 'leaves':
-        return { leaves: { radius_m, keep: this.leaves.more ? 2 : 0.25 } };
-      default:
-        return word;
-    }
+  of(word: ShapeTool): Values {
+    return this.values.get(word)!;
   }
 
-  /** A number of growth more or less, by so many of its steps. */
-  turnGrowth(of: keyof Growth, steps: number): void {
-    const { grow } = this;
-    const [[low, high], step] = [GROWTH[of], GROWTH_STEPS[of]];
-    // Vigour by shares: it counts by how many times more.
-    const to = of === 'vigour' ? grow[of] * (1 + step) ** steps : grow[of] + step * steps;
-    grow[of] = Math.min(high, Math.max(low, to));
+  set(word: ShapeTool, name: string, value: number | boolean): void {
+    const s = rowOf(word).settings[name]!;
+    this.of(word)[name] =
+      isNumber(s) && typeof value === 'number' ? Math.min(s.high, Math.max(s.low, value)) : value;
   }
 
-  /** Numbers of growth in words. */
-  growthText(...of: (keyof Growth)[]): string {
-    const { grow } = this;
-    const shown = (key: keyof Growth): string =>
-      key === 'angle_deg' ? `${Math.round(grow[key])}°` : String(Math.round(grow[key] * 100) / 100);
-    return of.map((key) => `${t(`shape.grow.${key}`)} ${shown(key)}`).join(' · ');
+  /** The radius of a brush, metres of a plant that is so large; of the brush of branches, where the tool is none. */
+  radius(word: ShapeTool | undefined, size: number): number {
+    return Number(this.of(word && isBrush(word) ? word : 'brush')['radius_m']) * size;
+  }
+
+  /** What a tool is set to as the core knows it, on a plant of this size, metres. */
+  fields(word: ShapeTool, size: number): Values {
+    return Object.fromEntries(
+      Object.entries(this.of(word)).map(([name, value]) => {
+        const s = rowOf(word).settings[name]!;
+        return [name, isNumber(s) && s.ofPlant ? Number(value) * size : value];
+      }),
+    );
+  }
+
+  /** The tool as the core knows it. */
+  wire(word: ShapeTool, size: number): ToolKind {
+    const fields = this.fields(word, size);
+    if (Object.keys(fields).length === 0) return word as ToolKind;
+    const placed = rowOf(word).trace === 'outline' && this.plane ? { plane: this.plane } : {};
+    return { [word]: { ...fields, ...placed } } as unknown as ToolKind;
+  }
+
+  /** A number more or less, by so many of its notches. */
+  turn(word: ShapeTool, name: string, notches: number): void {
+    const { notch = 0 } = rowOf(word).settings[name] as NumberSetting;
+    const now = Number(this.of(word)[name]);
+    this.set(
+      word,
+      name,
+      typeof notch === 'number' ? now + notch * notches : now * (1 + notch.share) ** notches,
+    );
+  }
+
+  /** A number with its unit, on a plant of this size, metres. */
+  shown(word: ShapeTool, size: number, name: string): string {
+    const { ofPlant, unit = '' } = rowOf(word).settings[name] as NumberSetting;
+    const value = Number(this.of(word)[name]);
+    return ofPlant ? `${rounded(value * size)} m` : `${rounded(value)}${unit}`;
+  }
+
+  /** Numbers in words. */
+  text(word: ShapeTool, size: number, ...names: string[]): string {
+    return names.map((name) => `${tOf('shape.set', name)} ${this.shown(word, size, name)}`).join(' · ');
   }
 }

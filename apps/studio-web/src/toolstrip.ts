@@ -1,9 +1,17 @@
 /** The strip of the tools that shape a plant: settings of the tool in the hand, and what is known of the chosen branch. */
-import { number, t, type TextKey } from './text';
-import { CLIMB_KEYS, type ShapeTool } from './tools';
-import { GROWTH, type ToolSettings } from './toolsettings';
+import { hasText, number, t, type TextKey, tOf } from './text';
+import {
+  CLIMB_KEYS,
+  isChoice,
+  isNumber,
+  type NumberSetting,
+  rowOf,
+  type Setting,
+  type ShapeTool,
+} from './tools';
+import type { ToolSettings } from './toolsettings';
 import { el, icon, type IconName } from './ui';
-import type { Growth, ShapeAnswer, ShapeCommand } from './wire';
+import type { ShapeAnswer, ShapeCommand } from './wire';
 
 /** What the strip knows of the hands, and what it has them do. */
 export interface Hands {
@@ -12,12 +20,12 @@ export interface Hands {
   /** So many branches up is what is meant. */
   readonly bearers: number;
   readonly isMirrored: boolean;
-  /** Of the brush, metres. */
-  readonly radius: number;
+  /** Of the plant, metres. */
+  readonly size: number;
   readonly editCount: number;
   turnMirror(): void;
-  tellBrush(): void;
-  showRing(): void;
+  /** A setting of the tool in the hand is another now. */
+  changed(): void;
   climb(by: 1 | -1): void;
   shapeChosen(command: ShapeCommand): void;
   /** Shows the strip anew. */
@@ -25,182 +33,91 @@ export interface Hands {
 }
 
 /** What a tool can be set to, and what it can do with the branch that is chosen. */
-export function toolOptions(tool: ShapeTool | undefined, hands: Hands): HTMLElement[] {
-  const { settings: s } = hands;
-  const hint = (key: TextKey): HTMLElement => el('span', { class: 'muted' }, t(key));
-  const chips = (
-    key: TextKey,
-    words: readonly [string, TextKey][],
-    now: string,
-    act: (word: string) => void,
-  ): HTMLElement =>
-    el(
-      'span',
-      { class: 'chips', role: 'group', 'aria-label': t(key) },
-      ...words.map(([word, text]) =>
-        el(
-          'button',
-          {
-            type: 'button',
-            class: 'chip',
-            id: `b-shape-${word}`,
-            'aria-pressed': String(word === now),
-            onclick: () => {
-              act(word);
-              hands.renew();
-            },
-          },
-          t(text),
-        ),
-      ),
-    );
-  const slider = (
-    key: TextKey,
-    low: number,
-    high: number,
-    step: number,
-    value: number,
-    shown: (x: number) => string,
-    act: (x: number) => void,
-  ): HTMLElement => {
-    const output = el('output', {}, shown(value));
-    const input = el('input', {
-      type: 'range',
-      min: String(low),
-      max: String(high),
-      step: String(step),
-      'aria-label': t(key),
-      oninput: () => {
-        act(input.valueAsNumber);
-        output.textContent = shown(input.valueAsNumber);
-        hands.showRing();
-      },
-      onchange: () => input.blur(),
-    });
-    input.value = String(value);
-    return el('label', {}, el('span', {}, t(key)), input, output);
+export function toolOptions(tool: ShapeTool, hands: Hands): HTMLElement[] {
+  const row = rowOf(tool);
+  const { chosen, isMirrored } = hands;
+  const hint = `shape.${tool}.hint`;
+  const told = el('span', { class: 'muted' }, hasText(hint) ? t(hint) : '');
+  // What grows in the hand is told in the place of the hint.
+  if (row.rounds) told.id = 'grown';
+  return [
+    ...(row.chooses && chosen ? chosenBox(chosen, hands) : hasText(hint) ? [told] : []),
+    ...Object.entries(row.settings).map(([name, setting]) => option(tool, name, setting, hands)),
+    ...(row.mirrors
+      ? [chips(t('shape.mirror'), [['mirror', 'shape.mirror', isMirrored]], () => hands.turnMirror())]
+      : []),
+    ...(row.climbs ? [climbBox(hands)] : []),
+  ];
+}
+
+function option(tool: ShapeTool, name: string, setting: Setting, hands: Hands): HTMLElement {
+  const { settings } = hands;
+  const now = settings.of(tool)[name];
+  const act = (value: number | boolean): void => {
+    settings.set(tool, name, value);
+    hands.changed();
+    hands.renew();
   };
-  const sides = (): HTMLElement =>
-    chips('shape.mirror', [['mirror', 'shape.mirror']], hands.isMirrored ? 'mirror' : '', () => {
-      hands.turnMirror();
-    });
-  const plain = (x: number): string => String(Math.round(x * 100) / 100);
-  const radius = (of: { share: number }): HTMLElement =>
-    slider(
-      'shape.radius',
-      Math.log(0.01),
-      Math.log(0.4),
-      0.01,
-      Math.log(of.share),
-      () => `${plain(hands.radius)} m`,
-      (x) => {
-        of.share = Math.exp(x);
-        hands.tellBrush();
-      },
+  const label = (word: string): TextKey => `shape.${tool}.${word}` as TextKey;
+  if (isNumber(setting)) return slider(tool, name, setting, hands);
+  if (isChoice(setting)) {
+    const words = Object.entries(setting.words);
+    return chips(
+      t(`shape.${tool}`),
+      words.map(([word, value]) => [word, label(word), value === now]),
+      (word) => act(setting.words[word]!),
     );
-  switch (tool) {
-    case 'pick':
-      return [
-        ...(hands.chosen ? chosenBox(hands.chosen, hands) : [hint('shape.pick.hint')]),
-        climbBox(hands),
-      ];
-    case 'rotate':
-      return [hint('shape.rotate.hint'), climbBox(hands)];
-    case 'move':
-      return [hint('shape.move.hint'), climbBox(hands)];
-    case 'prune':
-      return [
-        chips(
-          'shape.prune',
-          [
-            ['part', 'shape.prune.part'],
-            ['whole', 'shape.prune.whole'],
-          ],
-          s.prune.whole ? 'whole' : 'part',
-          (w) => {
-            s.prune.whole = w === 'whole';
-          },
-        ),
-        climbBox(hands),
-      ];
-    case 'copy':
-      return [hint('shape.copy.hint'), climbBox(hands)];
-    case 'regrow':
-      return [hint('shape.regrow.hint'), climbBox(hands)];
-    case 'sketch':
-      return [
-        slider('shape.twigs', 0, 4, 0.25, s.sketch.twigs, plain, (x) => {
-          s.sketch.twigs = x;
-        }),
-        slider(
-          'shape.tilt',
-          -75,
-          75,
-          5,
-          s.sketch.tilt_deg,
-          (x) => `${plain(x)}°`,
-          (x) => {
-            s.sketch.tilt_deg = x;
-          },
-        ),
-        sides(),
-      ];
-    case 'brush':
-      return [
-        radius(s.brush),
-        slider('shape.density', 0.25, 4, 0.25, s.brush.density, plain, (x) => {
-          s.brush.density = x;
-          hands.tellBrush();
-        }),
-        sides(),
-      ];
-    case 'silhouette':
-      return [
-        slider('shape.density', 0.25, 4, 0.25, s.silhouette.density, plain, (x) => {
-          s.silhouette.density = x;
-        }),
-        chips('shape.silhouette', [['trim', 'shape.trim']], s.silhouette.trim ? 'trim' : '', () => {
-          s.silhouette.trim = !s.silhouette.trim;
-        }),
-        sides(),
-      ];
-    case 'grow': {
-      const number = (of: keyof Growth, step: number): HTMLElement => {
-        const [low, high] = GROWTH[of];
-        return slider(`shape.grow.${of}`, low, high, step, s.grow[of], plain, (x) => {
-          s.grow[of] = x;
-        });
-      };
-      const grown = hint('shape.grow.hint');
-      grown.id = 'grown';
-      return [
-        grown,
-        number('vigour', 0.1),
-        number('apical', 0.02),
-        number('angle_deg', 5),
-        number('lift', 0.02),
-        number('apart', 0.1),
-        sides(),
-      ];
-    }
-    case 'leaves':
-      return [
-        chips(
-          'shape.leaves',
-          [
-            ['fewer', 'shape.leaves.fewer'],
-            ['more', 'shape.leaves.more'],
-          ],
-          s.leaves.more ? 'more' : 'fewer',
-          (w) => {
-            s.leaves.more = w === 'more';
-          },
-        ),
-        radius(s.leaves),
-      ];
-    default:
-      return [];
   }
+  return chips(t(`shape.${tool}`), [[setting.word, label(setting.word), now === true]], () => act(!now));
+}
+
+/** Buttons side by side: the word, the text and whether it is pressed of each. */
+function chips(
+  group: string,
+  words: readonly (readonly [string, TextKey, boolean])[],
+  act: (word: string) => void,
+): HTMLElement {
+  return el(
+    'span',
+    { class: 'chips', role: 'group', 'aria-label': group },
+    ...words.map(([word, text, isOn]) =>
+      el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          id: `b-shape-${word}`,
+          'aria-pressed': String(isOn),
+          onclick: () => act(word),
+        },
+        t(text),
+      ),
+    ),
+  );
+}
+
+/** What is in shares of the plant is set by its logarithm: a twig and a crown are both within reach. */
+function slider(tool: ShapeTool, name: string, setting: NumberSetting, hands: Hands): HTMLElement {
+  const { settings, size } = hands;
+  const { low, high, step, ofPlant } = setting;
+  const [to, back] = ofPlant ? [Math.log, Math.exp] : [(x: number) => x, (x: number) => x];
+  const label = tOf('shape.set', name);
+  const output = el('output', {}, settings.shown(tool, size, name));
+  const input = el('input', {
+    type: 'range',
+    min: String(to(low)),
+    max: String(to(high)),
+    step: String(step),
+    'aria-label': label,
+    oninput: () => {
+      settings.set(tool, name, back(input.valueAsNumber));
+      output.textContent = settings.shown(tool, size, name);
+      hands.changed();
+    },
+    onchange: () => input.blur(),
+  });
+  input.value = String(to(Number(settings.of(tool)[name])));
+  return el('label', {}, el('span', {}, label), input, output);
 }
 
 /** What is known of the branch that was pointed at, and what can be done with it. */

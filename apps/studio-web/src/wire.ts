@@ -406,16 +406,12 @@ export type ExportFormat =
   "ply"
   | /** Bare triangles. */
   "stl"
-  | /** The structure of each plant as a multiscale tree graph. */
-  "mtg"
-  | /** The structure of each plant with the meshes of its organs, as Open Plant Format. */
-  "opf"
-  | /** The structure of each plant as a table of cylinders. */
-  "qsm"
   | /** The current drawing in our JSON. */
   "json"
   | /** The current drawing as SVG, with its layers. */
-  "svg";
+  "svg"
+  | /** The structure of each plant. */
+  StructureFormat;
 
 /** What is exported, and how it is written. */
 export type ExportRequest = {
@@ -2103,6 +2099,15 @@ export type StrokeTurn = {
   /** Factors of size along x and y before the turn; a negative one mirrors. */
   scale: [number, number];
 };
+
+/** The file formats that hold the structure of a plant, as text; written only. */
+export type StructureFormat =
+  | /** The structure of each plant as a multiscale tree graph. */
+  "mtg"
+  | /** The structure of each plant with the meshes of its organs, as Open Plant Format. */
+  "opf"
+  | /** The structure of each plant as a table of cylinders. */
+  "qsm";
 
 /** Surface of a measured blade (Wang et al. */
 export type SurfaceKind =

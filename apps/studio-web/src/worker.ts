@@ -126,6 +126,8 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.share();
     case 'export':
       return s.export(JSON.stringify(request.request));
+    case 'weigh':
+      return s.export(JSON.stringify(request.request)).length;
     case 'look':
       return lookAtExport(s, request.request, request.level);
     case 'unlook':
@@ -170,6 +172,7 @@ function tellState(s: StudioSession): void {
 const QUIET: ReadonlySet<Request['kind']> = new Set([
   'save',
   'export',
+  'weigh',
   'look',
   'unlook',
   'begin',

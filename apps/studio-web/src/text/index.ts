@@ -52,10 +52,13 @@ export function warning({ code, fields, message }: WarningView): string {
   return texts?.zhWarnings[code]?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
 }
 
+/** Whether a key made of parts has a text. */
+export const hasText = (key: string): key is TextKey => key in en;
+
 /** The text of a key made of parts; the last part itself if there is no such key. */
 export function tOf(group: string, word: string): string {
   const key = `${group}.${word}`;
-  return key in en ? t(key as TextKey) : word;
+  return hasText(key) ? t(key) : word;
 }
 
 /** Whole numbers in the language's own grouping. */

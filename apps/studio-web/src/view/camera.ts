@@ -261,6 +261,11 @@ export class Rig {
     this.events.redraw();
   }
 
+  /** A walker goes there until led elsewhere: right, up and ahead, each -1 to 1. */
+  lead(right: number, up: number, ahead: number): void {
+    this.walk?.lead(right, up, ahead);
+  }
+
   stopWalking(): void {
     if (!this.walk) return;
     this.walk.dispose();

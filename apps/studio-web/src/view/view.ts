@@ -16,9 +16,10 @@ import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import { onScreen, pointerOf, reachOf } from './aim';
 import { bonesOf } from './bones';
-import { frameSheet, Rig, type Side } from './camera';
+import { Rig, type Side } from './camera';
 import { Easel } from './easel';
 import { Frames } from './frames';
+import { Framing } from './framing';
 import { type Guide, Guides } from './guides';
 import { immerse, type Within } from './immersion';
 import type { StageSetting } from './moods';
@@ -34,14 +35,26 @@ import { snapshotOf } from './snapshot';
 import { Stage } from './stage';
 import type { WalkMode } from './walk';
 
-/** Height of the strip of tools with its options, pixels. */
-const STRIP = 116;
 /** Edge of the shadow map, pixels. */
 const SHADOW = { fast: 512, fine: 2048 } as const;
 /** Eyes of a walker, metres, and between which heights of the stage they stay. */
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
-/** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
-const SUNK = 0.06;
+/** What a person does in the view, and what it says of itself. */
+export interface ViewEvents {
+  /** A plant was clicked. */
+  pick(plant: number): void;
+  /** A picture was drawn: what lies over it may have to move. */
+  drawn(): void;
+  /** The front view is shown, or not any more. */
+  front(on: boolean): void;
+  walked(mode: WalkMode | undefined): void;
+  /** The graphics card took everything away, or gave it back. */
+  context(lost: boolean): void;
+  placeBegin(): void;
+  place(plant: number, position: [number, number, number], yaw: number, scale: number): void;
+  placeEnd(): void;
+  obstacle(plant: number, row: number, by: [number, number, number]): void;
+}
 
 export class PlantView {
   readonly element = document.createElement('div');
@@ -64,46 +77,23 @@ export class PlantView {
   private weak = false;
   /** See `isFine`; not known before the stage is set. */
   private fine: boolean | undefined;
-  /** The plant keeps its size, whatever it becomes. */
-  private held = false;
   private readonly placer: Placer;
   private dragging = false;
   private boned = false;
-  private scale = 1;
-  /** The plant to which the stage was fitted. */
-  private fitted: number | null = null;
-  private front = false;
-  private sheetSeen: Box | undefined;
-  private follow = true;
+  private readonly framing: Framing;
   private readonly slow: boolean;
   private readonly frames: Frames;
   private readonly easel: Easel | undefined;
   /** Shows the pictures and is touched. */
   private readonly canvas: HTMLCanvasElement;
-  /** A tool is in the hand: the first button is the tool's, the second turns the view. */
-  private hands = false;
   /** A headset shows the scene. */
   private immersing = false;
-  /** Pixels on the left that something else covers. */
-  private inset = 0;
-  private wanted = 0;
-  /** Pixels at the foot that something else covers. */
-  private low = 0;
   private readonly picker = new Picker(this.element, () => this.camera, this.holder);
-  /** A plant was clicked. */
-  onPick: (plant: number) => void = () => {};
-  /** A picture was drawn: what lies over it may have to move. */
-  onDraw: () => void = () => {};
-  onFrontChange: (front: boolean) => void = () => {};
-  onWalk: (mode: WalkMode | undefined) => void = () => {};
-  onContext: (lost: boolean) => void = () => {};
-  onPlaceBegin: () => void = () => {};
-  onPlace: (plant: number, position: [number, number, number], yaw: number, scale: number) => void = () => {};
-  onPlaceEnd: () => void = () => {};
-  onObstacle: (plant: number, row: number, by: [number, number, number]) => void = () => {};
-
   /** Throws where the browser has no WebGL 2. */
-  constructor(label: string) {
+  constructor(
+    label: string,
+    private readonly events: ViewEvents,
+  ) {
     this.slow = drawnBySoftware();
     this.looks = new Looks(this.slow);
     this.plants = new Plants(this.looks, this.holder);
@@ -148,14 +138,14 @@ export class PlantView {
       ray: (x, y) => this.picker.ray(x, y),
       hold: (on) => {
         this.dragging = on;
-        if (!on) this.fitStage();
+        if (!on) this.framing.fit();
       },
       redraw: () => {
         this.stage.touch();
         this.redraw();
       },
       moved: (row, by) => {
-        if (this.plants.current !== null) this.onObstacle(this.plants.current, row, by);
+        if (this.plants.current !== null) this.events.obstacle(this.plants.current, row, by);
       },
     });
     this.setLabel(label);
@@ -166,46 +156,56 @@ export class PlantView {
       redraw: () => this.redraw(),
       taken: (turns) => this.taken(turns),
       eyes: () => ({
-        height: Math.min(EYES.high, Math.max(EYES.low, EYES.m * this.scale)),
-        metre: this.scale,
+        height: Math.min(EYES.high, Math.max(EYES.low, EYES.m * this.framing.scale)),
+        metre: this.framing.scale,
       }),
-      walked: (mode) => this.onWalk(mode),
+      walked: (mode) => events.walked(mode),
+    });
+    this.framing = new Framing({
+      element: this.element,
+      stage: this.stage,
+      plants: this.plants,
+      holder: this.holder,
+      guides: this.guides,
+      rig: this.rig,
+      flat: this.flat,
+      isDragged: () => this.dragging,
     });
     this.placer = new Placer(this.rig.far, canvas, this.stage.scene, {
       begin: () => {
         this.dragging = true;
         this.rig.controls.enabled = false;
-        this.onPlaceBegin();
+        events.placeBegin();
       },
       moved: () => this.moved(),
       end: () => {
         this.dragging = false;
         this.rig.controls.enabled = true;
-        this.onPlaceEnd();
+        events.placeEnd();
       },
       redraw: () => this.redraw(),
     });
     canvas.addEventListener('pointerdown', (e) => {
-      if (!this.hands) this.taken(e.button === 0);
+      if (!this.framing.hands) this.taken(e.button === 0);
       else if (e.button !== 0) this.taken(e.button === 2);
     });
     listenForClicks(
       canvas,
-      () => !this.hands && !this.dragging,
+      () => !this.framing.hands && !this.dragging,
       (x, y) => {
         if (this.dragging || this.plants.guest) return;
         const plant = this.plantAt(x, y);
-        if (plant !== undefined && plant !== this.plants.current) this.onPick(plant);
+        if (plant !== undefined && plant !== this.plants.current) events.pick(plant);
       },
     );
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
     const { domElement } = this.renderer;
     domElement.addEventListener('webglcontextlost', (e) => {
       e.preventDefault();
-      this.onContext(true);
+      events.context(true);
     });
     domElement.addEventListener('webglcontextrestored', () => {
-      this.onContext(false);
+      events.context(false);
       this.redraw();
     });
     new ResizeObserver(() => this.resize()).observe(this.element);
@@ -244,7 +244,7 @@ export class PlantView {
     this.holder.visible = this.guides.group.visible = false;
     const canvas = snapshotOf(sent, { renderer, stage, looks }, eye, [width, height]);
     this.holder.visible = this.guides.group.visible = true;
-    this.stage.setFlat(this.front);
+    this.stage.setFlat(this.isFront);
     this.stage.touch();
     this.resize();
     this.render();
@@ -276,10 +276,10 @@ export class PlantView {
   update(view: SceneView, fresh: Sent[]): void {
     this.plants.update(view, fresh);
     this.stand();
-    this.fitStage();
+    this.framing.fit();
     this.showHandles();
     this.stage.touch();
-    this.lay();
+    this.framing.lay();
     this.redraw();
   }
 
@@ -287,9 +287,9 @@ export class PlantView {
   coarse(fresh: Sent[]): void {
     this.plants.coarse(fresh);
     this.stand();
-    this.fitStage();
+    this.framing.fit();
     this.stage.touch();
-    this.lay();
+    this.framing.lay();
     this.redraw();
   }
 
@@ -299,10 +299,10 @@ export class PlantView {
     this.plants.setStates(states, current);
     if (other && this.bones && this.chosen) this.chosen.place.add(this.bones);
     this.stand();
-    this.fitStage();
+    this.framing.fit();
     this.showHandles();
     this.stage.touch();
-    this.lay();
+    this.framing.lay();
     // A plant that is not there yet comes in a moment: one picture of a large scene can take the processor seconds.
     const whole = states.every(({ id }) => this.plants.named.has(id));
     if (whole || !this.slow) this.redraw();
@@ -323,50 +323,7 @@ export class PlantView {
   }
 
   private stand(): void {
-    this.plants.stand({ front: this.front, boned: this.boned, dragging: this.dragging });
-  }
-
-  /** Brings all that is seen to the size of the stage. */
-  private fitStage(): void {
-    this.shadeAll();
-    // Under a hand that works on it a plant keeps its size.
-    if (this.dragging || this.held || (this.hands && this.fitted === this.plants.current)) return;
-    const box = this.plants.bounds();
-    const { min, max } = box;
-    const size = max.clone().sub(min);
-    const largest = Math.max(size.x, size.y, size.z);
-    if (!(largest > 0)) return;
-    this.fitted = this.plants.current;
-    this.scale = 1 / largest;
-    this.holder.scale.setScalar(this.scale);
-    // One plant stands where it was drawn; several stand around the middle of the stage.
-    const alone = this.front || this.plants.guest !== undefined;
-    const [x, z] = alone
-      ? [0, 0]
-      : this.plants.named.size > 1
-        ? [(min.x + max.x) / 2, (min.z + max.z) / 2]
-        : this.plants.only;
-    // Roots below the ground are shown: the ground sinks no plant. But the tip of a leaf may be in the grass.
-    const sunk = this.stage.covers && -min.y < SUNK * size.y;
-    const up = sunk ? 0 : Math.max(0, -min.y * this.scale);
-    this.holder.position.set(-x * this.scale, up, -z * this.scale);
-    // Beside the plants and not among them: it throws no shadow.
-    this.guides.group.scale.copy(this.holder.scale);
-    this.guides.group.position.copy(this.holder.position);
-    this.stage.setMetre(this.scale);
-    this.guides.setBox(box);
-    this.shadeAll();
-    if (this.follow) this.look(box, !this.rig.isLed);
-  }
-
-  /** Whatever was moved off the stage keeps its shadow. */
-  private shadeAll(): void {
-    const { min, max } = this.plants.bounds();
-    if (min.x > max.x) return;
-    const { x, z } = this.holder.position;
-    const far = (low: number, high: number, at: number): number =>
-      Math.max(Math.abs(low * this.scale + at), Math.abs(high * this.scale + at));
-    this.stage.shadeUpTo(Math.hypot(far(min.x, max.x, x), far(min.z, max.z, z)));
+    this.plants.stand({ front: this.isFront, boned: this.boned, dragging: this.dragging });
   }
 
   async setGizmo(mode: Gizmo | undefined): Promise<void> {
@@ -389,7 +346,7 @@ export class PlantView {
   private showHandles(): void {
     if (this.dragging) return;
     const fixed = this.plants.state?.fixed ?? false;
-    const plant = this.front || this.plants.guest || fixed ? undefined : this.chosen;
+    const plant = this.isFront || this.plants.guest || fixed ? undefined : this.chosen;
     this.placer.show(plant?.place.visible ? plant.place : undefined);
   }
 
@@ -398,7 +355,7 @@ export class PlantView {
     if (!place || this.plants.current === null) return;
     const was = this.plants.state?.scale ?? 1;
     const { position, yaw, scale } = this.placer.placed(place, was);
-    this.onPlace(this.plants.current, position, yaw, scale);
+    this.events.place(this.plants.current, position, yaw, scale);
     this.stage.touch();
     this.redraw();
   }
@@ -411,7 +368,7 @@ export class PlantView {
   /** The obstacle of the chosen plant under a point of the screen. */
   private obstacleUnder(x: number, y: number): THREE.Intersection | undefined {
     const { chosen } = this;
-    if (this.hands || this.plants.guest || this.front || this.rig.walking || !chosen?.place.visible)
+    if (this.framing.hands || this.plants.guest || this.isFront || this.rig.walking || !chosen?.place.visible)
       return undefined;
     if (this.dragging || this.placer.isUnderPointer || chosen.obstacles.children.length === 0)
       return undefined;
@@ -430,7 +387,7 @@ export class PlantView {
   }
 
   private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
-    return this.front && this.seen?.front ? this.flat : this.rig.far;
+    return this.isFront && this.seen?.front ? this.flat : this.rig.far;
   }
 
   /** The place of the ground under a point of the screen: x and z, metres of the scene; none at or above the horizon. */
@@ -493,7 +450,7 @@ export class PlantView {
   /** What a headset is to know of the stage: a metre of the plants, and half of their breadth, in its units. */
   get immersed(): { metre: number; reach: number } {
     const size = this.plants.bounds().getSize(new THREE.Vector3());
-    return { metre: this.scale, reach: (Math.max(0, size.x, size.z) * this.scale) / 2 };
+    return { metre: this.framing.scale, reach: (Math.max(0, size.x, size.z) * this.framing.scale) / 2 };
   }
 
   /** It gives its pictures to a headset. */
@@ -590,15 +547,9 @@ export class PlantView {
 
   /** With a tool in the hand the second button or two fingers turn the view, and it keeps its size. */
   setHands(on: boolean): void {
-    if (on === this.hands) return;
-    this.hands = on;
+    if (on === this.framing.hands) return;
     this.rig.setHands(on);
-    // The tools' strip lies over the foot of the view.
-    this.low = on ? STRIP : 0;
-    this.inset = this.wanted;
-    this.lay();
-    if (!on && this.follow) this.fitStage();
-    else if (this.follow) this.frameNowBox();
+    this.framing.setHands(on);
     this.redraw();
   }
 
@@ -609,42 +560,15 @@ export class PlantView {
 
   /** Pixels on the left that a list covers: the plant is shown beside it. */
   setInset(pixels: number): void {
-    this.wanted = pixels > 0.5 * this.element.clientWidth ? 0 : pixels;
-    // Under a hand the view stands still.
-    if (this.hands || this.wanted === this.inset) return;
-    this.inset = this.wanted;
-    this.lay();
-    if (this.follow) this.frameNowBox();
-    this.redraw();
+    if (this.framing.setInset(pixels)) this.redraw();
   }
 
   /** Shows the whole plant and follows it again. */
   frameNow(): void {
-    this.follow = true;
-    this.fitted = null;
     this.setFront(false);
     this.rig.stopWalking();
-    this.fitStage();
-    this.frameNowBox();
+    this.framing.reset();
     this.redraw();
-  }
-
-  private frameNowBox(): void {
-    this.look(this.plants.bounds(), false);
-  }
-
-  /** Leads the camera to a box of metres. */
-  private look(box: THREE.Box3, now: boolean): void {
-    if (box.isEmpty()) return;
-    const seen = this.guides.any && !this.front ? this.guides.extend(box) : box;
-    const { clientWidth: w, clientHeight: h } = this.element;
-    const free = Math.max(1, h - this.low);
-    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
-    const { position } = this.holder;
-    const world = new THREE.Box3();
-    for (const corner of [seen.min, seen.max])
-      world.expandByPoint(corner.clone().multiplyScalar(this.scale).add(position));
-    this.rig.frame(world, across, now);
   }
 
   /** Goes round to a side of what is shown. */
@@ -659,8 +583,8 @@ export class PlantView {
     if (!chosen?.view || chosen.view.parts.length === 0) return;
     this.setFront(false);
     this.rig.stopWalking();
-    this.follow = false;
-    this.look(chosen.box(), false);
+    this.framing.follow = false;
+    this.framing.look(chosen.box(), false);
     this.redraw();
   }
 
@@ -678,7 +602,7 @@ export class PlantView {
     this.stage.set(setting, fine);
     if (fine !== this.fine) this.refit(fine);
     if (fine || blur > 0) void this.needPipeline();
-    if (this.stage.covers !== covered) this.fitStage();
+    if (this.stage.covers !== covered) this.framing.fit();
     this.redraw();
   }
 
@@ -698,7 +622,7 @@ export class PlantView {
 
   setGuide(guide: Guide, on: boolean): void {
     this.guides.set(guide, on);
-    if (this.follow) this.frameNowBox();
+    this.framing.lookAtAll();
     this.redraw();
   }
 
@@ -718,16 +642,15 @@ export class PlantView {
     const { far, controls } = this.rig;
     return {
       occlusion: this.isFine,
-      blur: this.front ? 0 : this.stage.current.blur,
+      blur: this.isFront ? 0 : this.stage.current.blur,
       focus: far.position.distanceTo(controls.target),
     };
   }
 
   /** The plant keeps its size from now on, or fits the stage again. */
   hold(on: boolean): void {
-    this.held = on;
     if (on) this.rig.glide(1);
-    else this.fitStage();
+    this.framing.hold(on);
     this.redraw();
   }
 
@@ -760,27 +683,24 @@ export class PlantView {
 
   /** The front view shows the same part of the plane as the sheet. */
   setFront(front: boolean): void {
-    if (front === this.front) return;
-    this.front = front;
+    if (front === this.isFront) return;
+    this.framing.front = front;
     this.stage.setFlat(front);
     this.stand();
-    this.fitStage();
+    this.framing.fit();
     this.showHandles();
-    this.lay();
+    this.framing.lay();
     this.redraw();
-    this.onFrontChange(front);
+    this.events.front(front);
   }
 
   get isFront(): boolean {
-    return this.front;
+    return this.framing.front;
   }
 
   setSheetSeen(box: Box): void {
-    this.sheetSeen = box;
-    if (this.front) {
-      this.lay();
-      this.redraw();
-    }
+    this.framing.setSheetSeen(box);
+    if (this.isFront) this.redraw();
   }
 
   /** The picture as it is shown now, or would be at rest. */
@@ -795,20 +715,9 @@ export class PlantView {
 
   /** A hand took the camera: it is no longer moved by itself, and turning leaves the front view. */
   private taken(turns: boolean): void {
-    if (this.front && turns) this.setFront(false);
+    if (this.isFront && turns) this.setFront(false);
     this.rig.leave();
-    if (!turns) this.follow = false;
-  }
-
-  private lay(): void {
-    const { clientWidth: w, clientHeight: h } = this.element;
-    this.rig.far.aspect = w / Math.max(1, h);
-    if (this.inset > 0 || this.low > 0) this.rig.far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
-    else this.rig.far.clearViewOffset();
-    this.rig.far.updateProjectionMatrix();
-    const front = this.seen?.front;
-    if (!front || !this.sheetSeen) return;
-    frameSheet(this.flat, front, this.sheetSeen, this.scale, this.holder.position.y, this.rig.far.aspect);
+    if (!turns) this.framing.follow = false;
   }
 
   private resize(): void {
@@ -816,8 +725,8 @@ export class PlantView {
     if (w === 0 || h === 0 || this.immersing) return;
     this.renderer.setPixelRatio(this.slow ? this.frames.grain : Math.min(2, devicePixelRatio || 1));
     this.renderer.setSize(w, h, false);
-    this.lay();
-    if (this.follow) this.frameNowBox();
+    this.framing.lay();
+    this.framing.lookAtAll();
     this.redraw();
   }
 
@@ -832,7 +741,7 @@ export class PlantView {
     this.plants.standIn?.tick(performance.now() / 1000);
     // Shadows that move with it are for a graphics card.
     if (this.plants.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
-    const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));
+    const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.isFront));
     this.stage.prepare(!through, this.rig.far.aspect, this.holder);
     if (through) {
       const { x, y } = this.renderer.getDrawingBufferSize(new THREE.Vector2());
@@ -843,7 +752,7 @@ export class PlantView {
       this.renderer.render(this.stage.scene, camera);
     }
     this.element.dataset['eye'] = JSON.stringify(this.rig.pose);
-    this.onDraw();
+    this.events.drawn();
   }
 
   /** A machine that cannot draw so fast is asked for less, unless a person wants it so. */

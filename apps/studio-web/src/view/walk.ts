@@ -39,6 +39,8 @@ const KEYS: Record<string, readonly [number, number, number]> = {
 
 export class Walk {
   private readonly held = new Set<string>();
+  /** Where a stick on the screen leads. */
+  private readonly stick = new THREE.Vector3();
   private readonly gone = new AbortController();
   private fast = false;
   private frame = 0;
@@ -92,17 +94,30 @@ export class Walk {
     e.stopPropagation();
     if (down) this.held.add(key);
     else this.held.delete(key);
-    if (this.held.size > 0 && this.frame === 0) {
-      this.last = performance.now();
-      this.frame = requestAnimationFrame((now) => this.step(now));
-    }
+    this.start();
+  }
+
+  /** Goes there until it is led elsewhere: right, up and ahead, each -1 to 1. */
+  lead(right: number, up: number, ahead: number): void {
+    this.stick.set(right, up, ahead);
+    this.start();
+  }
+
+  private get goes(): boolean {
+    return this.held.size > 0 || this.stick.lengthSq() > 0;
+  }
+
+  private start(): void {
+    if (!this.goes || this.frame !== 0) return;
+    this.last = performance.now();
+    this.frame = requestAnimationFrame((now) => this.step(now));
   }
 
   private step(now: number): void {
     this.frame = 0;
     const seconds = Math.min(0.4, Math.max(0, now - this.last) / 1000);
     this.last = now;
-    const way = new THREE.Vector3();
+    const way = this.stick.clone();
     for (const key of this.held) way.add(new THREE.Vector3(...KEYS[key]!));
     if (way.lengthSq() > 0) {
       const pace = Math.min(FASTEST, Math.max(SLOWEST, PACE * this.eyes.metre)) * (this.fast ? RUN : 1);
@@ -121,7 +136,7 @@ export class Walk {
       camera.position.copy(to.clampLength(0, WORLD));
       this.events.moved();
     }
-    if (this.held.size > 0) this.frame = requestAnimationFrame((t) => this.step(t));
+    if (this.goes) this.frame = requestAnimationFrame((t) => this.step(t));
   }
 
   private turn(e: PointerEvent): void {

@@ -1,7 +1,7 @@
 /** What the board at the wrist has on each of its pages: which keys, and what each does. */
 import type { Shaping } from '../shaping';
-import { t, type TextKey } from '../text';
-import { SHAPE_TOOLS, type ShapeTool } from '../tools';
+import { t, type TextKey, tOf } from '../text';
+import { isNumber, rowOf, SHAPE_WORDS } from '../tools';
 import type { ExportFormat } from '../wire';
 import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
@@ -35,7 +35,6 @@ export interface Board {
   startLesson(): void;
 }
 
-const GROWTH_KEYS = ['vigour', 'apical', 'angle_deg', 'lift', 'apart'] as const;
 /** What a model is written as from within, in rows of keys. */
 const FORMATS = [
   ['glb', 'usda'],
@@ -56,7 +55,7 @@ const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
 /** The keys that the board has now, in rows. */
 export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   // The trigger is taken while something grows: these alone are pressed, by another button.
-  if (shaping.isGrowing) return growthRows(board, shaping);
+  if (shaping.isGrowing) return numberRows(board, shaping);
   const rows = {
     tools: () => toolRows(board, shaping, events),
     more: () => moreRows(board, shaping, events),
@@ -76,16 +75,19 @@ export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): R
   return [...rows, [open('more', () => {}), open('scene', () => board.tellPlant(0))]];
 }
 
-function growthRows(board: Board, shaping: Shaping): Rows {
-  return GROWTH_KEYS.map((of) =>
+/** Numbers of the tool in the hand: a key for less and one for more. */
+function numberRows(board: Board, shaping: Shaping): Rows {
+  const settings = Object.entries(shaping.word ? rowOf(shaping.word).settings : {});
+  const numbers = settings.filter(([, setting]) => isNumber(setting) && setting.notch !== undefined);
+  return numbers.map(([of]) =>
     ([-1, 1] as const).map(
       (by): Key => ({
         id: `${of}${by < 0 ? '-' : '+'}`,
-        label: `${t(`shape.grow.${of}`)} ${by < 0 ? '−' : '+'}`,
+        label: `${tOf('shape.set', of)} ${by < 0 ? '−' : '+'}`,
         wide: 3,
         act: () => {
-          shaping.turnGrowth(of, by);
-          board.say(shaping.growthText(of));
+          shaping.turn(of, by);
+          board.say(shaping.settingsText(of));
         },
       }),
     ),
@@ -94,15 +96,16 @@ function growthRows(board: Board, shaping: Shaping): Rows {
 
 function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   const now = board.state();
-  const tools = SHAPE_TOOLS.map(
-    ([word]: readonly [ShapeTool, string]): Key => ({
+  const numbers = numberRows(board, shaping);
+  const tools = SHAPE_WORDS.map(
+    (word): Key => ({
       id: word,
       label: t(`vr.tool.${word}` as TextKey),
       wide: 2,
       on: shaping.word === word,
       act: () => {
         shaping.take(word);
-        board.say(t(`shape.${word}` as TextKey));
+        board.say(t(`shape.${word}`));
       },
     }),
   );
@@ -120,8 +123,8 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
       key('redo', 2, events.redo),
       key('mirror', 2, (hand) => board.mirror(hand), shaping.isMirrored),
     ],
-    ...(shaping.word === 'grow'
-      ? growthRows(board, shaping)
+    ...(numbers.length > 0
+      ? numbers
       : [[key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))]]),
     [
       key('scale', 3, () => board.resize(), now.trueScale),

@@ -6,7 +6,7 @@ import * as THREE from 'three';
 import { grownText, type Shaping, type SpaceReach } from '../shaping';
 import { setSetting, setting } from '../store';
 import { t, type TextKey } from '../text';
-import type { ShapeTool } from '../tools';
+import { rowOf } from '../tools';
 import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
 import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
@@ -51,7 +51,6 @@ const TURNS = [
 ] as const satisfies readonly (readonly [keyof Growth, keyof Growth])[];
 /** Triangles of all plants, drawn for each eye; what else is seen has few. */
 const MOST_TRIANGLES = 140_000;
-const DRAWS: ReadonlySet<ShapeTool> = new Set<ShapeTool>(['sketch', 'brush', 'silhouette', 'leaves']);
 
 export class Headset {
   private session: XRSession | undefined;
@@ -380,7 +379,7 @@ export class Headset {
       this.obstruct(hand, at);
       return;
     }
-    if (!working && shaping.word === 'silhouette' && hand.holds('grip')) {
+    if (!working && shaping.isOutlining && hand.holds('grip')) {
       // The plane goes with the hand until the grip is let go.
       if (at && this.frames % 3 === 0) void shaping.placePlane(at);
       if (hand.pressed('grip')) this.wrist.say(t('vr.plane.hint'));
@@ -410,8 +409,7 @@ export class Headset {
     this.draw(hand.tip);
     const x = hand.thumb[0];
     const y = hand.thumb[1];
-    if (shaping.word !== 'grow' || working.by === 'grip')
-      shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
+    if (!shaping.isGrowing || working.by === 'grip') shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
     else this.turnNumbers(hand, x, y);
   }
 
@@ -427,8 +425,8 @@ export class Headset {
     if (hand.pressed('stick')) this.pair = (this.pair + 1) % TURNS.length;
     const [up, aside] = TURNS[this.pair]!;
     if (Math.hypot(x, y) > OUT && this.frames % 6 === 0) {
-      if (Math.abs(y) > OUT / 2) shaping.turnGrowth(up, y / 2);
-      if (Math.abs(x) > OUT / 2) shaping.turnGrowth(aside, x / 2);
+      if (Math.abs(y) > OUT / 2) shaping.turn(up, y / 2);
+      if (Math.abs(x) > OUT / 2) shaping.turn(aside, x / 2);
     } else if (!hand.pressed('stick')) {
       const meant = this.wrist.meet(hand.tip, hand.direction)?.key;
       this.wrist.point(meant);
@@ -438,7 +436,7 @@ export class Headset {
       meant.act(hand);
       return;
     }
-    this.wrist.say(shaping.growthText(up, aside));
+    this.wrist.say(shaping.settingsText(up, aside));
   }
 
   private begin(hand: Controller, by: 'trigger' | 'grip', at: ShapePointer): void {
@@ -452,10 +450,10 @@ export class Headset {
     this.working = { hand, by, last: at };
     this.drawn = 0;
     const word = tool ?? this.shaping.word;
-    if (word === 'grow') this.showKeys();
+    if (word && rowOf(word).rounds) this.showKeys();
     if (word === 'rotate') this.did('turn');
     else if (word !== 'pick') this.did('draw');
-    this.trace.visible = word !== undefined && DRAWS.has(word);
+    this.trace.visible = word !== undefined && rowOf(word).trace !== undefined;
     this.draw(hand.tip);
   }
 
