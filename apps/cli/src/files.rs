@@ -482,7 +482,7 @@ pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args:
     write_structure(outputs, ("--qsm", path), plant, StructureFormat::Qsm, args)
 }
 
-// The programs that read MTG, OPF and QSM files have Z upwards.
+// The programs that read MTG, OPF, QSM and SWC files have Z upwards.
 fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }

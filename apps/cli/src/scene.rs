@@ -99,7 +99,10 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let model = scene_model(document.name(), &plants);
     let structure = || {
         let [only] = seen.as_slice() else {
-            return Err(Failure::at(path, "holds several plants; a structure (MTG, OPF, QSM) is of one"));
+            return Err(Failure::at(
+                path,
+                "holds several plants; a structure (MTG, OPF, QSM, SWC) is of one",
+            ));
         };
         let plant = scene.get(only.id()).and_then(|p| p.plant);
         plant.ok_or_else(|| Failure::Bug("no plant was made".into()))

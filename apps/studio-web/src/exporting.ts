@@ -11,6 +11,7 @@ const STRUCTURES = {
   mtg: { type: 'text/plain', extension: 'mtg' },
   opf: { type: 'application/xml', extension: 'opf' },
   qsm: { type: 'text/csv', extension: 'csv' },
+  swc: { type: 'text/plain', extension: 'swc' },
 } as const satisfies Record<StructureFormat, { type: string; extension: string }>;
 const STRUCTURE_WORDS = Object.keys(STRUCTURES) as StructureFormat[];
 const FORMATS: readonly Target[] = [...MODELS, ...STRUCTURE_WORDS, 'png', 'svg', 'json'];

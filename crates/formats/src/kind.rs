@@ -216,6 +216,8 @@ pub enum StructureFormat {
     Opf,
     /// The structure of each plant as a table of cylinders.
     Qsm,
+    /// The skeleton of each plant as a table of points.
+    Swc,
 }
 
 /// What is known of a format of structure.
@@ -229,7 +231,7 @@ struct StructureRow {
 
 impl StructureFormat {
     /// Every format.
-    pub const ALL: [Self; 3] = [Self::Mtg, Self::Opf, Self::Qsm];
+    pub const ALL: [Self; 4] = [Self::Mtg, Self::Opf, Self::Qsm, Self::Swc];
 
     const fn row(self) -> StructureRow {
         let (word, extension, is_named, about) = match self {
@@ -239,6 +241,9 @@ impl StructureFormat {
             }
             // A table may be anything.
             Self::Qsm => ("qsm", "csv", false, "Quantitative structure model: a table of cylinders"),
+            Self::Swc => {
+                ("swc", "swc", true, "Skeleton: points with radii, each with the one that it grows from")
+            }
         };
         StructureRow { word, extension, is_named, about }
     }

@@ -32,5 +32,5 @@ pub use model::{
     write_glb_levels, write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with,
     write_model, write_ply, write_png, write_stl,
 };
-pub use plant::{write_mtg, write_opf, write_qsm, write_structure};
+pub use plant::{write_mtg, write_opf, write_qsm, write_structure, write_swc};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

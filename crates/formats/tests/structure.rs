@@ -14,7 +14,7 @@ use std::path::Path;
 
 use base::ops::PI;
 use base::{Draw, Seed, Unit, UpAxis};
-use formats::{ExportSpec, write_mtg, write_qsm};
+use formats::{ExportSpec, write_mtg, write_qsm, write_swc};
 use glam::{DVec2, DVec3};
 use mtg_reader::{Edge, Graph, read};
 use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape};
@@ -218,6 +218,42 @@ proptest! {
         }
         let branches = rows.iter().map(|r| r[11] as usize).collect::<Vec<_>>();
         prop_assert!(branches.iter().all(|o| *o < m.orders.len()));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_skeleton_keeps_places_radii_and_connection(seed in 0..10_000_u64, axes in 0..60_usize) {
+        let p = wild(seed, axes);
+        let mut bytes = Vec::new();
+        write_swc(&p, &ExportSpec { up: UpAxis::Y, unit: Unit::Metre }, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let rows: Vec<Vec<f64>> = text
+            .lines()
+            .filter(|l| !l.starts_with('#'))
+            .map(|l| l.split(' ').map(|x| x.parse().unwrap()).collect())
+            .collect();
+        // Each node once, but for the first ones of borne axes, which lie on their bearers.
+        let borne = p.axes.iter().filter(|a| a.bearer.is_some()).count();
+        prop_assert_eq!(rows.len(), p.nodes.position.len() - borne);
+        let at = |r: &[f64]| DVec3::new(r[2], r[3], r[4]);
+        let mut length = 0.0;
+        for (i, r) in rows.iter().enumerate() {
+            prop_assert!(r.len() == 7 && r[0] as usize == i + 1 && (5.0..=9.0).contains(&r[1]));
+            prop_assert!(r[6] == -1.0 || (r[6] >= 1.0 && r[6] <= i as f64), "bearers come first: {r:?}");
+            if r[6] > 0.0 {
+                length += at(r).distance(at(&rows[r[6] as usize - 1]));
+            }
+            let here = |n: usize| p.nodes.position[n].distance(at(r)) < 1e-5 && (p.nodes.radius_m[n] - r[5]).abs() < 1e-7;
+            prop_assert!((0..p.nodes.position.len()).any(here), "no node is there: {r:?}");
+        }
+        let whole: f64 = (0..p.axes.len())
+            .flat_map(|i| p.axis_points(plant::AxisId::new(i)).windows(2))
+            .map(|w| w[0].distance(w[1]))
+            .sum();
+        prop_assert!((length - whole).abs() < 1e-4 * (1.0 + whole), "{length} of {whole} m");
     }
 }
 

@@ -97,8 +97,8 @@ pub(crate) struct BloomRunArgs {
     /// of your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
-    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl, .usda or .usdz (one shape), .mtg or .opf
-    /// (the structure of a flower or drawing), or a folder (a file a frame).
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl, .usda or .usdz (one shape), .mtg, .opf or
+    /// .swc (the structure of a flower or drawing), or a folder (a file a frame).
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Last shape: a scan or a model.

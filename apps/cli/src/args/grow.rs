@@ -22,7 +22,7 @@ pub(crate) struct GrowArgs {
     /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
     #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
     pub(crate) what: Option<PathBuf>,
-    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf).
+    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.

@@ -18,7 +18,8 @@ pub(crate) struct LeafArgs {
     /// measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the structure: .mtg or .opf. With --template the file to fill in.
+    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the structure: .mtg, .opf or .swc. With --template the file to
+    /// fill in.
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Write a file of marks to fill in, with instructions, to -o or to standard output.

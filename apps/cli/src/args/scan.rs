@@ -21,7 +21,7 @@ pub(crate) struct ScanArgs {
     /// The scan: .laz, .las, .ply, .xyz, .txt, .pcd or .obj, with +Z up unless --up says otherwise.
     #[arg(value_name = "SCAN")]
     pub(crate) input: PathBuf,
-    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf).
+    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "mtg", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.

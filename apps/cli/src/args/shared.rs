@@ -155,11 +155,11 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF and QSM files, clouds, and coordinates given as options; glTF is
-    /// always +Y [default: y; z for MTG, OPF and QSM].
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and coordinates given as options; glTF
+    /// is always +Y [default: y; z for MTG, OPF, QSM and SWC].
     #[arg(long, value_enum)]
     pub(crate) up: Option<UpWord>,
-    /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF and QSM files, clouds, and lengths said to be in --unit; glTF is always
+    /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and lengths said to be in --unit; glTF is always
     /// in metres.
     #[arg(long, value_enum, default_value_t = UnitWord::M)]
     pub(crate) unit: UnitWord,

@@ -20,8 +20,8 @@ pub(crate) struct SketchArgs {
     /// - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the plant's structure: .mtg (multiscale tree graph) or .opf
-    /// (Open Plant Format). For several drawings a folder, which is created and gets one file each.
+    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the plant's structure: .mtg (multiscale tree graph), .opf (Open
+    /// Plant Format) or .swc (skeleton). For several drawings a folder, which is created and gets one file each.
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "split", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the files in a folder.

@@ -522,6 +522,7 @@ export const en = {
   'export.what.plant': 'the chosen plant',
   'export.mtg': 'structure (multiscale tree graph)',
   'export.opf': 'structure with the shapes of its organs (AMAPstudio, Archimed)',
+  'export.swc': 'skeleton as points with radii',
   'export.qsm': 'cylinders (TreeQSM columns)',
   'note.failed': '{name} was not made: {why}',
   'note.nosketch': 'a photograph lies under a drawing; choose a drawing first',

@@ -512,6 +512,7 @@ export const zh: Record<TextKey, string> = {
   'export.what.plant': '所选植物',
   'export.mtg': '结构（多尺度树图）',
   'export.opf': '结构及器官形状（AMAPstudio、Archimed）',
+  'export.swc': '骨架：带半径的点',
   'export.qsm': '圆柱体（TreeQSM 列）',
   'note.failed': '{name}没有做成：{why}',
   'note.nosketch': '照片放在画的下面；请先选择一幅画',

@@ -3,10 +3,12 @@
 mod mtg;
 mod opf;
 mod qsm;
+mod swc;
 
 pub use mtg::write_mtg;
 pub use opf::write_opf;
 pub use qsm::write_qsm;
+pub use swc::write_swc;
 
 use std::io::Write;
 
@@ -46,6 +48,7 @@ pub fn write_structure(
         StructureFormat::Mtg => write_mtg(plant, spec, out),
         StructureFormat::Opf => write_opf(plant, shapes, spec, out),
         StructureFormat::Qsm => write_qsm(plant, spec, out),
+        StructureFormat::Swc => write_swc(plant, spec, out),
     }
 }
 
