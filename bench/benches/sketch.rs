@@ -19,7 +19,7 @@ fn main() {
 fn make(drawing: &Drawing) -> Made {
     let (cancel, clock) = (CancelToken::new(), Stopwatch::start());
     let budget = Budget { times: 10.0, ..Budget::default() };
-    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock, budget, ..Run::plain() };
+    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock, budget };
     make_from_sketch(drawing, &SketchOptions::default(), Seed::new(1), &run).unwrap()
 }
 
@@ -69,7 +69,10 @@ fn under_the_pen(bencher: divan::Bencher<'_, '_>, name: &str) {
     let line: Vec<DVec2> = (0..=30)
         .map(|i| {
             middle
-                + DVec2::new(2.0 * f64::from(i), 3.0 * f64::from(i) - 8.0 * (f64::from(i) / 4.0).sin()) * unit
+                + DVec2::new(
+                    2.0 * f64::from(i),
+                    3.0 * f64::from(i) - 8.0 * base::ops::sin(f64::from(i) / 4.0),
+                ) * unit
         })
         .collect();
     let mut end = 1;

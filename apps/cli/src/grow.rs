@@ -8,7 +8,6 @@ use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
     SelfOrganizingSpec,
 };
-use burgeon::mesh::Model;
 use burgeon::skin::{FoliageStyle, SkinSpec};
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
@@ -218,7 +217,7 @@ fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Tre
     for path in &args.growth.obstacle {
         let (model, _, warnings) = files::read_model(path, &axes)?;
         told.warnings.extend(warnings);
-        let (vertices, triangles) = soup(&model);
+        let (vertices, triangles) = model.triangles();
         if triangles.is_empty() {
             let why = "has no faces, so there is nothing to grow around; export the obstacle as a mesh";
             return Err(Failure::at(path, why));
@@ -286,18 +285,7 @@ fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> 
     }
     let (model, _, told) = files::read_model(&path, &axes).ok()?;
     warnings.extend(told);
-    Some(soup(&model))
-}
-
-/// All triangles of a model.
-fn soup(model: &Model) -> NamedMesh {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for part in &model.parts {
-        let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
-        vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
-        triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
-    }
-    (vertices, triangles)
+    Some(model.triangles())
 }
 
 fn read_points(path: &Path, args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Vec<DVec3>> {

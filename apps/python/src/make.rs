@@ -111,13 +111,7 @@ fn named_mesh(path: &Path) -> Option<NamedMesh> {
     let format = ModelFormat::from_extension(extension)?;
     let none = burgeon::formats::no_files;
     let model = burgeon::formats::read_model(&*bytes, format, "obstacle", &axes, &none, &mut report).ok()?;
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for part in &model.parts {
-        let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
-        vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
-        triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
-    }
-    Some((vertices, triangles))
+    Some(model.triangles())
 }
 
 /// A flower at a day; none for full bloom.

@@ -4,7 +4,8 @@ use base::{Cancelled, Draw, Run, Seed};
 use geom::Voxels;
 use glam::DVec3;
 
-use crate::thin::{extent, thin};
+use crate::thin::thin;
+use geom::extent;
 
 /// What is taken out of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! Scans of several days -> how the plant and its organs moved between them, apart from how they grew.
 
 use base::Run;
-use geom::best_rotation;
+use geom::{best_rotation, extent};
 use glam::{DQuat, DVec3};
 
-use crate::thin::{extent, thin};
+use crate::thin::thin;
 use crate::{
     BloomError, GrowthLaw, Motion, MotionSpec, RegisterSpec, ScanOrgan, ShapeError, Stage, Weights, register,
 };

@@ -1,16 +1,7 @@
 //! Many points -> few, evenly spread.
 
-use geom::cubes;
+use geom::{cubes, extent};
 use glam::DVec3;
-
-/// Edge of the box around the finite points, the longest.
-pub(crate) fn extent(points: &[DVec3]) -> f64 {
-    let (low, high) = points
-        .iter()
-        .filter(|p| p.is_finite())
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
-    (high - low).max_element().max(0.0)
-}
 
 /// Indices of at most about `wanted` points, one a cube, so that a dense part weighs no more than a sparse one.
 ///

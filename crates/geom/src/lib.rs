@@ -53,7 +53,8 @@ pub use linear::{Blend, best_rotation, solve_positive};
 pub use outline::{crossing_points, self_crossings, simple_outline};
 pub use pca::{Pca2, pca2, pca3};
 pub use polygon::{
-    Inside, centroid, contains, contains_along, convex_hull, farthest_pair, medial_axis_width, signed_area,
+    Inside, bounds, centroid, contains, contains_along, convex_hull, farthest_pair, medial_axis_width,
+    signed_area,
 };
 pub use polyline::{
     Closest, closest_on_polyline, distance_to_polyline, distance_to_segment, nearest_on_polyline3, point_at,
@@ -66,5 +67,5 @@ pub use spline::{
 };
 pub use step::Step;
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
-pub use voxels::Voxels;
+pub use voxels::{Voxels, extent};
 pub use wheel::{Spoke, Wheel, wheels};

@@ -136,6 +136,18 @@ pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
     if b.y > a.y { turn > 0.0 } else { turn < 0.0 }
 }
 
+/// Lower left and upper right corner of the box around points; `None` for no points. Linear.
+///
+/// ```
+/// use glam::DVec2;
+/// let corners = geom::bounds(&[DVec2::new(2.0, 0.0), DVec2::new(0.0, 1.0)]);
+/// assert_eq!(corners, Some((DVec2::ZERO, DVec2::new(2.0, 1.0))));
+/// ```
+pub fn bounds(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
+    let first = *points.first()?;
+    Some(points.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p))))
+}
+
 /// Indices of the hull's corners, counter-clockwise from the leftmost lowest; repeated places once.
 fn hull_indices(points: &[DVec2]) -> Vec<usize> {
     #[expect(clippy::cast_possible_truncation, reason = "no more points than u32 counts")]

@@ -141,8 +141,8 @@ impl Voxels {
     }
 }
 
-/// Edge of the box around the finite points, the longest.
-fn extent(points: &[DVec3]) -> f64 {
+/// Edge of the box around the finite points, the longest; 0 without any. Linear.
+pub fn extent(points: &[DVec3]) -> f64 {
     let (low, high) = points
         .iter()
         .filter(|p| p.is_finite())

@@ -37,7 +37,7 @@ pub(crate) fn drawn_again(
     if !(2..=MOST_STROKES).contains(&strokes.len()) {
         return Vec::new();
     }
-    let boxes: Vec<(DVec2, DVec2)> = strokes.iter().map(|s| box_of(s.0)).collect();
+    let boxes: Vec<(DVec2, DVec2)> = strokes.iter().map(|s| geom::bounds(s.0).unwrap_or_default()).collect();
     let mut order: Vec<usize> = (0..strokes.len()).collect();
     base::sort_by(&mut order, |&a, &b| strokes[b].1.total_cmp(&strokes[a].1).then(a.cmp(&b)));
     let mut first: Vec<usize> = Vec::new();
@@ -58,10 +58,6 @@ pub(crate) fn drawn_again(
     }
     again.sort_unstable();
     again
-}
-
-fn box_of(points: &[DVec2]) -> (DVec2, DVec2) {
-    points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)))
 }
 
 /// Whether a stroke follows another one all the way.

@@ -283,6 +283,17 @@ impl Model {
             + textures.map(|t| t.pixels.len()).sum::<usize>()
     }
 
+    /// The vertices and triangles of all parts as one, without what else they hold.
+    pub fn triangles(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for part in &self.parts {
+            let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+            vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
+            triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
+        }
+        (vertices, triangles)
+    }
+
     /// Vertices of all parts.
     pub fn vertex_count(&self) -> usize {
         self.parts.iter().map(|p| p.mesh.positions.len()).sum()

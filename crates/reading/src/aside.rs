@@ -8,8 +8,8 @@ use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass};
 
 use crate::kinds::Shares;
-use crate::near::bounds;
 use crate::{Kind, OrganWord, StrokeReading};
+use geom::bounds;
 
 /// The rule that a stroke is of no plant.
 pub const BESIDE_THE_PLANT: &str = "beside-the-plant";

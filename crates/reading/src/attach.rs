@@ -1,7 +1,7 @@
 //! Who bears what: stems lead to flowers, leaves get their stalks, fruits and roots find their places.
 
 use base::ops;
-use geom::{contains, point_at, polyline_length};
+use geom::{bounds, contains, point_at, polyline_length};
 use glam::DVec2;
 use ink::StrokeClass;
 use plant::AxisKind;
@@ -11,7 +11,7 @@ use crate::branches::{Line, oriented};
 use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
 use crate::kept::{alike, same_bits};
-use crate::near::{Near, bounds};
+use crate::near::Near;
 use crate::rules::STAMENS;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{Veins, choose_midrib};

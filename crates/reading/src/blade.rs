@@ -1,12 +1,11 @@
 //! One leaf or petal: outline, root, tip, midrib.
 
 use geom::{
-    closest_on_polyline, contains, medial_axis_width, resample, signed_area, simple_outline, simplify,
-    smooth_gaussian,
+    bounds, closest_on_polyline, contains, medial_axis_width, resample, signed_area, simple_outline,
+    simplify, smooth_gaussian,
 };
 use glam::DVec2;
 
-use crate::near::bounds;
 use crate::thresholds::{NO_LENGTH, ROUNDING};
 
 /// Points round an outline that the tip is looked for among.

@@ -7,10 +7,9 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use geom::{distance_to_polyline, polyline_length, resample, smooth_gaussian};
+use geom::{bounds, distance_to_polyline, polyline_length, resample, smooth_gaussian};
 use glam::DVec2;
 
-use crate::near::bounds;
 use crate::rings::Ring;
 use crate::thresholds::ROUNDING;
 

@@ -5,12 +5,12 @@
 //! cross a bearer are split there; what touches nothing is led to the nearest axis or stands on its own; two
 //! strokes of one stem are joined; lines that go down from a base are roots.
 
-use geom::{closest_on_polyline, distance_to_polyline, point_at, polyline_length};
+use geom::{bounds, closest_on_polyline, distance_to_polyline, point_at, polyline_length};
 use glam::DVec2;
 use plant::AxisKind;
 
 use crate::body::Limb;
-use crate::near::{Near, bounds};
+use crate::near::Near;
 use crate::thresholds::{NO_LENGTH, ROUNDING, WELL_SHORT};
 use crate::{Attachment, AxisReading};
 

@@ -1,11 +1,10 @@
 //! What kind of plant a drawing shows, by what was read in it.
 
-use geom::{polyline_length, signed_area};
+use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 use plant::AxisKind;
 
-use crate::near::bounds;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{AxisReading, Kind, OrganWord, Reading, RegionReading};
 /// A crown over less bare trunk than this share of its height is a bush.

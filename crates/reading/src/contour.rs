@@ -1,9 +1,8 @@
 //! The contour of a crown, and the neck where it passes into its trunk.
 
-use geom::{convex_hull, signed_area, simple_outline, simplify};
+use geom::{bounds, convex_hull, signed_area, simple_outline, simplify};
 use glam::DVec2;
 
-use crate::near::bounds;
 /// A hull of at most this area is a line, not a crown.
 const NO_AREA: f64 = 2e-4;
 /// An outline that fills less of its hull is a scribble, whose hull is the crown.

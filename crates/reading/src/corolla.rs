@@ -1,10 +1,9 @@
 //! Several petals, fronds or grass blades in one stroke: cut at the cusps (product A12).
 
-use geom::{closest_on_polyline, distance_to_polyline, polyline_length};
+use geom::{bounds, closest_on_polyline, distance_to_polyline, polyline_length};
 use glam::DVec2;
 
 use crate::blade::Sheetlet;
-use crate::near::bounds;
 
 /// A dip between two petals is one when it is at least this share of the stroke's reach deep.
 const DIP: f64 = 0.13;

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use base::{LiteMap, Report};
-use geom::{contains, polyline_length, signed_area};
+use geom::{bounds, contains, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass, StrokeMode};
 use plant::AxisKind;
@@ -12,7 +12,6 @@ use crate::blade::{Sheetlet, split_stalks};
 use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::kept::{Drawn, alike};
-use crate::near::bounds;
 use crate::steady::steady;
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use base::LiteMap;
 
 use base::ops;
-use geom::{Spoke, contains, mean_shift, polyline_length, wheels};
+use geom::{Spoke, bounds, contains, mean_shift, polyline_length, wheels};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -18,7 +18,7 @@ use crate::body;
 use crate::contour::{neck, width_at};
 use crate::corolla::{Core, split, visits, winding};
 use crate::draft::Draft;
-use crate::near::{Near, bounds};
+use crate::near::Near;
 use crate::rings::Ring;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::{BladeReading, DiscReading, Kind, OrganWord};

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use ink::Ink;
 
-use crate::near::bounds;
+use geom::bounds;
 
 /// Cells round the drawing, so that the outside is one.
 const MARGIN: usize = 1;

@@ -7,12 +7,11 @@
 use std::sync::OnceLock;
 
 use base::ops;
-use geom::{contains, convex_hull, signed_area};
+use geom::{bounds, contains, convex_hull, signed_area};
 use glam::DVec2;
 use ink::{Classified, Ink, StrokeClass};
 
 use crate::look::{LINE, LOOP};
-use crate::near::bounds;
 use crate::{Kind, Reading, Scored, look};
 
 /// Numbers of a drawing.

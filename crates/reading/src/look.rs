@@ -4,12 +4,12 @@
 //! right, or on the size of the sheet; on their order only where more than eight strokes end in one place. The model (`kinds`) says what they are worth.
 
 use base::ops;
-use geom::signed_area;
+use geom::{bounds, signed_area};
 use glam::DVec2;
 use ink::{Ink, InkStroke};
 
 use crate::grid::{Grid, Hole};
-use crate::near::{bounds, openness};
+use crate::near::openness;
 use crate::thresholds::ROUNDING;
 
 /// Bands into which the height is cut.

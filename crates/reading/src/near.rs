@@ -174,7 +174,7 @@ impl Boxes {
     pub(crate) fn new<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> Self {
         let mut found = Self { cells: vec![Vec::new(); Self::row((BOXES, 0))], bounds: Vec::new() };
         for (owner, polygon) in polygons.enumerate() {
-            let corners = bounds(polygon);
+            let corners = geom::bounds(polygon);
             let (lo, hi) = corners.unwrap_or((DVec2::INFINITY, DVec2::NEG_INFINITY));
             found.bounds.push((lo - ROUNDING, hi + ROUNDING));
             if corners.is_none() {
@@ -216,10 +216,4 @@ impl Boxes {
 /// How far apart a stroke's ends are, as a share of its length.
 pub(crate) fn openness(s: &InkStroke) -> f64 {
     s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
-}
-
-/// Lower left and upper right corner; `None` for no points.
-pub(crate) fn bounds(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
-    let first = *points.first()?;
-    Some(points.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p))))
 }

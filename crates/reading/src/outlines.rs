@@ -1,7 +1,7 @@
 //! Trunks and crowns drawn as outlines (product A12).
 
 use base::{Report, ops};
-use geom::{centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area};
+use geom::{bounds, centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 use plant::AxisKind;
@@ -12,7 +12,6 @@ use crate::branches::{Forest, Line};
 use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::kept::{alike, same_bits};
-use crate::near::bounds;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, STRAIGHT, WELL_SHORT};
 use crate::{Attachment, Kind, OrganWord, RegionKind};

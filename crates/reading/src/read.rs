@@ -8,13 +8,13 @@ use plant::AxisKind;
 
 use crate::built::pointed;
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::rules::GREEN_LEAVES;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
     flowers, inertia, kinds, outlines, pressed, rules, several, veins,
 };
+use geom::bounds;
 
 /// Understands a drawing.
 ///

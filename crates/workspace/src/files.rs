@@ -8,7 +8,6 @@ use burgeon::document::{
     Maker, SceneCommand, TreeCommand,
 };
 use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
-use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
 use burgeon::leaf::LeafSpec;
@@ -181,12 +180,7 @@ impl Workspace {
         let format = format.ok_or(WorkspaceError::ObstacleFile)?;
         let model =
             read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut Report::default());
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for part in model?.parts {
-            let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
-            vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
-            triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
-        }
+        let (vertices, triangles) = model?.triangles();
         if triangles.is_empty() {
             return Err(WorkspaceError::NoSurface);
         }

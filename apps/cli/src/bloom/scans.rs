@@ -234,7 +234,7 @@ fn compared(
     };
     let against = |shape: &[DVec3]| bloom::compare(&measured, shape, made.compute).map(ErrorReport::from);
     let error = against(&shape).map_err(Failure::bloom(scan))?;
-    if error.mean_mm.max(error.back_mean_mm) > 500.0 * extent(&shape) {
+    if error.mean_mm.max(error.back_mean_mm) > 500.0 * burgeon::geom::extent(&shape) {
         loaded.warnings.push(format!(
             "{}: is half the plant's size away from it; is its unit that of the stages?",
             scan.display()
@@ -299,13 +299,6 @@ fn failed(path: &Path) -> impl Fn(SeedlingError) -> Failure + '_ {
         }
         other => Failure::at(path, other),
     }
-}
-
-/// The largest side of the box round some points.
-fn extent(points: &[DVec3]) -> f64 {
-    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
-    (high - low).max_element()
 }
 
 fn load_shapes(

@@ -3,7 +3,7 @@
 //! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the user
 //! set stay.
 
-use geom::{contains, convex_hull, polyline_length, signed_area};
+use geom::{bounds, contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -11,7 +11,6 @@ use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whol
 use crate::contour::neck;
 use crate::corolla::dips;
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
 use crate::{Kind, READ_AS};

@@ -6,8 +6,8 @@ use ink::StrokeClass;
 use super::{Findings, any, openness, unsure};
 use crate::corolla::{dips, winding};
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::thresholds::STRAIGHT;
+use geom::bounds;
 
 /// A row of grass goes down at least this often.
 const FEWEST_DIPS: usize = 5;

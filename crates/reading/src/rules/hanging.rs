@@ -1,12 +1,11 @@
 //! Rules about rings: fruits that hang from twigs, and outlines that are no twigs.
 
-use geom::{closest_on_polyline, signed_area};
+use geom::{bounds, closest_on_polyline, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{CLOSED, Findings, free, openness};
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::thresholds::{STOPPED_SHORT, STRAIGHT};
 use crate::{Kind, READ_AS};
 

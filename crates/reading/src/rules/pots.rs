@@ -1,13 +1,12 @@
 //! Rules about what a plant stands in or on: its pot, and the ground over its roots.
 
-use geom::{polyline_length, signed_area};
+use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{InkStroke, StrokeClass};
 
 use super::{Findings, any, openness, unsure, upright};
 use crate::contour::width_at;
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::thresholds::{SAME_PLACE, WELL_SHORT};
 
 /// A pot is at least this wide.

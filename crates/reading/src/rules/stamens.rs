@@ -5,8 +5,8 @@ use ink::StrokeClass;
 
 use super::{CLOSED, Findings, free, openness};
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::thresholds::{FEWEST_PETALS, STRAIGHT};
+use geom::bounds;
 
 /// Stamens at least.
 const FEWEST: usize = 3;

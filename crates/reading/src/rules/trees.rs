@@ -1,6 +1,6 @@
 //! Rules about trees: trunks, crowns, and what lies in a crown.
 
-use geom::{signed_area, simple_outline};
+use geom::{bounds, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -10,7 +10,6 @@ use super::{
 };
 use crate::contour::crown_outline;
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::rings::rings;
 use crate::thresholds::{STOPPED_SHORT, WELL_SHORT};
 

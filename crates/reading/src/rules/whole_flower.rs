@@ -3,7 +3,7 @@
 //! As in the rule about a whole tree, only shapes and places count.
 
 use base::ops;
-use geom::{contains, signed_area};
+use geom::{bounds, contains, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -11,7 +11,6 @@ use super::{Findings, SHUT, openness, unsure};
 use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::thresholds::STRAIGHT;
 
 /// Petals round a disc at least.

@@ -2,7 +2,7 @@
 //!
 //! As in the rules about a whole tree and a whole flower, only shapes and places count.
 
-use geom::{closest_on_polyline, convex_hull, pca2, polyline_length, signed_area, simple_outline};
+use geom::{bounds, closest_on_polyline, convex_hull, pca2, polyline_length, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -10,7 +10,6 @@ use super::{Findings, STALK, openness, share_inside, unsure};
 use crate::Kind;
 use crate::blade::{first_round, split_stalks};
 use crate::draft::Draft;
-use crate::near::bounds;
 use crate::rings::rings;
 use crate::thresholds::MOUTH;
 

@@ -2,7 +2,7 @@
 //!
 //! It looks at shapes and places only, so neither the order of drawing nor what the classifier says of one stroke decides.
 
-use geom::{contains, convex_hull, crossing_points, signed_area};
+use geom::{bounds, contains, convex_hull, crossing_points, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -10,7 +10,6 @@ use super::{Findings, SHUT, SIDES_APART, STANDS, STRIDE, WITHIN, openness, outsi
 use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
-use crate::near::bounds;
 
 /// A trunk is narrower than this share of its crown.
 const NARROW: f64 = 0.6;
