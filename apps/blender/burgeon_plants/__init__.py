@@ -2,7 +2,8 @@
 
 | module | owns |
 |---|---|
-| ``settings`` | schemas -> properties of Blender: names, ranges, units and help are those of the schema |
+| ``fields`` | schemas -> rows: which fields there are, and when |
+| ``settings`` | rows -> properties of Blender: names, ranges, units and help are those of the schema |
 | ``plants`` | an object -> its plant, made anew when a property changes |
 | ``meshes``, ``materials`` | a model -> a mesh with materials and attributes |
 | ``opening`` | a flower's days -> shape keys with keyframes |

@@ -12,7 +12,7 @@ from mathutils import Matrix
 
 import burgeon as bg
 
-from . import meshes, opening, plants, strokes, wind
+from . import meshes, opening, plants, settings, strokes, wind
 
 
 def _species(words):
@@ -124,6 +124,35 @@ class BURGEON_OT_update(OfPlant):
 
     def do(self, context):
         plants.update(context.active_object)
+
+
+class OfList(OfPlant):
+    """Of a list among the settings of the active plant."""
+
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+
+class BURGEON_OT_add_item(OfList):
+    """Add a row to this list: like the last one"""
+
+    bl_idname, bl_label = "burgeon.add_item", "Add a Row"
+
+    path: StringProperty(description="Where the list stands, as JSON")
+
+    def do(self, context):
+        settings.add_item(context.active_object.burgeon, json.loads(self.path))
+
+
+class BURGEON_OT_remove_item(OfList):
+    """Remove this row of the list"""
+
+    bl_idname, bl_label = "burgeon.remove_item", "Remove the Row"
+
+    path: StringProperty(description="Where the list stands, as JSON")
+    index: IntProperty(min=0)
+
+    def do(self, context):
+        settings.remove_item(context.active_object.burgeon, json.loads(self.path), self.index)
 
 
 class BURGEON_OT_open_over_time(OfPlant):
@@ -276,6 +305,8 @@ CLASSES = (
     BURGEON_OT_add_leaf,
     BURGEON_OT_from_strokes,
     BURGEON_OT_update,
+    BURGEON_OT_add_item,
+    BURGEON_OT_remove_item,
     BURGEON_OT_open_over_time,
     BURGEON_OT_close,
     BURGEON_OT_wind,

@@ -1,8 +1,10 @@
 """The panel in the side bar, and entries of the menus of Add and Import."""
 
+import json
+
 import bpy
 
-from . import plants, settings
+from . import fields, plants, settings
 
 ADD = (
     ("burgeon.add_tree", "OUTLINER_OB_CURVES"),
@@ -50,43 +52,69 @@ def draw_plant(layout, plant):
             head.operator("burgeon.close")
     if not own.live:
         head.operator("burgeon.update", icon="FILE_REFRESH")
-    group = getattr(own, own.maker)
+    group, spec = getattr(own, own.maker), settings.base(own)
     for topic, rows in topics(own):
-        title, body = layout.panel(f"burgeon_{own.maker}_{topic}", default_closed=topic != settings.GENERAL)
+        title, body = layout.panel(f"burgeon_{own.maker}_{topic}", default_closed=topic != fields.GENERAL)
         title.label(text=topic.replace("_", " ").capitalize())
         if body:
             body.use_property_split = True
             for row in rows:
-                draw_row(body, group, row)
+                draw_row(body, group, row, spec, ())
 
 
 def surface(own):
     """What a plant says of its meshes: of a project only their fineness is known, flowers and leaves have none."""
-    if own.maker not in ("tree", "sketch"):
-        return ()
-    if own.whole:
-        return ("detail",)
-    return ("detail", *(settings.SURFACE if own.maker == "tree" else settings.SURFACE[:2]))
+    names = settings.SURFACE.get(own.maker, ())
+    return names[:1] if own.whole else names
 
 
 def topics(own):
     """The rows that a plant has, by topic: what stands in no table comes first."""
-    spec, found = settings.base(own), {settings.GENERAL: []}
-    for row in settings.rows(own.maker):
-        if settings.at(spec, row.path) is not settings.missing:
-            found.setdefault(row.topic, []).append(row)
+    found, spec = {fields.GENERAL: []}, settings.base(own)
+    # None while it waits for the settings of another species.
+    for row in shown(fields.rows(own.maker), spec) if spec else ():
+        found.setdefault(row.topic, []).append(row)
     return [(topic, rows) for topic, rows in found.items() if rows]
 
 
-def draw_row(layout, group, row):
-    if not row.optional or row.kind == "word":
+def shown(rows, spec):
+    """The rows whose fields a table of a spec has."""
+    return [row for row in rows if fields.table_of(spec, row) is not None]
+
+
+def draw_row(layout, group, row, spec, where):
+    """A row of a group, or a list with its rows; ``where``: the path of the group, of numbers for rows of lists."""
+    if row.item:
+        draw_list(layout, group, row, settings.was_in(row, fields.table_of(spec, row)), where)
+    elif not row.switched:
         layout.prop(group, row.name)
+    else:
+        line = layout.row(heading=row.label)
+        line.prop(group, row.switch, text="")
+        value = line.row()
+        value.active = getattr(group, row.switch)
+        value.prop(group, row.name, text="")
+
+
+def draw_list(layout, group, row, value, where):
+    """A list with a button that adds; each of its rows with one that removes it."""
+    head = layout.row()
+    if row.switched:
+        head.prop(group, row.switch, text="")
+    values = settings.as_list(row, value)
+    long = len(values) > settings.MOST_ITEMS
+    head.label(text=f"{row.label}: {len(values)}, as they are" if long else row.label)
+    if long or (row.switched and not getattr(group, row.switch)):
         return
-    line = layout.row(heading=row.label)
-    line.prop(group, row.switch, text="")
-    value = line.row()
-    value.active = getattr(group, row.switch)
-    value.prop(group, row.name, text="")
+    path = (*where, *row.path)
+    head.operator("burgeon.add_item", text="", icon="ADD").path = json.dumps(path)
+    for k, (item, one) in enumerate(zip(getattr(group, row.name), values, strict=False)):
+        line = layout.box().row()
+        body = line.column()
+        for inner in shown(row.item, settings.wrapped(row, one)):
+            draw_row(body, item, inner, settings.wrapped(row, one), (*path, k))
+        remove = line.operator("burgeon.remove_item", text="", icon="REMOVE")
+        remove.path, remove.index = json.dumps(path), k
 
 
 def add_menu(self, _context):

@@ -109,8 +109,8 @@ def make(plant):
         return again(own, fields)
     # Another species opens on days of its own.
     day = own.day if own.maker == "flower" and own.base else None
-    names = settings.SURFACE if own.maker == "tree" else settings.SURFACE[:2]
-    skin = {name: getattr(own, name) for name in ("detail", *names)}
+    skin = {name: getattr(own, name) for name in settings.SURFACE.get(own.maker, ())}
+    skin = {name: value for name, value in skin.items() if value != settings.NONE}
     return grown(own.maker, own.species, own.seed, skin, day, own.strokes, fields)
 
 

@@ -126,6 +126,18 @@ def test_an_annotation_becomes_a_plant():
         bpy.ops.burgeon.from_strokes()
 
 
+def test_a_plant_of_strokes_is_one_step_of_undo():
+    pencil(world(DRAWING, FRONT))
+    bpy.ops.ed.undo_push(message="start")
+    assert bpy.ops.burgeon.from_strokes("EXEC_DEFAULT", True) == {"FINISHED"}
+    made = {o.name: len(o.data.vertices) for o in bpy.data.objects if plants.is_plant(o)}
+    assert len(made) == 1
+    bpy.ops.ed.undo()
+    assert [o.name for o in bpy.data.objects] == ["ink"]
+    bpy.ops.ed.redo()
+    assert {o.name: len(o.data.vertices) for o in bpy.data.objects if plants.is_plant(o)} == made
+
+
 def test_strokes_that_cannot_be_a_plant_are_reported():
     pencil([np.zeros((5, 3))])
     with pytest.raises(RuntimeError, match="^Error: the strokes are all at one place"):

@@ -11,7 +11,7 @@ use burgeon::formats::{
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{Report, Spec, Warning};
+use burgeon::{DrawnLine, Report, Spec, Warning};
 use serde::Deserialize;
 
 use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
@@ -480,6 +480,21 @@ pub(crate) fn write_structure(
 /// Writes a plant's cylinders, with +Z up unless `args` say otherwise.
 pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
     write_structure(outputs, ("--qsm", path), plant, StructureFormat::Qsm, args)
+}
+
+/// Whether a drawing of a plant can have this name.
+pub(crate) fn drawing_writable(path: &Path) -> Outcome {
+    match extension(path) {
+        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(()),
+        _ => Err(Failure::at(path, "drawings are written as .svg; end the name with it")),
+    }
+}
+
+/// Writes what a person would have drawn of a plant.
+pub(crate) fn write_drawing(outputs: &mut Outputs, path: &Path, name: &str, lines: &[DrawnLine]) -> Outcome {
+    let lines = lines.iter().map(|line| (line.kind.word(), line.points.clone()));
+    let drawing = burgeon::drawing_of(name, lines);
+    outputs.write("--drawing", path, |out| burgeon::formats::write_svg(&drawing, out))
 }
 
 // The programs that read MTG, OPF, QSM and SWC files have Z upwards.

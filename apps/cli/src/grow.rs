@@ -28,6 +28,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),
         ("--qsm", args.qsm.as_ref()),
+        ("--drawing", args.drawing.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
@@ -39,6 +40,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
+    }
+    if let Some(path) = &args.drawing {
+        files::drawing_writable(path)?;
     }
     check_used(args, format)?;
     let mut told = Report::default();
@@ -71,7 +75,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, mut model, mut lods, mut copies, mut item } =
+    let MadeTree { grown, mut model, layout, mut lods, mut copies, mut item } =
         made.map_err(|e| failure(args, &spec, e))?;
     let without = copies.iter_mut().map(|(rest, _)| rest);
     lods.iter_mut().chain([&mut model]).chain(without).for_each(|m| m.offset_m = origin.offset_m);
@@ -89,6 +93,10 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     if let Some(path) = &args.qsm {
         files::write_qsm(&mut outputs, path, &grown.plant, &args.axes)?;
+    }
+    if let Some(path) = &args.drawing {
+        let lines = burgeon::drawn((&grown.plant, &model, &layout), &machine.run())?;
+        files::write_drawing(&mut outputs, path, &spec.name, &lines)?;
     }
     if let Some(png) = &args.png {
         let view = args.picture.spec(args.seed);
@@ -119,7 +127,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
 fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
     given.check_picture(args.png.is_some(), &args.picture)?;
-    given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let seen = Seen::new(format, args.png.as_ref(), &args.common);
+    // What a drawing shows is what its meshes show.
+    given.check_surface(Seen { report: seen.report || args.drawing.is_some(), ..seen })?;
     let written = args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes());
     let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
     args.surface.check_used(given, glb)?;

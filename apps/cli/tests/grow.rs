@@ -561,6 +561,28 @@ fn structure_and_measures_are_written_for_programs_of_the_field() {
     assert!((volume / told - 1.0).abs() < 1e-3, "cylinders of {volume} and wood of {told} cubic metres");
 }
 
+#[test]
+fn a_drawing_of_a_tree_is_read_as_a_tree_again() {
+    let dir = folder("grow-drawing");
+    spec(&dir, "bush.toml", SMALL);
+    good(&dir, &["grow", "bush.toml", "--detail", "0.2", "--drawing", "bush.svg"]);
+    fs::write(dir.join("tree.json"), "{ \"read_as\": \"tree\" }").unwrap();
+    let svg = fs::read_to_string(dir.join("bush.svg")).unwrap();
+    assert!(svg.contains("axis") && svg.contains("crown"), "{svg}");
+    let report = good(&dir, &["sketch", "bush.svg", "--spec", "tree.json", "--json"]);
+    let report: Value = serde_json::from_str(&report).unwrap();
+    assert!(report["items"][0]["counts"]["leaves"].as_u64() > Some(10), "{report}");
+    assert!(
+        bad(&dir, &["grow", "bush.toml", "--drawing", "bush.png"]).contains("drawings are written as .svg")
+    );
+    assert!(
+        bad(&dir, &["grow", "bush.toml", "-o", "same.svg", "--drawing", "same.svg"]).contains("same.svg")
+    );
+    let twice =
+        bad(&dir, &["grow", "bush.toml", "--png", "one.png", "--qsm", "same.svg", "--drawing", "same.svg"]);
+    assert!(twice.contains("same.svg"), "{twice}");
+}
+
 /// The JSON of a GLB.
 fn gltf(path: &Path) -> Value {
     let glb = fs::read(path).unwrap();

@@ -31,6 +31,7 @@ const VALUES: &[(&str, &str)] = &[
     ("density", "3"),
     ("depth", "0.2"),
     ("detail", "3"),
+    ("drawing", "drawn.svg"),
     ("edits", "edits.json"),
     ("end", "start.xyz"),
     ("end-day", "30"),

@@ -13,6 +13,8 @@ export class BurgeonError extends Error {
   readonly value: string | undefined;
   /** What it may be: a range, the words that are known, or a kind of value. */
   readonly range: string | undefined;
+  /** Those of the fields that are errors themselves, such as the slip that a line of a file has, with codes of their own. */
+  readonly causes: Readonly<Record<string, BurgeonError>>;
 
   constructor(refusal: Refusal) {
     super(refusal.message);
@@ -24,7 +26,15 @@ export class BurgeonError extends Error {
     this.field = field ?? ([path, beside].filter(Boolean).join('.') || undefined);
     this.value = refusal.code === 'spec-choice' ? name : value || found;
     this.range = range ?? choices ?? wanted;
+    const causes = Object.entries(refusal.causes ?? {});
+    this.causes = Object.fromEntries(causes.map(([field, cause]) => [field, new BurgeonError(cause)]));
   }
+}
+
+/** As a worker sends it. */
+export function sent({ code, fields, causes, message }: BurgeonError): Refusal {
+  const inner = Object.entries(causes).map(([field, cause]) => [field, sent(cause)] as const);
+  return { code, fields: { ...fields }, causes: Object.fromEntries(inner), message };
 }
 
 /** An error of the core; anything else is a fault of ours and stays what it is. */

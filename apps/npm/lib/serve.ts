@@ -1,5 +1,5 @@
 /** The other end of a worker. */
-import { BurgeonError } from './errors.js';
+import { BurgeonError, sent } from './errors.js';
 import type { Asking, Said } from './protocol.js';
 import { buffers, type Core, work } from './work.js';
 
@@ -16,9 +16,7 @@ export function serve(core: Promise<Core>, scope = globalThis as unknown as Scop
       const answer = work(await core, asking);
       scope.postMessage({ number, answer }, buffers(answer));
     } catch (e) {
-      const refused =
-        e instanceof BurgeonError ? { code: e.code, fields: { ...e.fields }, message: e.message } : String(e);
-      scope.postMessage({ number, refused });
+      scope.postMessage({ number, refused: e instanceof BurgeonError ? sent(e) : String(e) });
     }
   };
 }

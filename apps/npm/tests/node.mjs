@@ -87,6 +87,24 @@ test('all drawings and leaves are those of the native program', async () => {
   assert.ok(compared >= 28, `${compared} compared`);
 });
 
+test('a leaf of a vein graph is that of the native program', async () => {
+  // The graph of `xtask/src/native.rs`: a midrib, and six veins of five pairs.
+  const nodes = Array.from({ length: 41 }, (_, i) => [200, 500 - 10 * i, 8 - 0.15 * i]);
+  const edges = Array.from({ length: 40 }, (_, i) => [i, i + 1]);
+  for (const i of [4, 11, 18, 25, 32]) {
+    for (const side of [-1, 1]) {
+      const [x, y] = nodes[i];
+      for (let k = 1; k <= 6; k += 1) {
+        nodes.push([x + side * 16 * k, y - 9 * k, 3 - 0.3 * k]);
+        edges.push([k === 1 ? i : nodes.length - 2, nodes.length - 1]);
+      }
+    }
+  }
+  const graph = JSON.stringify({ unit: 'pixel', nodes_xyr: nodes, edges });
+  const made = await leaf(graph, { name: 'veins', wind: false });
+  assert.equal(made.digest, expected['veins.json']);
+});
+
 test('all flowers, and leaves of chief veins, are those of the native program', {
   skip: native ? false : 'BURGEON names no program',
 }, async () => {
@@ -258,6 +276,26 @@ test('what is wrong is named: field, value and range', async () => {
   assert.ok(['over-budget', 'made', 'field-range'].includes(much), much);
   assert.ok((await grow('grass', { detail: 0.2 })).digest);
   await assert.rejects(grow('oak', { signal: AbortSignal.abort() }), { name: 'AbortError' });
+});
+
+test('an error inside another has its own code, from the worker and from this thread', async () => {
+  const here = await import(file('in-thread.js'));
+  for (const [where, make] of [
+    ['worker', burgeon],
+    ['thread', here],
+  ]) {
+    const error = await make.sketch('<svg><path></svg>', { name: 'x.svg' }).catch((e) => e);
+    assert.equal(error.code, 'file-line', where);
+    const [[field, cause], ...others] = Object.entries(error.causes);
+    assert.ok(cause instanceof BurgeonError && others.length === 0, where);
+    assert.ok(
+      cause.code !== error.code && error.message.includes(cause.message),
+      `${where}: ${cause.message}`,
+    );
+    assert.equal(error.fields[field], cause.message, where);
+  }
+  const plain = await grow('oka').catch((e) => e);
+  assert.deepEqual(plain.causes, {});
 });
 
 test('whatever is passed makes a plant or is named', async () => {

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 import operator
 import os
-from typing import Any, Dict, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping
 
 from . import _burgeon
 from .errors import SpecError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 ENDLESS = float("inf")
 
@@ -75,6 +78,22 @@ def table(name: str, value: Any) -> "Dict[str, Any]":
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
         raise TypeError(f"{name} must be a dict of names and values, not {value!r}")
     return dict(value)
+
+
+def points(scan: Any, name: str = "scan") -> "np.ndarray":
+    """Points of a scan as (n, 3) float64."""
+    import numpy as np
+
+    array = np.asarray(scan)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"a scan is numbers, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise wrong(f"a scan must be of shape (points, 3), not {array.shape}", name, array.shape, "of shape (points, 3)")
+    array = np.ascontiguousarray(array, np.float64)
+    if not np.isfinite(array).all():
+        row = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise beyond(f"{name}[{row}]", array[row].tolist(), "finite")
+    return array
 
 
 def path(name: str, value: Any) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import beyond, wrong
+from ._given import beyond, flag, number, path, points, whole, word, wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,6 +46,24 @@ class Law:
         return cls(_burgeon.RawLaw.fit(name, rows))
 
     @classmethod
+    def fit_scans(
+        cls,
+        scans: "Mapping[float, Any]",
+        name: str = "plant",
+        unit: str = "m",
+        up: str = "y",
+        single: bool = False,
+        seed: int = 1,
+        budget: float = 1.0,
+    ) -> "Law":
+        """Fits a law to scans of one plant on at least 3 days (``burgeon bloom fit``).
+
+        ``scans``: a dict from days to clouds of points, each a file or an array (points, 3); the rest as for ``bloom``, which
+        then makes the plant of any day: ``bloom(scans, 2.5, law=law)``.
+        """
+        return cls(scans_of(name, scans, unit, up, single, seed, budget).law())
+
+    @classmethod
     def read(cls, path: "str | os.PathLike[str]") -> "Law":
         """A law that ``burgeon bloom fit`` or ``save`` wrote."""
         with open(path, encoding="utf-8") as file:
@@ -81,6 +99,28 @@ class Law:
     def __repr__(self) -> str:
         laws = ", ".join(f"{law['organ']}: {law['form']}" for law in self.to_dict()["laws"])
         return f"<burgeon.Law {laws}>"
+
+
+def scans_of(
+    name: str, scans: "Mapping[float, Any]", unit: str, up: str, single: bool, seed: int, budget: float
+) -> "_burgeon.RawDays":
+    """Scans of several days, in the order of the days."""
+    rows = []
+    for key, cloud in scans.items():
+        row: "Dict[str, Any]" = {"day": number("scans: a day", key, -1e4, 1e4, "d"), "file": None, "points": b""}
+        if isinstance(cloud, (str, os.PathLike)):
+            file = path("scans", cloud)
+            with open(file, "rb") as read:
+                row["file"] = (read.read(), os.path.basename(file))
+        else:
+            row["points"] = points(cloud, f"scans[{key}]").tobytes()
+        rows.append(row)
+    rows.sort(key=lambda row: row["day"])
+    if not rows:
+        raise wrong("there are no scans: give a dict from days to clouds", "scans", "{}", "one day or more")
+    days = (word("unit", unit), word("up", up))
+    seed, budget = whole("seed", seed, 0, 2**64 - 1), number("budget", budget, 1, 1000)
+    return _burgeon.RawDays(word("name", name), rows, days, flag("single", single), seed, budget)
 
 
 def _numbers(values: Any, what: str) -> "np.ndarray":

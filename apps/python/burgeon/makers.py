@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union, cast
 
 from . import _burgeon
 from ._given import beyond, number, whole, word, wrong
 from ._given import path as path_of
-from .law import Law
+from ._given import points as _points
+from .law import Law, scans_of
 from .plant import Plant
 
 if TYPE_CHECKING:
@@ -97,24 +98,41 @@ def grow(
 
 
 def bloom(
-    spec: Spec = "lily",
+    spec: "Union[Spec, Mapping[float, Any]]" = "lily",
     day: "Optional[float]" = None,
     *,
     seed: int = 1,
     law: "Optional[Law]" = None,
+    unit: str = "m",
+    up: str = "y",
+    single: bool = False,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     **fields: Any,
 ) -> Plant:
-    """A flower that opens, on a day (``burgeon bloom run``).
+    """A flower that opens, on a day (``burgeon bloom run``), or a plant of scans on any day between or beside theirs.
 
     ``spec``: a flower (``presets()[1]``), a TOML file, or a dict; ``day``: 0 is the bud, default full bloom; ``law``: a
     fitted law that sets the pace; ``fields``: ``schema("flower")``, docs/bloom.md.
+
+    Of scans, ``spec`` is a dict from days to clouds of points, each a file (``.xyz``, ``.ply``, ``.pcd``, ``.las``) or an array
+    (points, 3), in ``unit`` (m, cm, mm) with ``up`` (y, z); ``day``: default the last; ``single``: each is one organ, not a stem
+    with leaves; ``law``: that of ``Law.fit_scans``, default an even pace.
     """
-    base, own = _base(spec)
-    asked = _asked(seed, budget, {**own, **fields}, {"wind": wind})
     if not isinstance(law, (Law, type(None))):
         raise TypeError(f"law must be a Law, not {law!r}")
+    if isinstance(spec, Mapping) and spec and not any(isinstance(key, str) for key in spec):
+        if fields:
+            field = next(iter(fields))
+            raise wrong(f"{field} is of flowers; a plant of scans has no fields", field, fields[field], "left out")
+        days = scans_of("scan", cast("Mapping[float, Any]", spec), unit, up, single, seed, budget)
+        when = max(map(float, spec)) if day is None else number("day", day, -1e4, 1e4, "d")
+        return Plant(days.plant(when, None if law is None else law._raw))
+    for name, value, usual in (("unit", unit, "m"), ("up", up, "y"), ("single", single, False)):
+        if value != usual:
+            raise wrong(f"{name} is of scans of several days: give a dict from days to clouds", name, value, "left out")
+    base, own = _base(cast("Spec", spec))
+    asked = _asked(seed, budget, {**own, **fields}, {"wind": wind})
     day = None if day is None else number("day", day, 0, 100, "d")
     return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
 
@@ -194,22 +212,6 @@ def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[
     return Plant(_burgeon.leaf_of_scan(name, file, rows, number("budget", budget, 1, 1000)))
 
 
-def _points(points: Any) -> "np.ndarray":
-    """Points of a scan as (n, 3) float64."""
-    import numpy as np
-
-    array = np.asarray(points)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"a scan is numbers, not {array.dtype}")
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise wrong(f"a scan must be of shape (points, 3), not {array.shape}", "scan", array.shape, "of shape (points, 3)")
-    array = np.ascontiguousarray(array, np.float64)
-    if not np.isfinite(array).all():
-        row = int(np.argmin(np.isfinite(array).all(axis=1)))
-        raise beyond(f"scan[{row}]", array[row].tolist(), "finite")
-    return array
-
-
 def scan(
     cloud: "Union[str, os.PathLike[str], np.ndarray]",
     *,
@@ -268,6 +270,7 @@ def sketch(
     sides: "Optional[int]" = None,
     textures: "Optional[bool]" = None,
     variation: "Optional[float]" = None,
+    petals: "Optional[str]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
     **fields: Any,
@@ -276,14 +279,14 @@ def sketch(
 
     ``strokes``: a file (``.svg``, ``.inkml``, ``.ndjson``, ``.json``), or the strokes in the order in which they were
     drawn, each an array (points, 2) of x and y in any unit, y upwards (``y_up=False``: downwards, as on a screen).
-    ``classes``: what strokes are, by number (``{0: "axis"}``); ``day``: its flowers open, 0 to 100; ``fields``:
-    ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
+    ``classes``: what strokes are, by number (``{0: "axis"}``); ``day``: its flowers open, 0 to 100; ``petals``: a colour such as
+    ``blue``, otherwise by chance; ``fields``: ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
     """
     asked = _asked(
         seed,
         budget,
         fields,
-        {"detail": detail, "sides": sides, "textures": textures, "variation": variation, "wind": wind},
+        {"detail": detail, "sides": sides, "textures": textures, "variation": variation, "petals": petals, "wind": wind},
     )
     if isinstance(strokes, (str, os.PathLike)):
         import builtins

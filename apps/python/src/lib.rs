@@ -5,6 +5,7 @@
 //! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
 //! | `again` | a plant with other settings |
 //! | `scan` | trees of laser scans |
+//! | `days` | plants of scans on several days |
 //! | `write` | a plant's files with coarser copies, instances, joints |
 //! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
@@ -20,6 +21,7 @@ mod again;
 mod asked;
 mod column;
 mod compute;
+mod days;
 mod fault;
 mod forest;
 mod held;
@@ -37,6 +39,8 @@ mod _burgeon {
     use crate::column::Column;
     #[pymodule_export]
     use crate::compute::set_threads;
+    #[pymodule_export]
+    use crate::days::RawDays;
     #[pymodule_export]
     use crate::fault::meant;
     #[pymodule_export]

@@ -393,6 +393,16 @@ pub(crate) fn open_project(
 #[pyclass(frozen, module = "burgeon._burgeon")]
 pub(crate) struct RawLaw(GrowthLaw);
 
+impl RawLaw {
+    pub(crate) const fn of(law: GrowthLaw) -> Self {
+        Self(law)
+    }
+
+    pub(crate) const fn law(&self) -> &GrowthLaw {
+        &self.0
+    }
+}
+
 #[pymethods]
 impl RawLaw {
     /// Fits a law to the sizes of each organ: name, days, sizes in metres.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::glam::DVec2;
-use burgeon::ink::{Drawing, Layer, Stroke};
 use burgeon::mesh::Model;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::{Digest, Report, Seed, Unit, UpAxis};
@@ -339,14 +338,9 @@ pub(crate) fn drawing_svg<'py>(
     name: &str,
     lines: Vec<(String, Vec<[f64; 2]>)>,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let mut drawing = Drawing { name: name.to_owned(), ..Drawing::default() };
-    for (word, line) in lines {
-        let layer: Arc<str> = word.into();
-        if drawing.layers.iter().all(|l| l.name != layer) {
-            drawing.layers.push(Layer { name: Arc::clone(&layer), ..Layer::default() });
-        }
-        let samples = line.into_iter().map(|p| DVec2::from_array(p).into()).collect();
-        drawing.strokes.push(Stroke { samples, layer: Some(layer), ..Stroke::default() });
-    }
+    let lines = lines
+        .iter()
+        .map(|(word, line)| (word.as_str(), line.iter().map(|p| DVec2::from_array(*p)).collect()));
+    let drawing = burgeon::drawing_of(name, lines);
     bytes_of(py, move |bytes| burgeon::formats::write_svg(&drawing, bytes))
 }

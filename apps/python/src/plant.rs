@@ -5,7 +5,7 @@ use std::sync::Arc;
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
 use burgeon::formats::StructureFormat;
 use burgeon::plant::Organ;
-use burgeon::{SceneError, Seed, SurveySpec, Surveyed};
+use burgeon::{DrawnLine, SceneError, Seed, SurveySpec, Surveyed};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -179,6 +179,16 @@ impl RawPlant {
         let held = Arc::clone(&self.0);
         let labels = aside(py, move || burgeon::triangle_labels(held.plant(), held.model(), held.layout()))?;
         Ok(labels.into_iter().map(Column::new).collect())
+    }
+
+    /// What a person would have drawn of it: of each line its kind, its points and the row of its axis or organ.
+    fn drawing(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Column, i32)>> {
+        let held = &self.0;
+        let made =
+            compute(py, held.budget, |run| burgeon::drawn((held.plant(), held.model(), held.layout()), run))?;
+        let lines = made.map_err(|e| refused(py, &e))?.into_iter();
+        let points = |line: &DrawnLine| of(line.points.iter().map(|p| p.to_array()));
+        Ok(lines.map(|line| (line.kind.word(), points(&line), line.row)).collect())
     }
 
     /// Points as a scanner sees them.

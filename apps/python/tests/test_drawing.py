@@ -1,5 +1,9 @@
 """What a person would have drawn: lines that lie on the plant, and that the program reads as a plant again."""
 
+import json
+import pathlib
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -45,6 +49,38 @@ def test_a_tree_in_leaf_is_trunk_and_crown_and_a_bare_one_its_limbs(tmp_path):
     bare = bg.grow("oak", seed=2, detail=0.2, textures=False, bare=True).drawing().lines
     assert len(bare) > 20 and {line.kind for line in bare} == {"axis"}
     assert oak.drawing().to_svg() == oak.drawing().to_svg()
+
+
+def away(points, line):
+    """How far points are from a line, at most."""
+    start, way = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((way**2).sum(axis=1), 1e-300)
+    along = np.clip(((points[:, None] - start) * way).sum(axis=2) / square, 0.0, 1.0)
+    return np.hypot(*np.moveaxis(start + along[..., None] * way - points[:, None], -1, 0)).min(axis=1).max()
+
+
+def test_plants_are_drawn_as_they_were_when_python_drew_them():
+    """``drawn.json`` was written by rules in Python that the core has now; lines are true to 0.002 of the plant's size."""
+    before = json.loads((pathlib.Path(__file__).parent / "drawn.json").read_text())
+    plants = {
+        "lily": bg.bloom("lily", seed=1),
+        "tulip": bg.bloom("tulip", seed=1),
+        "hazel": bg.grow("hazel", seed=3, age=4, detail=0.2, textures=False),
+        "palm": bg.grow("palm", seed=2, detail=0.2, textures=False),
+    }
+    for name, plant in plants.items():
+        lines, fine = plant.drawing().lines, 0.002 * np.ptp(plant.model.vertices, axis=0).max() + 1e-5
+        assert [(line.kind, line.row) for line in lines] == [(kind, row) for kind, row, _ in before[name]], name
+        for line, (_, _, points) in zip(lines, before[name]):
+            old = np.array(points)
+            assert max(away(line.points, old), away(old, line.points)) <= fine, (name, line.kind, line.row)
+
+
+def test_the_command_line_draws_the_same(tmp_path, program):
+    words = [program, "grow", "hazel", "--seed", "3", "--age", "4", "--detail", "0.2", "--quiet"]
+    subprocess.run([*words, "--drawing", tmp_path / "cli.svg"], check=True)
+    plant = bg.grow("hazel", seed=3, age=4, detail=0.2)
+    assert (tmp_path / "cli.svg").read_bytes() == plant.drawing().to_svg()
 
 
 def test_the_smallest_plants_and_wrong_files(tmp_path):

@@ -199,3 +199,49 @@ def test_projects_open_as_they_were_saved(tmp_path, root):
     (again,) = bg.open(tmp_path / "birch.burgeon")
     assert (again.digest, again.model.digest) == (tree.digest, tree.model.digest)
     assert len(bg.open(root / "fixtures/projects/version-5.burgeon")) == 3
+
+
+def leaf_cloud(length):
+    """The points of a bent leaf, metres."""
+    v, u = np.meshgrid(np.linspace(0, 1, 60), np.linspace(-1, 1, 21), indexing="ij")
+    half = 0.25 * length * (1.0 - (2.0 * v - 1.0) ** 2) + 0.0003
+    return np.column_stack([(u * half).ravel(), (v * length).ravel(), (2.0 * length**2 * v**2 * (1.0 - 0.2 * u**2)).ravel()])
+
+
+def test_a_plant_of_scans_of_several_days_is_the_command_lines(cli, tmp_path):
+    first, last = tmp_path / "scan.xyz", tmp_path / "last.xyz"
+    np.savetxt(first, 1e3 * leaf_cloud(0.024), fmt="%.17g")
+    np.savetxt(last, 1e3 * leaf_cloud(0.041), fmt="%.17g")
+    stages = [f'[[stage]]\nfile = "{name}.xyz"\nday = {day}\n' for name, day in (("scan", 0), ("last", 4))]
+    (tmp_path / "scan.toml").write_text('unit = "mm"\nsplit = "none"\n' + "".join(stages))
+    theirs = cli("bloom", "run", tmp_path / "scan.toml", "--day", 1.5, "--plant", "-o", tmp_path / "o.glb")
+    mine = bg.bloom({4: last, 0: first}, 1.5, unit="mm", single=True)
+    assert mine.digest == theirs["digest"] and "leaf" in {bg.PARTS[part] for part in mine.organs.part}
+    # It grows from day to day, by the law where there is one.
+    clouds = {0: leaf_cloud(0.024), 1: leaf_cloud(0.035), 2: leaf_cloud(0.041), 3: leaf_cloud(0.043)}
+    law = bg.Law.fit_scans(clouds, single=True)
+    assert set(law.organs) == {"organ"}
+    high = [bg.bloom(clouds, day, law=law, single=True).measures()["leaf_area_m2"] for day in (0.0, 0.5, 1.5, 3.0)]
+    assert high == sorted(high) and high[3] > 2 * high[0]
+    assert bg.bloom(clouds, single=True).digest == bg.bloom(clouds, 3.0, single=True).digest
+
+
+@pytest.mark.parametrize(
+    "call, field",
+    [
+        (lambda: bg.bloom({0: leaf_cloud(0.02)}, stalk_m=0.2), "stalk_m"),
+        (lambda: bg.bloom("rose", unit="mm"), "unit"),
+        (lambda: bg.bloom({0: np.zeros((5, 2))}), "scans[0]"),
+        (lambda: bg.bloom({0: np.full((50, 3), np.nan)}), "scans[0][0]"),
+        (lambda: bg.bloom({float("nan"): leaf_cloud(0.02)}, 1.0), "scans: a day"),
+        (lambda: bg.bloom({0: leaf_cloud(0.02)}, unit="inch"), "unit"),
+        (lambda: bg.Law.fit_scans({}), "scans"),
+    ],
+)
+def test_scans_that_cannot_be_used_are_named(call, field):
+    with pytest.raises(bg.SpecError) as error:
+        call()
+    assert error.value.field == field, str(error.value)
+    for few in ({0: leaf_cloud(0.02), 1: leaf_cloud(0.03)}, {0: leaf_cloud(0.02)[:4]}):
+        with pytest.raises(bg.SpecError, match=r"\d"):
+            bg.Law.fit_scans(few, single=True)

@@ -17,6 +17,8 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod days;
+mod drawn;
 mod evaluate;
 mod flowers;
 mod leaf_blade;
@@ -45,6 +47,8 @@ pub use base::{
     NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,
     brief, grouped, map_indexed, map_of, meant, quoted, set_of, sort_by_key,
 };
+pub use days::ScannedDays;
+pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;

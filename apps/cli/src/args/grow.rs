@@ -23,11 +23,14 @@ pub(crate) struct GrowArgs {
     #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
     pub(crate) what: Option<PathBuf>,
     /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "drawing", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) qsm: Option<PathBuf>,
+    /// Also draw it as a person would, from the front: lines, which `burgeon sketch` reads.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) drawing: Option<PathBuf>,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -69,6 +72,7 @@ const GROW_EXAMPLES: &str = "Examples:
   burgeon grow beech -o autumn.glb --season 0.5                  in the colours of autumn; -0.5: spring
   burgeon grow oak -o oak.glb --leaf-template leaf.csv           with a leaf of your own (burgeon leaf --help)
   burgeon grow oak -o oak.mtg --qsm oak.csv --report oak.json    structure and measures for programs of the field
+  burgeon grow oak --drawing oak.svg                             trunk, bare limbs and the outline of the crown
   burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
   burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
 

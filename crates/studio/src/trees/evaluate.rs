@@ -337,14 +337,14 @@ impl TreeEvaluator {
         Some((self.model()?, self.plant()?, self.layout()?))
     }
 
-    /// What was grown, as the hand left it, and its model; the evaluator is empty then.
-    pub(super) fn take(&mut self) -> Option<(Grown, Model)> {
-        let Self { dressed, shaped, model, .. } = std::mem::take(self);
+    /// What was grown, as the hand left it, its model, and what lies where in it; the evaluator is empty then.
+    pub(super) fn take(&mut self) -> Option<(Grown, Model, Layout)> {
+        let Self { dressed, shaped, model, layout, .. } = std::mem::take(self);
         let mut grown = dressed?.grown;
         if let Some(shaped) = shaped {
             grown.plant = shaped.plant;
         }
-        Some((grown, model?.1))
+        Some((grown, model?.1, layout))
     }
 }
 

@@ -29,7 +29,7 @@ use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
 use mesh::{Copies, Model};
-use skin::SkinSpec;
+use skin::{Layout, SkinSpec};
 use spec::SpecFault;
 
 use crate::report::{GrowthReport, ItemReport};
@@ -77,6 +77,8 @@ pub struct MadeTree {
     pub grown: Grown,
     /// The finest meshes, with materials.
     pub model: Model,
+    /// What of the plant lies where in the model.
+    pub layout: Layout,
     /// Coarser ones, finest first; the impostor is the last.
     pub lods: Vec<Model>,
     /// If asked for, of the model and each coarser one what is left without the leaves that are one form, and these.
@@ -243,8 +245,8 @@ pub fn make_tree(
         item.timings_ms.mesh += ms;
         item.timings_ms.total += ms;
     }
-    let (grown, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: both are there
-    Ok(MadeTree { grown, model, lods, copies, item })
+    let (grown, model, layout) = evaluator.take().ok_or(Cancelled)?; // update succeeded: all are there
+    Ok(MadeTree { grown, model, layout, lods, copies, item })
 }
 
 /// An obstacle that does not bound a volume; it is borne all the same.

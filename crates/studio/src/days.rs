@@ -1,0 +1,129 @@
+//! Scans of one plant on several days -> the plant on any day.
+
+use base::{Run, Seed};
+use bloom::{
+    BloomError, CleanSpec, GrowthLaw, LawSpec, MotionSpec, RegisterSpec, ScanOrgan, SegmentSpec, Settled,
+    Stage,
+};
+use glam::DVec3;
+
+use crate::made::MadePlant;
+use crate::seedling::{SeedlingError, SeedlingOptions, make_seedling};
+
+/// An organ of fewer points is left out: no motion of it can be found.
+const FEWEST_POINTS: usize = 8;
+
+/// Scans of one plant on several days: cleaned, cut into organs that are found again, the plant's own motion taken off.
+///
+/// ```
+/// use burgeon::{Run, ScannedDays, Seed, glam::DVec3};
+/// let leaf = |length: f64| {
+///     let point = |k: i32| DVec3::new(0.01 * f64::from(k % 20), length * f64::from(k / 20) / 30.0, 0.0);
+///     (0..600).map(point).collect::<Vec<_>>()
+/// };
+/// let scans = [(0.0, leaf(0.1)), (2.0, leaf(0.2))];
+/// let days = ScannedDays::new(&scans, true, Seed::new(1), &Run::plain())?;
+/// let (_, points) = days.organs(1.0, None, &Run::plain())?.remove(0);
+/// let high = points.iter().map(|p| p.y).fold(0.0, f64::max) - points.iter().map(|p| p.y).fold(1.0, f64::min);
+/// assert!((0.12..0.18).contains(&high), "half-way between both days: {high}");
+/// # Ok::<(), burgeon::bloom::BloomError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ScannedDays {
+    settled: Settled,
+}
+
+impl ScannedDays {
+    /// Of clouds, each with its day, metres, +Y up; days increase. `whole`: each is one organ, such as a leaf that was cut
+    /// off; otherwise stem and leaves are told apart where every scan shows both.
+    ///
+    /// Stray points and a ground plane are taken out first. Cost: n log n, and a registration for each organ and step.
+    ///
+    /// # Errors
+    /// [`BloomError`]: too few points, or stopped.
+    pub fn new(
+        scans: &[(f64, Vec<DVec3>)],
+        whole: bool,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<Self, BloomError> {
+        let spec = SegmentSpec::default();
+        let mut kept = Vec::new();
+        for (day, points) in scans {
+            let cleaned = bloom::clean(points, &CleanSpec::default(), seed, run)?;
+            kept.push((*day, cleaned.kept.into_iter().map(|row| points[row]).collect::<Vec<_>>()));
+        }
+        let one = |points: &[DVec3]| bloom::single_organ(points, "organ", &spec).map(|organ| vec![organ]);
+        let cut = |points: &[DVec3]| if whole { one(points) } else { bloom::organs(points, &spec) };
+        let mut stages: Vec<Stage> = kept
+            .iter()
+            .map(|(day, points)| Ok(Stage { day: *day, organs: cut(points)? }))
+            .collect::<Result<_, BloomError>>()?;
+        let single = stages.iter().filter(|s| s.organs.len() == 1).count();
+        if single > 0 && single < stages.len() {
+            // A scan that falls into stem and leaves cannot meet one that is a single organ.
+            for (stage, (_, points)) in stages.iter_mut().zip(&kept) {
+                stage.organs = one(points)?;
+            }
+        }
+        for stage in &mut stages {
+            stage.organs.retain(|o| o.points.len() >= FEWEST_POINTS);
+        }
+        for k in 1..stages.len() {
+            let (before, now) = stages.split_at_mut(k);
+            let (Some(before), Some(now)) = (before.last(), now.first_mut()) else { continue };
+            if now.organs.len() > 1 {
+                bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+            }
+        }
+        Ok(Self { settled: bloom::settle(&stages, &RegisterSpec::default(), run)? })
+    }
+
+    /// The first and the last day.
+    pub fn days(&self) -> [f64; 2] {
+        let day = |stage: Option<&Stage>| stage.map_or(0.0, |s| s.day);
+        [day(self.settled.stages.first()), day(self.settled.stages.last())]
+    }
+
+    /// The law by which the organs grow, of 3 days or more.
+    ///
+    /// # Errors
+    /// As [`bloom::fit_stages`].
+    pub fn law(&self, name: &str) -> Result<GrowthLaw, BloomError> {
+        bloom::fit_stages(name, &self.settled.stages, &LawSpec::default())
+    }
+
+    /// The organs of a day, each with its points, in the frame of the plant; without a law everything goes at an even pace.
+    ///
+    /// # Errors
+    /// [`BloomError`].
+    pub fn organs(
+        &self,
+        day: f64,
+        law: Option<&GrowthLaw>,
+        run: &Run<'_>,
+    ) -> Result<Vec<(String, Vec<DVec3>)>, BloomError> {
+        if let [one] = self.settled.stages.as_slice() {
+            let points = |o: &ScanOrgan| (o.name.clone(), o.points.clone());
+            return Ok(one.organs.iter().map(points).collect());
+        }
+        let [first, last] = self.days();
+        let even = GrowthLaw::even(first, last);
+        self.settled.day(law.unwrap_or(&even), &MotionSpec::default(), day, run)
+    }
+
+    /// The plant of a day: a stem with leaves whose blades are those of the scans.
+    ///
+    /// # Errors
+    /// [`SeedlingError`].
+    pub fn plant(
+        &self,
+        name: &str,
+        (day, law): (f64, Option<&GrowthLaw>),
+        options: &SeedlingOptions,
+        run: &Run<'_>,
+    ) -> Result<MadePlant, SeedlingError> {
+        let organs = self.organs(day, law, run)?;
+        Ok(make_seedling(name, &organs, options, run)?.0)
+    }
+}

@@ -1,0 +1,519 @@
+//! What a person would have drawn of a plant that stands before them: lines on a sheet.
+//!
+//! `Plant, Model -> what is seen from the front -> stems and outlines, or limbs and the outline of the crown`
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use base::{Cancelled, Run, ops};
+use glam::{DVec2, DVec3};
+use ink::{Drawing, Layer, Stroke};
+use mesh::{Model, Part};
+use plant::{AxisKind, NodeId, OrganKind, Plant};
+use render::{PictureSpec, View};
+use skin::Layout;
+
+use crate::survey::{NOTHING, triangle_labels};
+
+/// Of a plant that shows more organs, nobody draws each.
+const MOST_ORGANS: usize = 60;
+/// Beside the trunk.
+const MOST_LIMBS: usize = 12;
+/// Of the radius of the foot of the trunk: thinner limbs are not drawn.
+const THICK: f64 = 0.12;
+/// The order of the finest limbs that are drawn.
+const FINEST_LIMB: u32 = 2;
+/// A limb is drawn of which more than this share is seen.
+const BARE: f64 = 0.5;
+/// Of the picture: what is smaller is a detail that nobody draws.
+const LARGE: f64 = 0.0003;
+/// Of the plant's size: wood that is wider is drawn by its two edges.
+const WIDE: f64 = 0.025;
+/// An organ of which less is seen than this share of its outline's area is behind others.
+const SEEN: f64 = 0.2;
+/// Directions in which the reach of a crown is looked for.
+const SECTORS: usize = 48;
+/// Pixels across of the picture that says what is seen.
+const PIXELS: u32 = 768;
+/// A rim that reaches over this share of an organ, each way, goes around it.
+const AROUND: f64 = 0.9;
+/// Of the plant's size: lines are so true.
+const FINE: f64 = 0.002;
+/// What is wider than this share of its length is no line.
+const SLENDER: f64 = 0.25;
+/// Pieces of a slender organ whose middles make its line.
+const PIECES: usize = 6;
+/// Places that are nearer to one another, metres, are one: a seam is no rim.
+const SAME_M: f64 = 1e-9;
+
+/// What a line of a drawing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawnKind {
+    /// A stem, a trunk or a branch: along its middle, or around it.
+    Axis,
+    /// An organ that is thin, along its middle.
+    Stalk,
+    /// The outline of an organ.
+    Blade,
+    /// The outline of all foliage.
+    Crown,
+}
+
+impl DrawnKind {
+    /// The word for it; in a file it is the layer.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Axis => "axis",
+            Self::Stalk => "stalk",
+            Self::Blade => "blade",
+            Self::Crown => "crown",
+        }
+    }
+}
+
+/// A line of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnLine {
+    /// What it is.
+    pub kind: DrawnKind,
+    /// Metres, x to the right, y upwards; the plant stands at the origin. An outline ends where it starts.
+    pub points: Vec<DVec2>,
+    /// The row of its axis or organ; [`NOTHING`] for a crown.
+    pub row: i32,
+}
+
+/// A plant from the front, as a line drawing, in the order in which a person draws: wood and stems, then organs from behind.
+///
+/// Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
+/// outlines; of a plant that shows many, trunk and those limbs that foliage does not hide are drawn, and around the foliage
+/// the outline of the crown. `layout`: of this model.
+///
+/// Guaranteed: the same bits for any executor. Not guaranteed: that the program reads the same plant out of it. Cost: as a
+/// picture of 768 x 768 pixels.
+///
+/// # Errors
+/// [`Cancelled`] when the run was cancelled.
+pub fn drawn(
+    (plant, model, layout): (&Plant, &Model, &Layout),
+    run: &Run<'_>,
+) -> Result<Vec<DrawnLine>, Cancelled> {
+    let labels = triangle_labels(plant, model, layout);
+    let front = PictureSpec {
+        width: PIXELS,
+        height: PIXELS,
+        view: View::Front,
+        supersample: 1,
+        ..PictureSpec::default()
+    };
+    let hits = render::hits(model, &[front], run)?;
+    let (mut organs, mut wood) = (BTreeMap::new(), BTreeMap::new());
+    for hit in hits.iter().flatten() {
+        let label = labels.get(hit.part as usize).and_then(|part| part.get(hit.triangle as usize));
+        match label {
+            Some(&[_, _, organ]) if organ != NOTHING => *organs.entry(organ).or_insert(0_u32) += 1,
+            Some(&[_, axis, _]) if axis != NOTHING => *wood.entry(axis).or_insert(0_u32) += 1,
+            _ => {}
+        }
+    }
+    let size = size(model);
+    let sheet = Sheet { plant, size, fine: FINE * size, pixel: size / f64::from(PIXELS) };
+    let all: u32 = organs.values().sum();
+    organs.retain(|_, count| f64::from(*count) >= LARGE * f64::from(PIXELS * PIXELS));
+    if organs.len() <= MOST_ORGANS && 2 * organs.values().sum::<u32>() >= all {
+        let stems: Vec<i32> = wood.keys().copied().collect();
+        let mut lines = sheet.stems(&stems);
+        lines.extend(sheet.organs(model, &labels, &organs));
+        return Ok(lines);
+    }
+    let mut lines = sheet.stems(&sheet.limbs(&wood));
+    lines.push(DrawnLine { kind: DrawnKind::Crown, points: crown(plant), row: NOTHING });
+    Ok(lines)
+}
+
+/// Lines as a drawing: each lies on the layer of its word.
+pub fn drawing_of<'a>(name: &str, lines: impl IntoIterator<Item = (&'a str, Vec<DVec2>)>) -> Drawing {
+    let mut drawing = Drawing { name: name.to_owned(), ..Drawing::default() };
+    for (word, line) in lines {
+        let layer: Arc<str> = word.into();
+        if drawing.layers.iter().all(|l| l.name != layer) {
+            drawing.layers.push(Layer { name: Arc::clone(&layer), ..Layer::default() });
+        }
+        let samples = line.into_iter().map(Into::into).collect();
+        drawing.strokes.push(Stroke { samples, layer: Some(layer), ..Stroke::default() });
+    }
+    drawing
+}
+
+/// The largest extent of a model, metres.
+fn size(model: &Model) -> f64 {
+    let points = || model.parts.iter().flat_map(|part| &part.mesh.positions);
+    let extent = |axis: usize| {
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for point in points() {
+            (low, high) = (low.min(point[axis]), high.max(point[axis]));
+        }
+        f64::from(high - low)
+    };
+    (0..3).map(extent).fold(SAME_M, f64::max)
+}
+
+/// What is drawn, and how large it is.
+struct Sheet<'a> {
+    plant: &'a Plant,
+    /// Metres.
+    size: f64,
+    /// How true its lines are, metres.
+    fine: f64,
+    /// Of the picture, metres: it holds the whole plant, and a little around it.
+    pixel: f64,
+}
+
+impl Sheet<'_> {
+    /// Axes as lines from where they are borne to their tips; around those that are thick.
+    fn stems(&self, rows: &[i32]) -> Vec<DrawnLine> {
+        let line = |&row: &i32| {
+            let axis = self.plant.axes.get(usize::try_from(row).ok()?)?;
+            let nodes: Vec<NodeId> = axis.bearer.into_iter().chain(axis.node_ids()).collect();
+            let radius = |node: &NodeId| self.plant.nodes.radius_m[node.index()];
+            let mut points: Vec<DVec2> =
+                nodes.iter().map(|n| self.plant.nodes.position[n.index()].truncate()).collect();
+            if points.len() < 2 || extent(&points).max_element() <= self.fine {
+                return None;
+            }
+            let thick =
+                axis.kind == AxisKind::Branch && 2.0 * radius(&nodes[nodes.len() / 4]) > WIDE * self.size;
+            if thick {
+                let beside: Vec<DVec2> = (0..points.len())
+                    .map(|k| {
+                        let (before, after) = (k.saturating_sub(1), (k + 1).min(points.len() - 1));
+                        let along = points[after] - points[before];
+                        along.try_normalize().unwrap_or_default().perp() * radius(&nodes[k])
+                    })
+                    .collect();
+                let left = points.iter().zip(&beside).map(|(p, b)| *p + *b);
+                let right = points.iter().zip(&beside).rev().map(|(p, b)| *p - *b);
+                points = left.chain(right).collect();
+            }
+            Some(DrawnLine { kind: DrawnKind::Axis, points: geom::simplify(&points, self.fine), row })
+        };
+        rows.iter().filter_map(line).collect()
+    }
+
+    /// Trunks, and the longest of the thick limbs that foliage does not hide; `seen`: pixels of each axis.
+    fn limbs(&self, seen: &BTreeMap<i32, u32>) -> Vec<i32> {
+        let (axes, nodes) = (&self.plant.axes, &self.plant.nodes);
+        let foot = |axis: &plant::Axis| nodes.radius_m.get(axis.nodes.start as usize).copied().unwrap_or(0.0);
+        let thick = THICK * axes.iter().filter(|a| a.order == 0).map(foot).fold(0.0, f64::max);
+        let (mut trunks, mut limbs) = (Vec::new(), Vec::new());
+        for (row, axis) in (0_i32..).zip(axes) {
+            if axis.order == 0 {
+                trunks.push(row);
+                continue;
+            }
+            if axis.order > FINEST_LIMB || foot(axis) < thick {
+                continue;
+            }
+            let rows = axis.nodes.start as usize..axis.nodes.end as usize;
+            let (points, radii) = (&nodes.position[rows.clone()], &nodes.radius_m[rows]);
+            let steps = || points.windows(2).map(|p| p[1] - p[0]);
+            let length: f64 = steps().map(DVec3::length).sum();
+            let whole: f64 = steps().zip(&radii[1..]).map(|(s, r)| s.truncate().length() * 2.0 * r).sum();
+            let shown = f64::from(seen.get(&row).copied().unwrap_or(0)) * self.pixel * self.pixel;
+            if whole > 0.0 && shown >= BARE * whole {
+                limbs.push((length, row));
+            }
+        }
+        base::sort_by(&mut limbs, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        trunks.into_iter().chain(limbs.into_iter().map(|(_, row)| row).take(MOST_LIMBS)).collect()
+    }
+
+    /// The organs that are seen, those behind first; `seen`: pixels of each.
+    fn organs(&self, model: &Model, labels: &[Vec<[i32; 3]>], seen: &BTreeMap<i32, u32>) -> Vec<DrawnLine> {
+        let mut found: BTreeMap<i32, (f64, DrawnLine)> = BTreeMap::new();
+        for (part, labels) in model.parts.iter().zip(labels) {
+            let mut faces: BTreeMap<i32, Vec<[u32; 3]>> = BTreeMap::new();
+            for (triangle, [_, _, organ]) in part.mesh.triangles.iter().zip(labels) {
+                if seen.contains_key(organ) {
+                    faces.entry(*organ).or_default().push(*triangle);
+                }
+            }
+            for (row, faces) in faces {
+                let Some(organ) = usize::try_from(row).ok().and_then(|k| self.plant.organs.get(k)) else {
+                    continue;
+                };
+                let points = corners(part, &faces);
+                let depth = points.values().map(|p| p.z).sum::<f64>() / points.len() as f64;
+                let flat: Vec<DVec2> = points.values().map(|p| p.truncate()).collect();
+                if is_thin(organ.kind) {
+                    // What is short and wide, such as the foot of a flower, is behind what it bears.
+                    if let Some(points) = middle(&flat) {
+                        found.insert(row, (depth, DrawnLine { kind: DrawnKind::Stalk, points, row }));
+                    }
+                    continue;
+                }
+                let Some(outline) = outline(&points, &faces, &flat) else { continue };
+                let area = geom::signed_area(&outline).abs();
+                // An organ of two parts has the outline of the larger one.
+                let larger =
+                    found.get(&row).is_none_or(|(_, was)| area > geom::signed_area(&was.points).abs());
+                let shown = f64::from(seen.get(&row).copied().unwrap_or(0)) * self.pixel * self.pixel;
+                if larger && area > 0.0 && shown >= SEEN * area {
+                    let points = geom::simplify(&outline, self.fine);
+                    found.insert(row, (depth, DrawnLine { kind: DrawnKind::Blade, points, row }));
+                }
+            }
+        }
+        let mut lines: Vec<(f64, DrawnLine)> = found.into_values().collect();
+        base::sort_by(&mut lines, |a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
+        lines.into_iter().map(|(_, line)| line).collect()
+    }
+}
+
+/// Whether an organ is drawn as a line along its middle.
+const fn is_thin(kind: OrganKind) -> bool {
+    matches!(kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn | OrganKind::Pedicel)
+}
+
+/// The vertices of some triangles.
+fn corners(part: &Part, faces: &[[u32; 3]]) -> BTreeMap<u32, DVec3> {
+    let place = |&i: &u32| {
+        let point = part.mesh.positions.get(i as usize)?;
+        Some((i, DVec3::from_array(point.map(f64::from))))
+    };
+    faces.iter().flatten().filter_map(place).collect()
+}
+
+fn extent(points: &[DVec2]) -> DVec2 {
+    let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    high - low
+}
+
+/// A line through the middle of what is long and thin; `None` of what is not.
+fn middle(points: &[DVec2]) -> Option<Vec<DVec2>> {
+    let axes = geom::pca2(points)?;
+    let [long, wide] = axes.lambda.map(f64::sqrt);
+    if points.len() < 2 || wide > SLENDER * long {
+        return None;
+    }
+    let along = |p: &DVec2| (*p - axes.centre).dot(axes.major);
+    let (low, high) =
+        points.iter().map(along).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let mut sums = [(DVec2::ZERO, 0.0); PIECES];
+    for point in points {
+        let share = (along(point) - low) / (high - low).max(f64::MIN_POSITIVE) * PIECES as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 6")]
+        let (sum, count) = &mut sums[(share as usize).min(PIECES - 1)];
+        *sum += *point;
+        *count += 1.0;
+    }
+    let middles: Vec<DVec2> =
+        sums.into_iter().filter(|(_, count)| *count > 0.0).map(|(sum, count)| sum / count).collect();
+    let inner = middles.get(1..middles.len().saturating_sub(1)).unwrap_or_default();
+    let ends = [low, high].map(|end| axes.centre + axes.major * end);
+    Some([ends[0]].into_iter().chain(inner.iter().copied()).chain([ends[1]]).collect())
+}
+
+/// The longest loop of edges that one triangle has, closed; of a body that its rim does not go around, the hull.
+fn outline(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]], flat: &[DVec2]) -> Option<Vec<DVec2>> {
+    let rim = longest_loop(points, faces);
+    if rim.len() > 3 {
+        let (around, own) = (extent(&rim), extent(flat));
+        // The open end of a tube is no outline of it.
+        if around.cmpge(AROUND * own).all() {
+            return Some(rim);
+        }
+    }
+    let hull = geom::convex_hull(flat);
+    (hull.len() > 2).then(|| hull.iter().chain(hull.first()).copied().collect())
+}
+
+fn longest_loop(points: &BTreeMap<u32, DVec3>, faces: &[[u32; 3]]) -> Vec<DVec2> {
+    // Vertices that lie at one place are one.
+    let mut places: Vec<DVec2> = Vec::new();
+    let mut at: BTreeMap<[i64; 2], usize> = BTreeMap::new();
+    let mut same: BTreeMap<u32, usize> = BTreeMap::new();
+    for (vertex, point) in points {
+        #[expect(clippy::cast_possible_truncation, reason = "metres of a plant in nanometres")]
+        let key = [point.x, point.y].map(|x| (x / SAME_M).round_ties_even() as i64);
+        let place = *at.entry(key).or_insert_with(|| {
+            places.push(point.truncate());
+            places.len() - 1
+        });
+        same.insert(*vertex, place);
+    }
+    let edge = |face: &[u32; 3], k: usize| {
+        let (a, b) = (same.get(&face[k])?, same.get(&face[(k + 1) % 3])?);
+        (a != b).then_some((*a, *b))
+    };
+    let edges: Vec<(usize, usize)> =
+        (0..3).flat_map(|k| faces.iter().filter_map(move |face| edge(face, k))).collect();
+    let mut counts: BTreeMap<(usize, usize), u32> = BTreeMap::new();
+    for (a, b) in &edges {
+        *counts.entry((*a.min(b), *a.max(b))).or_default() += 1;
+    }
+    let rim: Vec<(usize, usize)> =
+        edges.into_iter().filter(|(a, b)| counts.get(&(*a.min(b), *a.max(b))) == Some(&1)).collect();
+    let mut after: BTreeMap<usize, usize> = rim.iter().copied().collect();
+    let mut best: Vec<usize> = Vec::new();
+    for (start, _) in rim {
+        let (mut one, mut here) = (Vec::new(), start);
+        while let Some(next) = after.remove(&here) {
+            one.push(here);
+            here = next;
+        }
+        if here == start && one.len() > best.len() {
+            best = one;
+        }
+    }
+    best.iter().chain(best.first()).map(|k| places[*k]).collect()
+}
+
+/// A closed line around foliage: how far it reaches in each direction from its middle, evened out.
+fn crown(plant: &Plant) -> Vec<DVec2> {
+    let points: Vec<DVec2> = plant.organs.iter().map(|o| o.frame.origin.truncate()).collect();
+    let middle = DVec2::new(median(points.iter().map(|p| p.x)), median(points.iter().map(|p| p.y)));
+    let mut reach = [0.0_f64; SECTORS];
+    for away in points.iter().map(|p| *p - middle) {
+        let turn = (ops::atan2(away.y, away.x) + ops::PI) / ops::TAU * SECTORS as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 48")]
+        let sector = &mut reach[turn as usize % SECTORS];
+        *sector = sector.max(away.length());
+    }
+    let full = filled(&reach);
+    let even = |k: usize| {
+        let (before, after) = ((k + SECTORS - 1) % SECTORS, (k + 1) % SECTORS);
+        (full[before] + 2.0 * full[k] + full[after]) / 4.0
+    };
+    let place = |k: usize| {
+        let angle = (k as f64 + 0.5) / SECTORS as f64 * ops::TAU - ops::PI;
+        middle + even(k) * DVec2::new(ops::cos(angle), ops::sin(angle))
+    };
+    (0..=SECTORS).map(|k| place(k % SECTORS)).collect()
+}
+
+/// Directions without foliage reach as far as those around them, evenly between.
+fn filled(reach: &[f64; SECTORS]) -> [f64; SECTORS] {
+    let mut full = *reach;
+    for (k, one) in full.iter_mut().enumerate().filter(|(_, one)| **one <= 0.0) {
+        let before = (1..SECTORS).find(|d| reach[(k + SECTORS - d) % SECTORS] > 0.0);
+        let after = (1..SECTORS).find(|d| reach[(k + d) % SECTORS] > 0.0);
+        if let (Some(before), Some(after)) = (before, after) {
+            let (a, b) = (reach[(k + SECTORS - before) % SECTORS], reach[(k + after) % SECTORS]);
+            *one = a + (b - a) * before as f64 / (before + after) as f64;
+        }
+    }
+    full
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    base::sort_numbers(&mut values);
+    let half = values.len() / 2;
+    match values.as_slice() {
+        [] => 0.0,
+        all if all.len() % 2 == 1 => all[half],
+        all => f64::midpoint(all[half - 1], all[half]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FlowerOptions, TreeOptions, TreeSpec, make_flower, make_tree};
+    use base::Seed;
+    use mesh::TriMesh;
+
+    fn flat(points: &[[f32; 2]], triangles: &[[u32; 3]]) -> (BTreeMap<u32, DVec3>, Vec<DVec2>) {
+        let positions = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        let mesh = TriMesh { positions, ..TriMesh::default() };
+        let part = Part { name: "one".into(), material: mesh::MaterialId::new(0), mesh };
+        let corners = corners(&part, triangles);
+        let flat = corners.values().map(|p| p.truncate()).collect();
+        (corners, flat)
+    }
+
+    #[test]
+    fn the_outline_of_a_blade_is_its_rim_and_a_seam_is_none() {
+        // A notched blade of two halves that meet at x = 0 with vertices of their own.
+        let points = [[0.0, 0.0], [-1.0, 1.0], [0.0, 0.5], [0.0, 0.0], [0.0, 0.5], [1.0, 1.0]];
+        let faces = [[0, 2, 1], [3, 5, 4]];
+        let (corners, flat) = flat(&points, &faces);
+        let rim = outline(&corners, &faces, &flat).expect("an outline");
+        assert_eq!((rim.len(), rim.first()), (5, rim.last()));
+        assert!((geom::signed_area(&rim).abs() - 0.5).abs() < 1e-12, "{rim:?}");
+    }
+
+    #[test]
+    fn the_outline_of_a_body_without_a_rim_is_its_hull() {
+        // Both sides of a square: each edge has two triangles.
+        let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let faces = [[0, 1, 2], [0, 2, 3], [2, 1, 0], [3, 2, 0]];
+        let (corners, flat) = flat(&points, &faces);
+        let hull = outline(&corners, &faces, &flat).expect("an outline");
+        assert_eq!((hull.len(), geom::signed_area(&hull)), (5, 1.0));
+        let (corners, flat) = self::flat(&points[..2], &[]);
+        assert_eq!(outline(&corners, &[], &flat), None, "two points have no outline");
+    }
+
+    #[test]
+    fn a_slender_organ_is_a_line_along_its_middle_and_a_round_one_is_none() {
+        let rod: Vec<DVec2> =
+            (0..60).map(|k| DVec2::new(f64::from(k) / 59.0, 0.01 * f64::from(k % 3 - 1))).collect();
+        let line = middle(&rod).expect("a line");
+        assert!(
+            line.iter().all(|p| p.y.abs() < 0.01)
+                && (line[0].distance(line[line.len() - 1]) - 1.0).abs() < 0.01
+        );
+        let round: Vec<DVec2> =
+            (0..12).map(|k| DVec2::new(ops::cos(f64::from(k)), ops::sin(f64::from(k)))).collect();
+        assert_eq!(middle(&round), None);
+        assert_eq!(middle(&[]), None);
+    }
+
+    #[test]
+    fn directions_without_foliage_reach_as_far_as_those_around_them() {
+        let mut reach = [0.0; SECTORS];
+        (reach[0], reach[4], reach[5]) = (1.0, 5.0, 2.0);
+        let full = filled(&reach);
+        assert_eq!([full[0], full[1], full[2], full[3], full[4]], [1.0, 2.0, 3.0, 4.0, 5.0]);
+        // Over the seam, from 5 to 48.
+        assert!(full[6] < 2.0 && full[SECTORS - 1] > 1.0 && full[SECTORS - 1] < full[SECTORS - 2]);
+    }
+
+    #[test]
+    fn a_flower_is_drawn_by_its_outlines_those_behind_first() {
+        let spec = bloom::preset("lily").expect("a preset");
+        let (day, options) = ((spec.opening_days, &spec.own_law()), FlowerOptions::default());
+        let made = make_flower("lily", &spec, day, &options, Seed::new(1), &Run::plain()).expect("a flower");
+        let lines = drawn((&made.plant, &made.model, &made.layout), &Run::plain()).expect("lines");
+        let of = |kind| lines.iter().filter(|l| l.kind == kind).count();
+        assert!(of(DrawnKind::Blade) >= 5 && of(DrawnKind::Axis) >= 1 && of(DrawnKind::Crown) == 0);
+        for line in lines.iter().filter(|l| l.kind == DrawnKind::Blade) {
+            assert_eq!(line.points.first(), line.points.last(), "an outline is closed");
+        }
+    }
+
+    #[test]
+    fn a_tree_in_leaf_is_its_trunk_and_its_crown() {
+        let spec = TreeSpec::default();
+        let made = make_tree(&spec, Seed::new(3), &TreeOptions::default(), &Run::plain()).expect("a tree");
+        let lines = drawn((&made.grown.plant, &made.model, &made.layout), &Run::plain()).expect("lines");
+        assert_eq!(lines.first().map(|l| (l.kind, l.row)), Some((DrawnKind::Axis, 0)));
+        let crown = lines.last().expect("a crown");
+        assert_eq!((crown.kind, crown.row, crown.points.len()), (DrawnKind::Crown, NOTHING, SECTORS + 1));
+        let drawing = drawing_of("a tree", lines.iter().map(|l| (l.kind.word(), l.points.clone())));
+        assert_eq!(drawing.strokes.len(), lines.len());
+        assert_eq!(drawing.layers.iter().map(|l| &*l.name).collect::<Vec<_>>(), ["axis", "crown"]);
+    }
+
+    #[test]
+    fn what_is_stopped_draws_nothing() {
+        let made = make_tree(&TreeSpec::default(), Seed::new(3), &TreeOptions::default(), &Run::plain());
+        let made = made.expect("a tree");
+        let cancel = base::CancelToken::new();
+        cancel.cancel();
+        let run = Run { cancel: &cancel, ..Run::plain() };
+        assert!(drawn((&made.grown.plant, &made.model, &made.layout), &run).is_err());
+    }
+}
