@@ -16,6 +16,8 @@ export interface Board {
     isRecorded: boolean;
     trueScale: boolean;
     leftHanded: boolean;
+    /** Of what is drawn: its colour as CSS, and across, millimetres. */
+    trace: { colour: string; mm: number };
   };
   say(text: string): void;
   /** Something was taken back. */
@@ -27,6 +29,9 @@ export interface Board {
   writeDown(): void;
   mirror: Key['act'];
   brush(by: number): void;
+  /** The trace in the next colour, or in the next thickness. */
+  traceColour(): void;
+  traceThickness(): void;
   resize(): void;
   swapHands(): void;
   /** So many steps higher. */
@@ -35,6 +40,15 @@ export interface Board {
   startLesson(): void;
 }
 
+/** Tools that mean a branch, or what bears it. */
+const CLIMBS: ReadonlySet<ShapeTool | undefined> = new Set<ShapeTool>([
+  'pick',
+  'rotate',
+  'move',
+  'copy',
+  'prune',
+  'regrow',
+]);
 const GROWTH_KEYS = ['vigour', 'apical', 'angle_deg', 'lift', 'apart'] as const;
 /** What a model is written as from within, in rows of keys. */
 const FORMATS = [
@@ -120,9 +134,7 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
       key('redo', 2, events.redo),
       key('mirror', 2, (hand) => board.mirror(hand), shaping.isMirrored),
     ],
-    ...(shaping.word === 'grow'
-      ? growthRows(board, shaping)
-      : [[key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))]]),
+    ...settingRows(board, shaping),
     [
       key('scale', 3, () => board.resize(), now.trueScale),
       key('left', 3, () => board.swapHands(), now.leftHanded),
@@ -135,12 +147,29 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   ];
 }
 
+/** What the tool in the hand can be set to. */
+function settingRows(board: Board, shaping: Shaping): Rows {
+  const { word } = shaping;
+  if (word === 'grow') return growthRows(board, shaping);
+  if (word === 'brush' || word === 'leaves')
+    return [[key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))]];
+  if (!CLIMBS.has(word)) return [];
+  return [[key('bearer', 3, () => shaping.climb(1)), key('twig', 3, () => shaping.climb(-1))]];
+}
+
 function moreRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   const species = (by: 1 | -1) => () => {
     void events.species(by).then((name) => board.say(name ?? t('vr.species.none')));
   };
+  const { trace } = board.state();
+  const colour = { ...key('trace.colour', 3, () => board.traceColour()), swatch: trace.colour };
+  const thickness = {
+    ...key('trace.thick', 3, () => board.traceThickness()),
+    label: t('vr.trace.thick', trace),
+  };
   return [
     [key('before', 3, species(-1)), key('next', 3, species(1))],
+    [colour, thickness],
     [key('dice', 6, () => events.run('dice'))],
     [key('grid', 3, () => events.run('guide-grid')), key('staff', 3, () => events.run('guide-staff'))],
     [
