@@ -306,12 +306,7 @@ impl Workspace {
         if !busy && now.is_none() {
             self.held = None;
         }
-        let turned_deg = match now.as_deref() {
-            Some(HandEdit::Rotate { turn, .. } | HandEdit::Move { turn: Some(turn), .. }) => {
-                Some(turn.degrees)
-            }
-            _ => None,
-        };
+        let turned_deg = now.as_deref().and_then(turned);
         let grown = match now.as_deref() {
             Some(HandEdit::Grow { rounds, .. }) if busy => {
                 let before = self.held.as_ref().map(|h| &h.before);
@@ -447,6 +442,14 @@ impl Workspace {
             }
         }
         Some((id, aside.document().clone()))
+    }
+}
+
+/// How far an edit turns a branch, degrees.
+fn turned(edit: &HandEdit) -> Option<f64> {
+    match edit {
+        HandEdit::Rotate { turn, .. } | HandEdit::Move { turn: Some(turn), .. } => Some(turn.degrees),
+        _ => None,
     }
 }
 
