@@ -147,6 +147,7 @@ fn hands() {
         up: DVec3::Y,
         pressure: 1.0,
         tip: Some(p),
+        hand: None,
     };
     let held = DVec3::new(3.0, 2.0, 0.0);
     println!("\na branch of {} nodes in the hand, ms a pose (mean of 200)", plant.nodes.position.len());

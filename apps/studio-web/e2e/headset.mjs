@@ -24,6 +24,16 @@ export async function wear(page, model) {
           fallbackProfileIds: ['generic-trigger-squeeze-thumbstick'],
         },
       },
+      // Of three degrees of freedom: no grip, by its names, and its place is guessed.
+      pointing: {
+        ...quest,
+        name: 'a controller that points',
+        controllerConfig: {
+          ...quest.controllerConfig,
+          profileId: 'oculus-go',
+          fallbackProfileIds: ['generic-trigger-touchpad'],
+        },
+      },
       floorless: {
         ...quest,
         name: 'without a floor',
@@ -34,6 +44,13 @@ export async function wear(page, model) {
     window.device = new globalThis.IWER.XRDevice(own[name] ?? globalThis.IWER[name]);
     window.device.installRuntime({ forceInstall: true });
     window.device.position.set(0, 1.6, 0);
+    // As long as a test says so, places are guessed from how things are turned.
+    const { getPose } = window.XRFrame.prototype;
+    window.XRFrame.prototype.getPose = function (...of) {
+      const pose = getPose.apply(this, of);
+      if (pose) Object.defineProperty(pose, 'emulatedPosition', { value: window.guessing === true });
+      return pose;
+    };
   }, model);
 }
 
@@ -58,7 +75,7 @@ export const hand = (page, side, [x, y, z], aim) =>
 export const press = (page, side, button, value) =>
   page.evaluate(([s, b, v]) => window.device.controllers[s].updateButtonValue(b, v), [side, button, value]);
 
-const stick = (page, side, x, y) =>
+export const stick = (page, side, x, y) =>
   page.evaluate(
     ([s, u, v]) => {
       window.device.controllers[s].updateAxis('thumbstick', 'x-axis', u);
@@ -82,7 +99,7 @@ async function glide(page, side, from, to, aim) {
 }
 
 /** A picture of the board at the wrist, with the head bowed to it. */
-async function shotOfBoard(page, shot, name, side = 'left') {
+export async function shotOfBoard(page, shot, name, side = 'left') {
   await page.evaluate(() => window.device.quaternion.set(Math.sin(-0.3), 0, 0, Math.cos(-0.3)));
   await hand(page, side, [0, 1.25, -0.35]);
   await frames(page);
@@ -99,7 +116,7 @@ export async function frames(page, count = 4) {
   );
 }
 
-async function click(page, side, button) {
+export async function click(page, side, button) {
   await press(page, side, button, 1);
   await frames(page);
   await press(page, side, button, 0);

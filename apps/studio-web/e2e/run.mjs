@@ -7,6 +7,7 @@ import { FLAGS } from './flags.mjs';
 import { grove } from './grove.mjs';
 import { headset, headsetCore } from './headset.mjs';
 import { headsetCosts } from './headset-costs.mjs';
+import { headsetHabits } from './headset-habits.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { materialJourneys } from './materials.mjs';
@@ -38,7 +39,7 @@ const all = [
   ...headsetCore,
 ];
 // Two pictures a frame: minutes without a graphics card, so the others only when they are asked for.
-if (only?.startsWith('headset')) all.push(...headset, ...headsetCosts);
+if (only?.startsWith('headset')) all.push(...headset, ...headsetHabits, ...headsetCosts);
 for (const [name, journey, options] of all) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({

@@ -162,7 +162,7 @@ export class App implements Page {
       view: (view, fresh) => {
         const { session } = this;
         this.view?.update(view, fresh);
-        this.door.recorder?.seen();
+        this.door.seen();
         session.draftShown();
         this.sheet.setOrgans(session.organs, this.readings.doubtful);
         this.panel.follow();
@@ -405,8 +405,14 @@ export class App implements Page {
       model: (format: ExportFormat) => void this.files.model(format),
       most: (triangles: number) =>
         void session.engine.ask({ kind: 'most', triangles }).catch(() => undefined),
+      ready: (triangles: number) =>
+        void session.engine.ask({ kind: 'ready', triangles }).catch(() => undefined),
       project: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
-      seen: () => ({ plant: session.plant?.id, digest: session.seen?.item?.digest }),
+      seen: () => ({
+        plant: session.plant?.id,
+        numbers: session.state?.numbers,
+        digest: session.seen?.item?.digest,
+      }),
       write: (record: GestureRecord) => {
         const name = `${safe(session.state?.name ?? t('app.untitled'))}.gestures.json`;
         download(name, JSON.stringify(record), 'application/json');

@@ -63,6 +63,8 @@ export type Request =
   | { kind: 'shape'; tool: ToolKind; reach: ShapeReach; input: ShapeInput }
   /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
   | { kind: 'most'; triangles: number }
+  /** Makes what that would show, before it is wished for. */
+  | { kind: 'ready'; triangles: number }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
   /** Triangles of the meshes that the hand carries: part, first, and the one after the last, of each range. */

@@ -355,14 +355,19 @@ export class Shaping {
     return this.isBusy && this.growing !== 0;
   }
 
-  /** A number of the tool in the hand more or less, by so many of its notches; that of what grows counts at once. */
-  turn(name: string, notches: number): void {
-    if (!this.tool) return;
+  /**
+   * A number of the tool in the hand more or less, by so many of its notches, or the other of two values; nothing where it has no
+   * such setting. What it is then, in words.
+   */
+  turn(name: string, notches: number): string {
+    if (!this.tool || !(name in rowOf(this.tool).settings)) return '';
     this.settings.turn(this.tool, name, notches);
     this.setTo();
+    this.showStrip();
+    return this.settingsText(name);
   }
 
-  /** Numbers of the tool in the hand, in words. */
+  /** Settings of the tool in the hand, in words. */
   settingsText(...names: string[]): string {
     return this.tool ? this.settings.text(this.tool, this.size, ...names) : '';
   }
@@ -592,7 +597,6 @@ export class Shaping {
     else if (wheel === 'twist') void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
     else {
       this.turn(wheel![e.shiftKey ? 1 : 0], up ? 1 : -1);
-      this.showStrip();
     }
   }
 

@@ -47,6 +47,14 @@ test('each tool keeps what it is set to by itself, within its range', () => {
   expect(settings.of('leaves')['radius_m']).toBe(0.07);
   settings.turn('grow', 'vigour', 2);
   expect(settings.of('grow')['vigour']).toBeCloseTo(2 * 1.12 ** 2);
+  settings.turn('leaves', 'keep', 1);
+  settings.turn('prune', 'whole', 1);
+  settings.turn('silhouette', 'trim', 1);
+  expect([
+    settings.of('leaves')['keep'],
+    settings.of('prune')['whole'],
+    settings.of('silhouette')['trim'],
+  ]).toEqual([2, true, false]);
   settings.turn('grow', 'angle_deg', 100);
   expect(settings.of('grow')['angle_deg']).toBe(110);
   expect(SHAPE_WORDS.filter(isBrush)).toEqual(['brush', 'leaves']);

@@ -89,7 +89,7 @@ type Row<W extends ShapeTool> = ToolRow & {
 };
 
 const RADIUS = { low: 0.01, high: 0.4, step: 0.01, is: 0.07, ofPlant: true } as const;
-const DENSITY = { low: 0.25, high: 4, step: 0.25, is: 1 } as const;
+const DENSITY = { low: 0.25, high: 4, step: 0.25, is: 1, notch: { share: 0.4 } } as const;
 
 /** In the order in which they are shown. */
 export const SHAPE_TOOLS = {
@@ -112,7 +112,7 @@ export const SHAPE_TOOLS = {
     mirrors: true,
     wheel: 'twist',
     settings: {
-      twigs: { low: 0, high: 4, step: 0.25, is: 1 },
+      twigs: { low: 0, high: 4, step: 0.25, is: 1, notch: 0.5 },
       tilt_deg: { low: -75, high: 75, step: 5, is: 0, unit: '°' },
     },
   },

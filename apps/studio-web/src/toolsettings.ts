@@ -1,6 +1,6 @@
 /** What the tools of the view are set to, each by itself, and how the core is told. */
-import { tOf } from './text';
-import { isBrush, isNumber, type NumberSetting, rowOf, SHAPE_WORDS, type ShapeTool } from './tools';
+import { t, type TextKey, tOf } from './text';
+import { isBrush, isChoice, isNumber, type NumberSetting, rowOf, SHAPE_WORDS, type ShapeTool } from './tools';
 import type { ToolKind, ViewPlane } from './wire';
 
 type Values = Record<string, number | boolean>;
@@ -52,9 +52,16 @@ export class ToolSettings {
     return { [word]: { ...fields, ...placed } } as unknown as ToolKind;
   }
 
-  /** A number more or less, by so many of its notches. */
+  /** A number more or less, by so many of its notches; a choice or a switch is turned to its other value. */
   turn(word: ShapeTool, name: string, notches: number): void {
-    const { notch = 0 } = rowOf(word).settings[name] as NumberSetting;
+    const setting = rowOf(word).settings[name]!;
+    if (!isNumber(setting)) {
+      const values = isChoice(setting) ? Object.values(setting.words) : [false, true];
+      const next = (values.indexOf(this.of(word)[name]!) + 1) % values.length;
+      this.set(word, name, values[next]!);
+      return;
+    }
+    const { notch = 0 } = setting;
     const now = Number(this.of(word)[name]);
     this.set(
       word,
@@ -70,8 +77,17 @@ export class ToolSettings {
     return ofPlant ? `${rounded(value * size)} m` : `${rounded(value)}${unit}`;
   }
 
-  /** Numbers in words. */
+  /** Settings in words. */
   text(word: ShapeTool, size: number, ...names: string[]): string {
-    return names.map((name) => `${tOf('shape.set', name)} ${this.shown(word, size, name)}`).join(' · ');
+    const now = this.of(word);
+    const said = (name: string): string => {
+      const setting = rowOf(word).settings[name]!;
+      if (isNumber(setting)) return `${tOf('shape.set', name)} ${this.shown(word, size, name)}`;
+      if (!isChoice(setting))
+        return `${t(`shape.${word}.${setting.word}` as TextKey)} ${now[name] ? '✓' : '–'}`;
+      const chosen = Object.keys(setting.words).find((w) => setting.words[w] === now[name]);
+      return t(`shape.${word}.${chosen}` as TextKey);
+    };
+    return names.map(said).join(' · ');
   }
 }

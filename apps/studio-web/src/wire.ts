@@ -110,6 +110,7 @@ export const CODES = {
   "record-form": ["form"],
   "record-keeps": [],
   "record-long": ["most"],
+  "record-numbers": [],
   "record-project": [],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle", "name"],
@@ -360,6 +361,8 @@ export type DocumentState = {
     | null;
   /** Name of the scene. */
   name: string;
+  /** The numbers that they go by. */
+  numbers: PlantNumbers;
   /** The plants in the order in which they came in. */
   plants: PlantState[];
   /** Name of the step that redo does again. */
@@ -606,6 +609,10 @@ export type GestureDeed =
 export type GestureRecord = {
   /** The digest of the plant that was worked on last, as it was seen then. */
   digest?: string | null;
+  /** The numbers of the project's plants, by which steps name them. */
+  numbers?: 
+    | PlantNumbers
+    | null;
   /** The plant that was worked on first. */
   plant?: 
     | PlantId
@@ -759,6 +766,10 @@ export type HandEdit =
     op: "move";
     /** Where to. */
     to: Destination;
+    /** Turns it about its base there, from how it would stand otherwise. */
+    turn?: 
+      | Turn
+      | null;
   }
   | /** Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. */
   {
@@ -1464,6 +1475,14 @@ export type PlantCommand =
 /** Names one plant for as long as the document lives. */
 export type PlantId = number;
 
+/** The numbers that the plants of a document go by: a file keeps none, and commands name plants by them. */
+export type PlantNumbers = {
+  /** The one that a new plant is given; above all others. */
+  next: number;
+  /** Of each plant, in the order of the document. */
+  plants: PlantId[];
+};
+
 /** One plant; of `sketch`, `tree`, `leaf` and `flower` that of its maker is there. */
 export type PlantState = {
   /** Edits by hand, in the order in which they are done. */
@@ -1691,6 +1710,8 @@ export type ShapeAnswer = {
   grown: 
     | Grown
     | null;
+  /** On what the branch in the hand would be dropped, a row: once it was pulled off, or where it slid onto other wood. */
+  host: number | null;
   /** The plane of symmetry that was placed. */
   mirror: 
     | Mirror
@@ -1789,6 +1810,8 @@ export type ShapePointer = {
   direction: [number, number, number];
   /** Into the view. */
   forward: [number, number, number];
+  /** How that controller is turned, a quaternion: x, y, z, w. */
+  hand?: [number, number, number, number] | null;
   /** Where its ray starts. */
   origin: [number, number, number];
   /** 0 to 1. */

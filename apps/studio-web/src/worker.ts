@@ -118,6 +118,8 @@ function answer(s: StudioSession, request: Request): unknown {
       );
     case 'most':
       return s.set_most_triangles(request.triangles);
+    case 'ready':
+      return s.ready_levels(request.triangles);
     case 'branch':
       return s.branch(request.axis);
     case 'held':
@@ -184,7 +186,11 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'schema',
   'branch',
   'held',
+  'ready',
 ]);
+
+/** Requests that change nothing of the document, but what is shown of it. */
+const STATELESS: ReadonlySet<Request['kind']> = new Set(['draft', 'shape', 'most']);
 
 /** Textures of these materials that the page does not have. */
 function unsent(s: StudioSession, { materials }: PlantView): TexturePixels[] {
@@ -337,7 +343,7 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     const value = answer(session, request);
     const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
     // The state first: what waits for the answer may look at it.
-    if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);
+    if (!quiet && !STATELESS.has(request.kind)) tellState(session);
     tell({ kind: 'done', seq, value, placed: session.placed() }, given(request.kind, value));
     if (!quiet) schedule();
   } catch (e) {

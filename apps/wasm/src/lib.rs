@@ -296,6 +296,11 @@ impl StudioSession {
         self.0.set_most_triangles((most > 0).then_some(most.into()));
     }
 
+    /// See [`Workspace::ready_levels`].
+    pub fn ready_levels(&mut self, most: u32) {
+        page_run(|run| self.0.ready_levels(most.into(), run));
+    }
+
     /// See [`Workspace::shape`]: `ToolKind`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out, all JSON.
     ///
     /// # Errors

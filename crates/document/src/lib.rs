@@ -39,7 +39,7 @@ pub use editor::{Editor, Step};
 pub use event::{Event, StrokeRows};
 pub use fault::SettingFault;
 pub use file::{MAX_PROJECT_BYTES, PROJECT_SCHEMA, ProjectError, is_project, read_project, write_project};
-pub use ids::{PlantId, StrokeId};
+pub use ids::{PlantId, PlantNumbers, StrokeId};
 pub use makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
 pub use picture::{PictureError, WornPicture, WornPictures};

@@ -12,7 +12,7 @@ use shape::HandEdit;
 use skin::{OrganMaterial, Pattern, StrokeWear, Wear};
 
 use crate::fault::{MAX_EDITS, MAX_PICTURES};
-use crate::ids::{PlantId, StrokeId};
+use crate::ids::{PlantId, PlantNumbers, StrokeId};
 use crate::names::{NAME_LENGTH, shortened, too_long};
 use crate::picture::material_fault;
 use crate::{Maker, Photo, SettingFault, SketchSettings, WornPictures};
@@ -382,6 +382,38 @@ impl Document {
     /// A plant by its name.
     pub fn plant(&self, id: PlantId) -> Option<&DocumentPlant> {
         self.plants.iter().find(|p| p.id == id)
+    }
+
+    /// The numbers that its plants go by.
+    pub fn numbers(&self) -> PlantNumbers {
+        PlantNumbers { plants: self.plants.iter().map(DocumentPlant::id).collect(), next: self.next_plant }
+    }
+
+    /// The same plants under other numbers, such as a session had that saved it: what names plants by number means them again.
+    ///
+    /// # Errors
+    /// [`DocumentFault::PlantNumber`] where the numbers are too few, too many, taken twice, or not below the next one.
+    ///
+    /// ```
+    /// use document::{Document, PlantId, PlantNumbers};
+    /// let numbers = PlantNumbers { plants: vec![PlantId(7)], next: 9 };
+    /// assert_eq!(Document::default().numbered(&numbers)?.plants()[0].id(), PlantId(7));
+    /// # Ok::<(), document::DocumentFault>(())
+    /// ```
+    pub fn numbered(mut self, numbers: &PlantNumbers) -> Result<Self, DocumentFault> {
+        if numbers.plants.len() != self.plants.len() {
+            return Err(DocumentFault::PlantNumber(PlantId(numbers.next)));
+        }
+        let before = self.numbers().plants;
+        let now = |id: PlantId| before.iter().position(|b| *b == id).map(|row| numbers.plants[row]);
+        for (plant, id) in self.plants.iter_mut().zip(&numbers.plants) {
+            plant.id = *id;
+            let leaf = plant.settings.maker.leaf();
+            plant.settings.maker.set_leaf(leaf.and_then(now));
+        }
+        self.next_plant = numbers.next;
+        let fault = self.validate().find(|fault| matches!(fault, DocumentFault::PlantNumber(_)));
+        fault.map_or(Ok(self), Err)
     }
 
     pub(crate) fn plant_mut(&mut self, id: PlantId) -> Option<&mut DocumentPlant> {

@@ -193,9 +193,14 @@ fn hand_edit() -> BoxedStrategy<HandEdit> {
         (axis(), point(), -400.0..400.0f64).prop_map(|(axis, about, degrees)| {
             HandEdit::Rotate { axis, turn: Turn { about: about.extend(1.0), degrees } }
         }),
-        (axis(), number.clone()).prop_map(|(axis, by)| HandEdit::Move { axis, to: Destination::SlideM(by) }),
-        (axis(), axis(), number.clone())
-            .prop_map(|(axis, on, at)| { HandEdit::Move { axis, to: Destination::Place { axis: on, at } } }),
+        (axis(), number.clone()).prop_map(|(axis, by)| HandEdit::Move {
+            axis,
+            to: Destination::SlideM(by),
+            turn: None
+        }),
+        (axis(), axis(), number.clone()).prop_map(|(axis, on, at)| {
+            HandEdit::Move { axis, to: Destination::Place { axis: on, at }, turn: None }
+        }),
         (axis(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
         (axis(), seed).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
         (axis(), points(), number.clone()).prop_map(|(bearer, points, twigs)| {

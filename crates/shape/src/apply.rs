@@ -188,7 +188,7 @@ fn one_side(
 ) -> Result<Changed, Stop> {
     match edit {
         HandEdit::Rotate { axis, turn } => rotate(draft, axis, *turn),
-        HandEdit::Move { axis, to } => shift(draft, axis, to, bench),
+        HandEdit::Move { axis, to, turn } => shift(draft, axis, to, *turn, bench),
         HandEdit::Copy { axis, to } => twin::copy(draft, axis, to, bench),
         HandEdit::Prune { axis, at } => prune(draft, axis, *at, bench),
         HandEdit::Regrow { axis, seed } => fill::regrow(draft, axis, Seed::new(*seed), bench),
@@ -228,7 +228,14 @@ fn count(what: &[bool]) -> usize {
     what.iter().filter(|w| **w).count()
 }
 
-fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>) -> Result<Changed, Stop> {
+fn shift(
+    draft: &mut Draft,
+    axis: &AxisKey,
+    to: &Destination,
+    then: Option<Turn>,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
+    let then = then.map(Turn::quat).transpose()?;
     let (b, by_likeness) = axis.find_in(draft)?;
     let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
     let what = draft.subtree(b);
@@ -236,7 +243,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
     let (host, share) = match goal(draft, b, to)? {
         Goal::Wood(host, share) => (host, share),
         Goal::Ground(by) => {
-            draft.carry(&what, base, base + by, DQuat::IDENTITY);
+            draft.carry(&what, base, base + by, then.unwrap_or(DQuat::IDENTITY));
             return Ok(done);
         }
     };
@@ -246,7 +253,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
     let exponent = bench.habit(draft).exponent;
     let Seat { at: new, target, turn } = onto(draft, b, host, share);
     let old = draft.branches[b].bearer;
-    draft.carry(&what, base, target, turn);
+    draft.carry(&what, base, target, then.map_or(turn, |then| then * turn));
     draft.branches[b].bearer = Some(new);
     let radius = draft.branches[b].radii.first().copied().unwrap_or(0.0);
     let mut pipes = Pipes::default();

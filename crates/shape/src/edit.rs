@@ -36,6 +36,9 @@ pub enum HandEdit {
         axis: AxisKey,
         /// Where to.
         to: Destination,
+        /// Turns it about its base there, from how it would stand otherwise. Default not at all.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        turn: Option<Turn>,
     },
     /// Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. The copy is made as thin as what
     /// bears it then.
@@ -236,16 +239,14 @@ impl HandEdit {
                 axis.check()?;
                 turn.quat().map(|_| ())
             }
-            Self::Move { axis, to } | Self::Copy { axis, to } => {
+            Self::Move { axis, to, turn } => {
                 axis.check()?;
-                match to {
-                    Destination::SlideM(by) => within("slide-m", *by, -FAR, FAR),
-                    Destination::Place { axis, at } => {
-                        axis.check()?;
-                        within("at", *at, 0.0, 1.0)
-                    }
-                    Destination::ByM(by) => near("by-m", &[*by]),
-                }
+                turn.map_or(Ok(()), |turn| turn.quat().map(|_| ()))?;
+                to.check()
+            }
+            Self::Copy { axis, to } => {
+                axis.check()?;
+                to.check()
             }
             Self::Prune { axis, at } => {
                 axis.check()?;
@@ -377,6 +378,19 @@ pub enum Destination {
     /// By a vector, metres: what stands on the ground is set elsewhere, what is borne slides to the place of its bearer
     /// that is nearest to the new base.
     ByM(#[schemars(with = "[f64; 3]")] DVec3),
+}
+
+impl Destination {
+    fn check(&self) -> Result<(), Why> {
+        match self {
+            Self::SlideM(by) => within("slide-m", *by, -FAR, FAR),
+            Self::Place { axis, at } => {
+                axis.check()?;
+                within("at", *at, 0.0, 1.0)
+            }
+            Self::ByM(by) => near("by-m", &[*by]),
+        }
+    }
 }
 
 /// A plane in which an outline is drawn.

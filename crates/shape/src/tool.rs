@@ -21,7 +21,8 @@ use crate::pick::{Pick, Ray, Reach, nearest, pick};
 pub enum ToolKind {
     /// Point at a branch: it makes no edit.
     Pick,
-    /// Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes.
+    /// Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes. A hand
+    /// that turns rolls it, too, and one that pulls takes it off its bearer: it is dropped on the wood nearest to its base.
     Rotate,
     /// Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the
     /// ground, over the ground.
@@ -122,6 +123,15 @@ pub struct Pointer {
     pub pressure: f64,
     /// The place of a tracked controller's tip: it draws there, not on a plane.
     pub tip: Option<DVec3>,
+    /// How that controller is turned: what it holds turns with it.
+    pub hand: Option<DQuat>,
+}
+
+impl Pointer {
+    /// How the hand is turned, as a unit quaternion; none where the device says nonsense.
+    fn held(&self) -> Option<DQuat> {
+        self.hand.filter(|q| q.is_finite() && q.length_squared() > 1e-6).map(DQuat::normalize)
+    }
 }
 
 /// What a hand did.
@@ -168,7 +178,7 @@ pub struct Response {
 /// p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
 /// let at = |y: f64| Pointer {
 ///     ray: Ray { origin: DVec3::new(0.0, y, 5.0), direction: DVec3::NEG_Z },
-///     forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None,
+///     forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None, hand: None,
 /// };
 /// let mut shears = Tool::new(ToolKind::Prune { whole: false });
 /// shears.handle(&p, &Input::Down(at(1.5)));
@@ -196,9 +206,11 @@ enum State {
         about: DVec3,
         last: Option<DVec3>,
         angle: f64,
-        /// Where a tracked tip took hold, from the pivot, and how it turned the branch since.
+        /// Where a tracked tip took hold, from the pivot, how its hand was turned then, and how it turned the branch since.
         tip: Option<DVec3>,
+        hand: Option<DQuat>,
         swing: DQuat,
+        off: Option<Pulled>,
     },
     Sliding {
         pick: Pick,
@@ -233,6 +245,16 @@ enum Goal {
     Ground(DVec3),
 }
 
+/// A branch that was pulled off its bearer.
+#[derive(Clone, Copy, Debug)]
+struct Pulled {
+    /// What it would be dropped on, and where along that, as a share of its length.
+    host: AxisId,
+    share: f64,
+    /// How the hand turned since it took hold.
+    turn: DQuat,
+}
+
 #[derive(Clone, Debug)]
 struct Stroking {
     pick: Option<Pick>,
@@ -259,6 +281,11 @@ const LEAST_TURN_DEG: f64 = 0.2;
 const BESIDE: f64 = 7.0;
 /// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (the VR paper's dead zone).
 const DEAD: f64 = 0.05;
+/// A hand that pulls by so much of the branch's length, and by so many times its reach, takes it off its bearer.
+const PULL: f64 = 0.35;
+const PULL_REACH: f64 = 2.0;
+/// Half a turn less than this, radians, is none.
+const STEADY: f64 = 1e-9;
 
 impl Tool {
     /// A tool that holds nothing.
@@ -305,7 +332,11 @@ impl Tool {
     pub fn carried(&self, plant: &Plant) -> Option<Carried> {
         match &self.state {
             _ if !self.carries() => None,
-            State::Turning { pick, pivot, about, angle, swing, .. } => {
+            State::Turning { pick, about, angle, off: Some(off), .. } => {
+                let turn = turn_of(*about, *angle, off.turn).quat().ok()?;
+                Some(Carried { turn, ..Carried::onto(plant, pick.axis, off.host, off.share)? })
+            }
+            State::Turning { pick, pivot, about, angle, swing, off: None, .. } => {
                 let turn = turn_of(*about, *angle, *swing).quat().ok()?;
                 Some(Carried { axis: pick.axis, from: *pivot, to: *pivot, turn })
             }
@@ -317,6 +348,17 @@ impl Tool {
                 }
                 None => None,
             },
+            _ => None,
+        }
+    }
+
+    /// On what the branch in the hand would be dropped: once it was pulled off, or where it slid onto other wood.
+    pub fn host(&self) -> Option<AxisId> {
+        match &self.state {
+            State::Turning { off, .. } => off.map(|off| off.host),
+            State::Sliding { to: Some(Goal::Wood(host, _)), bearer, .. } => {
+                Some(*host).filter(|host| bearer.as_ref().is_none_or(|(_, axis)| axis != host))
+            }
             _ => None,
         }
     }
@@ -391,7 +433,8 @@ impl Tool {
                 let about = -p.forward.normalize_or(DVec3::NEG_Z);
                 let tip = p.tip.map(|t| t - pivot).filter(|t| t.is_finite());
                 let last = hand(p, pivot, about).filter(|_| tip.is_none());
-                State::Turning { pick, key, pivot, about, last, angle: 0.0, tip, swing: DQuat::IDENTITY }
+                let (hand, swing, off) = (p.held(), DQuat::IDENTITY, None);
+                State::Turning { pick, key, pivot, about, last, angle: 0.0, tip, hand, swing, off }
             }
             (ToolKind::Move | ToolKind::Copy, Some((pick, key))) => {
                 let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
@@ -487,11 +530,23 @@ impl Tool {
             State::Idle => {
                 return Response { picked: pick(plant, &p.ray, self.reach), ..Response::default() };
             }
-            State::Turning { pick, pivot, tip: Some(from), swing, .. } => {
+            State::Turning { pick, pivot, tip: Some(from), hand, swing, off, .. } => {
                 let length = geom::polyline_length3(plant.axis_points(pick.axis));
                 let to = p.tip.map(|t| t - *pivot).filter(|t| t.is_finite() && t.length() > DEAD * length);
-                if let (Some(a), Some(b)) = (from.try_normalize(), to.and_then(DVec3::try_normalize)) {
-                    *swing = base::turn::between(a, b);
+                let turn = hand.zip(p.held()).map(|(was, is)| is * was.conjugate());
+                if let Some((a, to, b)) =
+                    from.try_normalize().zip(to).and_then(|(a, to)| Some((a, to, to.try_normalize()?)))
+                {
+                    let least = base::turn::between(a, b);
+                    *swing = turn.map_or(least, |turn| rolled(least, turn, b));
+                    let most = from.length() + PULL * length + PULL_REACH * self.reach.metres;
+                    let borne = plant.axis(pick.axis).bearer.is_some();
+                    *off = turn.filter(|_| borne && to.length() > most).and_then(|turn| {
+                        match wood_near(plant, *pivot + to - turn * *from, pick.axis)? {
+                            Goal::Wood(host, share) => Some(Pulled { host, share, turn }),
+                            Goal::Ground(_) => None,
+                        }
+                    });
                 }
             }
             State::Turning { pick, pivot, about, last, angle, tip: None, .. } => {
@@ -564,7 +619,14 @@ impl Tool {
         let seed = self.seed;
         match &self.state {
             State::Idle => None,
-            State::Turning { key, about, angle, swing, .. } => {
+            State::Turning { pick, key, about, angle, off: Some(off), .. } => {
+                let held = turn_of(*about, *angle, off.turn).quat().ok()?;
+                let seat = Carried::onto(plant, pick.axis, off.host, off.share)?;
+                let to = Destination::Place { axis: AxisKey::of(plant, off.host)?, at: off.share };
+                let turn = Some(Turn::of(held * seat.turn.conjugate()));
+                Some(HandEdit::Move { axis: key.clone(), to, turn })
+            }
+            State::Turning { key, about, angle, swing, off: None, .. } => {
                 let turn = turn_of(*about, *angle, *swing);
                 (turn.degrees.abs() >= LEAST_TURN_DEG).then(|| HandEdit::Rotate { axis: key.clone(), turn })
             }
@@ -580,7 +642,7 @@ impl Tool {
                 let axis = key.clone();
                 Some(match self.kind {
                     ToolKind::Copy => HandEdit::Copy { axis, to },
-                    _ => HandEdit::Move { axis, to },
+                    _ => HandEdit::Move { axis, to, turn: None },
                 })
             }
             State::Clicking { pick, key } => Some(match self.kind {
@@ -664,6 +726,16 @@ fn turn_of(about: DVec3, angle: f64, swing: DQuat) -> Turn {
     let axis = q.xyz();
     let degrees = 2.0 * base::ops::atan2(axis.length(), q.w) * (180.0 / PI);
     Turn { about: axis.normalize_or(about), degrees }
+}
+
+/// The least turn to a direction, and about that the roll of a hand that turned.
+fn rolled(least: DQuat, turn: DQuat, along: DVec3) -> DQuat {
+    // A hand that only went there rolled nothing, and rounding is no roll.
+    if turn.xyz().length() < STEADY {
+        return least;
+    }
+    let rest = turn * least.conjugate();
+    base::turn::about(along, 2.0 * base::ops::atan2(rest.xyz().dot(along), rest.w)) * least
 }
 
 /// The pointer in the plane of a rotation, from its pivot.

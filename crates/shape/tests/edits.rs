@@ -126,7 +126,10 @@ fn edit() -> impl Strategy<Value = HandEdit> {
     let outline = prop::collection::vec((-3.0..3.0, 0.0..8.0).prop_map(|(x, y)| DVec2::new(x, y)), 0..7);
     prop_oneof![
         (key(), turn).prop_map(|(axis, turn)| HandEdit::Rotate { axis, turn }),
-        (key(), to.clone()).prop_map(|(axis, to)| HandEdit::Move { axis, to }),
+        (key(), to.clone(), prop::option::of((point(), -400.0..400.0_f64))).prop_map(|(axis, to, turn)| {
+            let turn = turn.map(|(about, degrees)| Turn { about, degrees });
+            HandEdit::Move { axis, to, turn }
+        }),
         (key(), to).prop_map(|(axis, to)| HandEdit::Copy { axis, to }),
         (key(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
         (key(), 0_u64..9).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
@@ -251,14 +254,16 @@ fn a_moved_branch_takes_its_children_and_its_pipes_along() {
     let plant = tree(0, 1);
     let limb = path(&[0, 2]).find(&plant).expect("there").axis;
     let key = plant.axis(limb).key;
-    let moved = done(&plant, &[HandEdit::Move { axis: path(&[0, 2]), to: Destination::SlideM(0.6) }]);
+    let moved =
+        done(&plant, &[HandEdit::Move { axis: path(&[0, 2]), to: Destination::SlideM(0.6), turn: None }]);
     let now = moved.plant.axes.iter().position(|a| a.key == key).map(AxisId::new).expect("there");
     let up = moved.plant.axis_points(now)[0].y - plant.axis_points(limb)[0].y;
     assert!(up > 0.3 && up < 0.7, "{up}");
     let length = |p: &Plant, a| geom::polyline_length3(p.axis_points(a));
     assert!((length(&plant, limb) - length(&moved.plant, now)).abs() < 1e-9);
     assert_eq!(plant.organs.len(), moved.plant.organs.len());
-    let own = HandEdit::Move { axis: path(&[0]), to: Destination::Place { axis: path(&[0, 2]), at: 0.5 } };
+    let to = Destination::Place { axis: path(&[0, 2]), at: 0.5 };
+    let own = HandEdit::Move { axis: path(&[0]), to, turn: None };
     assert_eq!(done(&plant, &[own]).outcomes[0], Outcome::NotDone(Why::OntoItself));
 }
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use base::{Budget, Executor, Run};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
     AxisKey, Context, Destination, GrowFrom, Growth, HandEdit, Input, KeptGrowth, LeafRegion, Mirror,
@@ -29,7 +29,7 @@ fn tree() -> Plant {
 fn mouse(x: f64, y: f64) -> Pointer {
     let eye = DVec3::new(0.0, 2.0, 10.0);
     let ray = Ray { origin: eye, direction: DVec3::new(x, y, 0.0) - eye };
-    Pointer { ray, forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None }
+    Pointer { ray, forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None, hand: None }
 }
 
 /// A controller that points anywhere, its tip at a place in space.
@@ -147,6 +147,149 @@ fn a_branch_follows_a_controller_out_of_the_plane() {
     let twig = turned.axis_points(AxisId::new(2));
     let along = (twig[8] - twig[0]).normalize();
     assert!(along.distance(DVec3::NEG_X) < 1e-6, "upwards before, to the left now: {along}");
+}
+
+/// A controller whose hand is turned by so many degrees about an axis.
+fn turned(tip: DVec3, about: DVec3, degrees: f64) -> Pointer {
+    Pointer { hand: Some(base::turn::about(about, degrees.to_radians())), ..controller(tip) }
+}
+
+#[test]
+fn a_hand_that_turns_rolls_the_branch_that_it_holds() {
+    let plant = tree();
+    let base = DVec3::Y * 2.0;
+    let start = DVec3::new(1.6, 2.0, 0.0);
+    let ends = |from: Pointer, to: Pointer| {
+        let mut tool = Tool::new(ToolKind::Rotate);
+        let edit = drag(&mut tool, &plant, &[from, to]).commit.expect("rotated");
+        assert!(matches!(edit, HandEdit::Rotate { .. }), "{edit:?}");
+        let after = after(&plant, edit);
+        let twig = after.axis_points(AxisId::new(2));
+        let limb = after.axis_points(AxisId::new(1));
+        ((limb[8] - base) / 2.0, (twig[8] - twig[0]).normalize())
+    };
+    // In its place: the twig that stood upright lies towards the viewer.
+    let (limb, twig) = ends(turned(start, DVec3::X, 0.0), turned(start, DVec3::X, 90.0));
+    assert!(limb.distance(DVec3::X) < 1e-9 && twig.distance(DVec3::Z) < 1e-9, "{limb} {twig}");
+    // Position and orientation at once, from a hand that was turned when it took hold.
+    let up = DVec3::new(0.0, 3.6, 0.0);
+    let was = base::turn::about(DVec3::new(0.6, 0.0, 0.8), 1.1);
+    let by = base::turn::about(DVec3::Y, 0.5) * base::turn::about(DVec3::Z, 90.0_f64.to_radians());
+    let posed = |tip, hand| Pointer { hand: Some(hand), ..controller(tip) };
+    let (limb, twig) = ends(posed(start, was), posed(up, by * was));
+    assert!(limb.distance(DVec3::Y) < 1e-9 && twig.distance(by * DVec3::Y) < 1e-9, "{limb} {twig}");
+    // A hand that swings with its arm rolls nothing, and one that says nonsense is a tip alone.
+    let plain = ends(controller(start), controller(up));
+    let swung = ends(turned(start, DVec3::Z, 10.0), turned(up, DVec3::Z, 100.0));
+    assert!(plain.0.distance(swung.0) < 1e-9 && plain.1.distance(swung.1) < 1e-9);
+    for hand in [DQuat::from_array([0.0; 4]), DQuat::from_array([f64::NAN; 4])] {
+        assert_eq!(ends(posed(start, hand), posed(up, hand)), plain);
+    }
+}
+
+#[test]
+fn a_hand_that_pulls_takes_a_branch_to_other_wood() {
+    let plant = tree();
+    let start = DVec3::new(1.0, 2.6, 0.0);
+    let mut tool = Tool::new(ToolKind::Rotate);
+    let straight = |tip| turned(tip, DVec3::Z, 0.0);
+    tool.handle(&plant, &Input::Down(straight(start)));
+    // As far from its base as before, it turns; a third of its length further away, it comes off.
+    for (to, host) in [
+        (DVec3::new(1.7, 2.0, 0.0), None),
+        (DVec3::new(-0.4, 1.2, 0.0), Some(0)),
+        (DVec3::new(1.0, 2.5, 0.0), None),
+        (DVec3::new(-0.5, 1.0, 0.3), Some(0)),
+    ] {
+        let shown = tool.handle(&plant, &Input::Move(straight(to)));
+        assert_eq!(tool.host().map(AxisId::index), host, "{to}");
+        let moved = matches!(shown.preview, Some(HandEdit::Move { turn: Some(_), .. }));
+        assert_eq!(moved, host.is_some(), "{to}");
+    }
+    // Turned by a quarter on the way: it stands on the trunk as the hand has it, not at its old angle to its bearer.
+    for (degrees, along) in [(0.0, DVec3::Y), (90.0, DVec3::NEG_X)] {
+        let to = turned(DVec3::new(-0.9, 1.5, 0.2), DVec3::Z, degrees);
+        tool.handle(&plant, &Input::Move(to));
+        let carried = tool.carried(&plant).expect("in the hand");
+        let edit = tool.clone().handle(&plant, &Input::Up(to)).commit.expect("moved");
+        let moved = after(&plant, edit);
+        let twig = moved.axis_points(AxisId::new(2));
+        assert!((twig[8] - twig[0]).normalize().distance(along) < 1e-9, "{degrees}: {twig:?}");
+        let bearer = moved.axis(AxisId::new(2)).bearer.expect("borne");
+        assert_eq!(moved.nodes.axis[bearer.index()].index(), 0);
+        let was = plant.axis_points(AxisId::new(2));
+        assert!(was.iter().zip(twig).all(|(p, q)| carried.place(*p).distance(*q) < 1e-9));
+    }
+    // What stands on the ground stays there, however a hand pulls.
+    let foot = DVec3::new(0.0, 1.0, 0.0);
+    let mut tool = Tool::new(ToolKind::Rotate);
+    tool.handle(&plant, &Input::Down(straight(foot)));
+    tool.handle(&plant, &Input::Move(straight(DVec3::new(1.0, 9.0, 0.0))));
+    assert!(tool.is_busy() && tool.host().is_none());
+}
+
+#[test]
+fn every_tool_works_at_the_tip_of_a_controller() {
+    let plant = tree();
+    // In the air before the wood, pointing at it from a hand's breadth.
+    let held = |tip: DVec3| Pointer {
+        ray: Ray { origin: tip + DVec3::Z * 0.1, direction: DVec3::NEG_Z },
+        ..controller(tip)
+    };
+    let at = DVec3::new(1.5, 2.0, 0.02);
+    let click = |kind| {
+        let mut tool = Tool::new(kind);
+        let down = tool.handle(&plant, &Input::Down(held(at)));
+        assert_eq!(down.picked.map(|k| k.axis.index()), Some(1), "{kind:?}");
+        tool.handle(&plant, &Input::Up(held(at))).commit
+    };
+    assert_eq!(click(ToolKind::Pick), None);
+    let cut = click(ToolKind::Prune { whole: false }).expect("cut");
+    assert!(matches!(&cut, HandEdit::Prune { at, .. } if (at - 0.75).abs() < 1e-9), "{cut:?}");
+    let end = after(&plant, cut).axis_points(AxisId::new(1)).last().copied().expect("some");
+    assert!(end.distance(DVec3::new(1.5, 2.0, 0.0)) < 1e-6, "{end}");
+    assert!(matches!(click(ToolKind::Regrow), Some(HandEdit::Regrow { .. })));
+    // A brush follows the tip out of every plane, as thick as the trigger is pressed.
+    let way: Vec<Pointer> = (0..9)
+        .map(|k| {
+            let k = f64::from(k);
+            Pointer {
+                pressure: 1.0 - 0.08 * k,
+                ..held(DVec3::new(1.5 + 0.1 * k, 2.0 + 0.12 * k, 0.02 + 0.15 * k))
+            }
+        })
+        .collect();
+    let brushed = drag(&mut Tool::new(ToolKind::Brush { radius_m: 0.3, density: 1.0 }), &plant, &way);
+    let edit = brushed.commit.expect("brushed");
+    let HandEdit::Brush { points, radius_m, .. } = &edit else { panic!("{edit:?}") };
+    let tips: Vec<DVec3> = way.iter().filter_map(|p| p.tip).collect();
+    assert_eq!((points, radius_m.len()), (&tips, tips.len()));
+    assert!((radius_m[0] - 0.3).abs() < 1e-12, "{radius_m:?}");
+    assert!(radius_m.windows(2).all(|w| w[1] < w[0]), "{radius_m:?}");
+    let grown = after(&plant, edit);
+    let out = grown.nodes.position.iter().map(|p| p.z).fold(0.0, f64::max);
+    assert!(grown.axes.len() > plant.axes.len() && out > 0.4, "{out}");
+    // Leaves are thinned where the tip goes.
+    let thinned = drag(&mut Tool::new(ToolKind::Leaves { radius_m: 0.2, keep: 0.5 }), &plant, &way).commit;
+    let Some(HandEdit::LeafDensity { region: LeafRegion::Stroke { points, .. }, .. }) = thinned else {
+        panic!("{thinned:?}")
+    };
+    assert_eq!(points, tips);
+    // A shoot grows from the branch that is touched, the way the hand points; on the ground, where it points.
+    let mut tool = Tool::new(ToolKind::Grow(Growth::default()));
+    let shoot = tool.handle(&plant, &Input::Down(held(at))).preview;
+    let Some(HandEdit::Grow { from: GrowFrom::Branch { at: share, .. }, towards, .. }) = shoot else {
+        panic!("{shoot:?}")
+    };
+    assert!((share - 0.75).abs() < 1e-9 && towards == Some(DVec3::NEG_Z));
+    tool.handle(&plant, &Input::Cancel);
+    let tip = DVec3::new(3.0, 1.0, 1.0);
+    let down = Pointer { ray: Ray { origin: tip, direction: DVec3::NEG_Y }, ..controller(tip) };
+    let stem = tool.handle(&plant, &Input::Down(down)).preview;
+    assert!(
+        matches!(&stem, Some(HandEdit::Grow { from: GrowFrom::Ground(foot), .. }) if foot.distance(DVec3::new(3.0, 0.0, 1.0)) < 1e-9),
+        "{stem:?}"
+    );
 }
 
 #[test]
@@ -370,6 +513,7 @@ fn no_input_is_a_fault() {
         up: DVec3::NAN,
         pressure: f64::NAN,
         tip: Some(DVec3::NAN),
+        hand: Some(DQuat::from_array([f64::NAN; 4])),
     };
     for kind in [
         ToolKind::Rotate,

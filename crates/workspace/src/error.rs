@@ -89,6 +89,9 @@ pub enum WorkspaceError {
     /// The project in a record of gestures is no base64.
     #[error("the project in the record of gestures is not in base64")]
     RecordProject,
+    /// The numbers in a record of gestures are not those of its plants.
+    #[error("the numbers in the record of gestures are not those of the plants of its project")]
+    RecordNumbers,
     /// A record keeps an edit that no gesture made.
     #[error("the record of gestures keeps an edit that none of its gestures made")]
     RecordKeeps,
@@ -151,6 +154,7 @@ burgeon::coded!(WorkspaceError {
     Self::RecordForm(form) => "record-form" { form },
     Self::RecordLong { most } => "record-long" { most },
     Self::RecordProject => "record-project" {},
+    Self::RecordNumbers => "record-numbers" {},
     Self::RecordKeeps => "record-keeps" {},
     Self::Cancelled => "cancelled" {},
     Self::Message(why) => "message" { why = &Slip::of(why) => Slip },

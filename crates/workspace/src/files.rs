@@ -143,7 +143,8 @@ impl Workspace {
         Ok(Opened::new(FileKind::Leaf, stem))
     }
 
-    fn replace(&mut self, document: Document, fresh: bool) -> Result<(), WorkspaceError> {
+    /// Takes the document's place: one step of undo, or `fresh`, without a history.
+    pub(crate) fn replace(&mut self, document: Document, fresh: bool) -> Result<(), WorkspaceError> {
         self.editor.cancel_gesture();
         if fresh {
             self.editor = Editor::new(document);

@@ -3,7 +3,7 @@
 //! `most triangles + plants as they were made -> the finest levels that fit -> what the shell shows of them`
 
 use burgeon::document::PlantId;
-use burgeon::{PlantLevel, Run};
+use burgeon::{LiteMap, PlantLevel, Run};
 
 use crate::Workspace;
 use crate::shown::Shown;
@@ -20,10 +20,27 @@ impl Workspace {
         self.levels.most = most;
     }
 
+    /// Makes the levels that would be shown of the plants as they were made last, and keeps them beside what is shown until
+    /// they are wished for: whoever enters a headset waits for no mesh then. They take as much memory as they will take there.
+    pub fn ready_levels(&mut self, most: u64, run: &Run<'_>) {
+        if self.levels.most.is_none() {
+            self.levels.ready = self.levels_within(most, run);
+        }
+    }
+
     /// Makes the levels that are shown. A level that cannot be made leaves its plant as it is.
     pub(crate) fn make_levels(&mut self, run: &Run<'_>) {
-        let before = std::mem::take(&mut self.levels.shown);
-        let Some(most) = self.levels.most else { return };
+        self.levels.shown = match self.levels.most {
+            Some(most) => self.levels_within(most, run),
+            None => LiteMap::default(),
+        };
+    }
+
+    fn levels_within(&mut self, most: u64, run: &Run<'_>) -> LiteMap<PlantId, Shown> {
+        let mut before = std::mem::take(&mut self.levels.ready);
+        for (id, shown) in std::mem::take(&mut self.levels.shown) {
+            before.insert(id, shown);
+        }
         let document = self.editor.document();
         let mut rows: Vec<Row> = document
             .plants()
@@ -35,7 +52,6 @@ impl Workspace {
                 Some(Row { id: p.id(), revision: made.revision, triangles, level: 0, made: None })
             })
             .collect();
-        let mut before = before;
         while rows.iter().map(|r| r.triangles).sum::<u64>() > most {
             let coarser = rows.iter_mut().filter(|r| r.level < COARSEST).max_by_key(|r| r.triangles);
             let Some(row) = coarser else { break };
@@ -54,11 +70,13 @@ impl Workspace {
             row.triangles = made.model.triangle_count() as u64;
             row.made = Some(made);
         }
+        let mut within = LiteMap::default();
         for Row { id, revision, level, made, .. } in rows {
             if let Some(made) = made {
-                self.levels.shown.insert(id, Shown { revision, level, made });
+                within.insert(id, Shown { revision, level, made });
             }
         }
+        within
     }
 }
 

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use burgeon::Run;
-use burgeon::document::{self, PlantId, ShapeCommand};
+use burgeon::document::{self, PlantId, PlantNumbers, ShapeCommand};
 use burgeon::shape::{HandEdit, MOST_POINTS, ToolKind};
 use data_encoding::BASE64;
 use schemars::JsonSchema;
@@ -31,6 +31,9 @@ pub struct GestureRecord {
     /// The project as the hands found it: a `.burgeon` file in base64. Without one, steps go on from what is open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,
+    /// The numbers of the project's plants, by which steps name them. Without, the file's own are meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub numbers: Option<PlantNumbers>,
     /// The plant that was worked on first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plant: Option<PlantId>,
@@ -162,13 +165,20 @@ impl Workspace {
         saw: &mut dyn FnMut(&Self, &GestureStep),
     ) -> Result<Replayed, WorkspaceError> {
         if let Some(project) = record.project()? {
-            self.open("record.burgeon", &project, 0, true)?;
+            let found = document::read_project(&project)?;
+            let found = match &record.numbers {
+                Some(numbers) => found.numbered(numbers).map_err(|_fault| WorkspaceError::RecordNumbers)?,
+                None => found,
+            };
+            self.replace(found, true)?;
         }
         if let Some(plant) = record.plant {
             match self.select(plant) {
-                // A file numbers its plants anew: of one plant it is clear which is meant.
+                // A file has no numbers: of one plant it is clear which is meant.
                 Err(WorkspaceError::PlantGone)
-                    if record.project.is_some() && self.document().plants().len() == 1 => {}
+                    if record.project.is_some()
+                        && record.numbers.is_none()
+                        && self.document().plants().len() == 1 => {}
                 other => other?,
             }
         }

@@ -42,13 +42,23 @@ pub struct ShapePointer {
     /// Where the tip of a tracked controller is: it works there, and not on a plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tip: Option<[f64; 3]>,
+    /// How that controller is turned, a quaternion: x, y, z, w.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<[f64; 4]>,
 }
 
 impl From<ShapePointer> for Pointer {
     fn from(p: ShapePointer) -> Self {
         let v = DVec3::from_array;
         let ray = Ray { origin: v(p.origin), direction: v(p.direction) };
-        Self { ray, forward: v(p.forward), up: v(p.up), pressure: p.pressure, tip: p.tip.map(v) }
+        Self {
+            ray,
+            forward: v(p.forward),
+            up: v(p.up),
+            pressure: p.pressure,
+            tip: p.tip.map(v),
+            hand: p.hand.map(DQuat::from_array),
+        }
     }
 }
 
@@ -165,6 +175,8 @@ pub struct ShapeAnswer {
     pub grown: Option<Grown>,
     /// How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go.
     pub carried: Option<CarriedPose>,
+    /// On what the branch in the hand would be dropped, a row: once it was pulled off, or where it slid onto other wood.
+    pub host: Option<u32>,
 }
 
 /// What grew since a hand holds on, both sides of a plane of symmetry together.
@@ -276,6 +288,7 @@ impl Workspace {
             });
         }
         let picked = said.picked.and_then(|k| picked(plant, k, false));
+        let host = tool.host().and_then(|axis| u32::try_from(axis.index()).ok());
         held.preview = said.preview.or_else(|| said.commit.clone()).map(Arc::new);
         let now = held.preview.clone();
         // Meshes that were made meanwhile are not moved: what is held is made again then.
@@ -293,10 +306,7 @@ impl Workspace {
         if !busy && now.is_none() {
             self.held = None;
         }
-        let turned_deg = match now.as_deref() {
-            Some(HandEdit::Rotate { turn, .. }) => Some(turn.degrees),
-            _ => None,
-        };
+        let turned_deg = now.as_deref().and_then(turned);
         let grown = match now.as_deref() {
             Some(HandEdit::Grow { rounds, .. }) if busy => {
                 let before = self.held.as_ref().map(|h| &h.before);
@@ -306,7 +316,8 @@ impl Workspace {
             _ => None,
         };
         let commit = said.commit;
-        Ok(ShapeAnswer { picked, commit, busy, again, turned_deg, carried, grown, ..ShapeAnswer::default() })
+        let none = ShapeAnswer::default();
+        Ok(ShapeAnswer { picked, commit, busy, again, turned_deg, carried, grown, host, ..none })
     }
 
     /// The answer to what no tool is needed for.
@@ -431,6 +442,14 @@ impl Workspace {
             }
         }
         Some((id, aside.document().clone()))
+    }
+}
+
+/// How far an edit turns a branch, degrees.
+fn turned(edit: &HandEdit) -> Option<f64> {
+    match edit {
+        HandEdit::Rotate { turn, .. } | HandEdit::Move { turn: Some(turn), .. } => Some(turn.degrees),
+        _ => None,
     }
 }
 

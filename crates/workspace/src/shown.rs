@@ -9,6 +9,8 @@ pub(crate) struct Levels {
     /// Triangles of all plants together.
     pub(crate) most: Option<u64>,
     pub(crate) shown: LiteMap<PlantId, Shown>,
+    /// Those that were made before they are wished for.
+    pub(crate) ready: LiteMap<PlantId, Shown>,
 }
 
 /// The level of one plant.

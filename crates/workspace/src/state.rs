@@ -1,7 +1,9 @@
 //! What a shell shows of the document: everything but points, meshes and pictures.
 
 use burgeon::bloom::FlowerSpec;
-use burgeon::document::{Document, DocumentPlant, Editor, Maker, PhotoPlace, PlantId, StrokeId};
+use burgeon::document::{
+    Document, DocumentPlant, Editor, Maker, PhotoPlace, PlantId, PlantNumbers, StrokeId,
+};
 use burgeon::growth::{Obstacle, TreeSpec};
 use burgeon::ink::{Layer, StrokeClass, StrokeMode};
 use burgeon::sketch::SketchSpec;
@@ -28,6 +30,8 @@ pub struct DocumentState<'a> {
     pub current: Option<PlantId>,
     /// The plants in the order in which they came in.
     pub plants: Vec<PlantState<'a>>,
+    /// The numbers that they go by.
+    pub numbers: PlantNumbers,
 }
 
 impl<'a> DocumentState<'a> {
@@ -41,6 +45,7 @@ impl<'a> DocumentState<'a> {
             name: document.name(),
             current,
             plants: document.plants().iter().map(|p| PlantState::of(p, document)).collect(),
+            numbers: document.numbers(),
         }
     }
 }

@@ -22,6 +22,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'record-form': '手势记录的格式不同：{form}',
   'record-long': '手势记录太长：最多 {most} 步',
   'record-project': '手势记录里的项目不是 base64',
+  'record-numbers': '手势记录里的编号与其项目的植株不符',
   'record-keeps': '手势记录要保留一次没有手势做出的修改',
   law: '无法读取生长规律：{why}',
   cancelled: '已停止',

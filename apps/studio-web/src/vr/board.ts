@@ -1,7 +1,7 @@
 /** What the board at the wrist has on each of its pages: which keys, and what each does. */
 import type { Shaping } from '../shaping';
 import { t, type TextKey, tOf } from '../text';
-import { isNumber, rowOf, SHAPE_WORDS } from '../tools';
+import { isBrush, isNumber, rowOf, SHAPE_WORDS } from '../tools';
 import type { ExportFormat } from '../wire';
 import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
@@ -16,6 +16,8 @@ export interface Board {
     isRecorded: boolean;
     trueScale: boolean;
     leftHanded: boolean;
+    /** Of what is drawn: its colour as CSS, and across, millimetres. */
+    trace: { colour: string; mm: number };
   };
   say(text: string): void;
   /** Something was taken back. */
@@ -27,6 +29,9 @@ export interface Board {
   writeDown(): void;
   mirror: Key['act'];
   brush(by: number): void;
+  /** The trace in the next colour, or in the next thickness. */
+  traceColour(): void;
+  traceThickness(): void;
   resize(): void;
   swapHands(): void;
   /** So many steps higher. */
@@ -55,7 +60,7 @@ const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
 /** The keys that the board has now, in rows. */
 export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   // The trigger is taken while something grows: these alone are pressed, by another button.
-  if (shaping.isGrowing) return numberRows(board, shaping);
+  if (shaping.isGrowing) return numberRows(shaping, board);
   const rows = {
     tools: () => toolRows(board, shaping, events),
     more: () => moreRows(board, shaping, events),
@@ -76,7 +81,7 @@ export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): R
 }
 
 /** Numbers of the tool in the hand: a key for less and one for more. */
-function numberRows(board: Board, shaping: Shaping): Rows {
+function numberRows(shaping: Shaping, board: Board): Rows {
   const settings = Object.entries(shaping.word ? rowOf(shaping.word).settings : {});
   const numbers = settings.filter(([, setting]) => isNumber(setting) && setting.notch !== undefined);
   return numbers.map(([of]) =>
@@ -85,10 +90,7 @@ function numberRows(board: Board, shaping: Shaping): Rows {
         id: `${of}${by < 0 ? '-' : '+'}`,
         label: `${tOf('shape.set', of)} ${by < 0 ? '−' : '+'}`,
         wide: 3,
-        act: () => {
-          shaping.turn(of, by);
-          board.say(shaping.settingsText(of));
-        },
+        act: () => board.say(shaping.turn(of, by)),
       }),
     ),
   );
@@ -96,7 +98,6 @@ function numberRows(board: Board, shaping: Shaping): Rows {
 
 function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   const now = board.state();
-  const numbers = numberRows(board, shaping);
   const tools = SHAPE_WORDS.map(
     (word): Key => ({
       id: word,
@@ -123,9 +124,7 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
       key('redo', 2, events.redo),
       key('mirror', 2, (hand) => board.mirror(hand), shaping.isMirrored),
     ],
-    ...(numbers.length > 0
-      ? numbers
-      : [[key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))]]),
+    ...settingRows(board, shaping),
     [
       key('scale', 3, () => board.resize(), now.trueScale),
       key('left', 3, () => board.swapHands(), now.leftHanded),
@@ -138,12 +137,43 @@ function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   ];
 }
 
+/** What the tool in the hand can be set to, and for one that means a branch, what bears it. */
+function settingRows(board: Board, shaping: Shaping): Rows {
+  const { word } = shaping;
+  if (!word) return [];
+  const row = rowOf(word);
+  const brushed = [key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))];
+  const borne = [key('bearer', 3, () => shaping.climb(1)), key('twig', 3, () => shaping.climb(-1))];
+  const choices = Object.entries(row.settings).filter(([, setting]) => !isNumber(setting));
+  const turned = choices.map(([name]): readonly Key[] => [
+    {
+      id: name,
+      label: shaping.settingsText(name),
+      wide: 6,
+      act: () => board.say(shaping.turn(name, 1)),
+    },
+  ]);
+  return [
+    ...(isBrush(word) ? [brushed] : []),
+    ...(row.climbs ? [borne] : []),
+    ...turned,
+    ...numberRows(shaping, board),
+  ];
+}
+
 function moreRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   const species = (by: 1 | -1) => () => {
     void events.species(by).then((name) => board.say(name ?? t('vr.species.none')));
   };
+  const { trace } = board.state();
+  const colour = { ...key('trace.colour', 3, () => board.traceColour()), swatch: trace.colour };
+  const thickness = {
+    ...key('trace.thick', 3, () => board.traceThickness()),
+    label: t('vr.trace.thick', trace),
+  };
   return [
     [key('before', 3, species(-1)), key('next', 3, species(1))],
+    [colour, thickness],
     [key('dice', 6, () => events.run('dice'))],
     [key('grid', 3, () => events.run('guide-grid')), key('staff', 3, () => events.run('guide-staff'))],
     [

@@ -13,6 +13,8 @@ const FACE: readonly (readonly [RegExp, { lower: number; upper?: number }])[] = 
   ],
   [/^valve-index/, { lower: 4 }],
 ];
+/** What has a grip, which one of its names then says, knows where it is, even where a browser calls all places guessed. */
+const PLACED = /squeeze/;
 /** A button of which no touch is known counts as pressed from here on. */
 const PRESSED = 0.5;
 /** Further between two frames, metres, nobody moves a hand: the tracker jumped. */
@@ -69,6 +71,9 @@ export class Controller {
   readonly direction = new THREE.Vector3();
   tracked = false;
   jumped = false;
+  private readonly isPlaced: boolean;
+  /** Its place was seen once: what is only guessed since then is as good as lost. */
+  private seen = false;
   private readonly track = new Track();
   /** Thumb and forefinger are the trigger, thumb and middle finger the grip. */
   private readonly pinches = { trigger: new Pinch(), grip: new Pinch() };
@@ -80,6 +85,7 @@ export class Controller {
   readonly thumb: [number, number] = [0, 0];
 
   constructor(readonly source: XRInputSource) {
+    this.isPlaced = source.hand !== undefined || source.profiles.some((p) => PLACED.test(p));
     for (const part of PARTS) this.indices.set(part, indexOf(part, source.profiles));
   }
 
@@ -91,7 +97,10 @@ export class Controller {
     const aim = frame.getPose(this.source.targetRaySpace, space);
     const grip = this.source.gripSpace ? frame.getPose(this.source.gripSpace, space) : aim;
     if (aim) scratch.fromArray(aim.transform.matrix);
-    const state = this.track.read(aim ? place.setFromMatrixPosition(scratch) : undefined);
+    const guessed = aim?.emulatedPosition ?? false;
+    this.seen ||= aim !== undefined && aim !== null && !guessed;
+    const known = aim && !(guessed && this.seen);
+    const state = this.track.read(known ? place.setFromMatrixPosition(scratch) : undefined);
     this.tracked = state !== 'lost';
     this.jumped = state === 'jumped';
     if (this.tracked) {
@@ -106,6 +115,11 @@ export class Controller {
       this.was.set(part, this.now.get(part) ?? false);
       this.now.set(part, this.value(part) >= PRESSED);
     }
+  }
+
+  /** Whether it has three degrees of freedom: it points, and nobody knows where it is. */
+  get isPointer(): boolean {
+    return !this.seen && !this.isPlaced;
   }
 
   /** Whether it is a hand without a controller. */

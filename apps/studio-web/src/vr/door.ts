@@ -31,6 +31,11 @@ export class Door {
     return this.headset?.recorder;
   }
 
+  /** The plants were made again, and are seen. */
+  seen(): void {
+    this.headset?.seen();
+  }
+
   get isOn(): boolean {
     return this.headset?.isOn ?? false;
   }

@@ -1,5 +1,6 @@
 /** What the headset asks of the page. */
 import type { ExportFormat, GestureRecord, Obstacle, SetDown } from '../wire';
+import type { Found } from './recorder';
 
 export type Mode = 'immersive-vr' | 'immersive-ar';
 
@@ -15,14 +16,16 @@ export interface HeadsetEvents {
   model(format: ExportFormat): void;
   /** The document as a project file. */
   project(): Promise<Uint8Array>;
-  /** The plant that is worked on, and the digest of what is seen of it. */
-  seen(): { plant: number | undefined; digest: string | undefined };
+  /** The plant that is worked on, the numbers of all, and the digest of what is seen of it. */
+  seen(): Found & { digest: string | undefined };
   /** Hands a record to the browser. */
   write(record: GestureRecord): void;
   /** Sets an obstacle of the chosen plant down elsewhere. */
   setDown(row: number, how: SetDown): void;
   /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
   most(triangles: number): void;
+  /** Makes what that would show, before it is wished for. */
+  ready(triangles: number): void;
   /** Works on the next plant, the one before, or (0) this one; which it is then. */
   select(by: -1 | 0 | 1): { name: string; number: number; count: number } | undefined;
   /** Another plant of the same kind beside the others; it is worked on. */

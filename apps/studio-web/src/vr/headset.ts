@@ -6,7 +6,7 @@ import * as THREE from 'three';
 import { grownText, type Shaping, type SpaceReach } from '../shaping';
 import { setSetting, setting } from '../store';
 import { t, type TextKey } from '../text';
-import { rowOf } from '../tools';
+import { isBrush, rowOf } from '../tools';
 import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
 import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
@@ -18,6 +18,7 @@ import { Labels, Readout } from './labels';
 import { Lesson } from './lesson';
 import { Placing } from './placing';
 import { Recorder } from './recorder';
+import { Trace } from './trace';
 import { SNAP, World } from './world';
 import { Wrist } from './wrist';
 
@@ -29,8 +30,6 @@ const NEAR_PER_M = 0.02;
 const OUT = 0.6;
 /** A brush grows or shrinks by this in a frame with the stick all the way out. */
 const BRUSH = 1.02;
-/** Points of a trace. */
-const TRACE = 4096;
 /** So long the picture is dark when one goes elsewhere, ms. */
 const BLINK_MS = 110;
 /** A step of the seat, metres. */
@@ -41,6 +40,8 @@ const REPORT_MS = 100;
 const EYES_M = 1.5;
 /** A hand that is not seen for so long, ms, has let go. */
 const LOST_MS = 1000;
+/** So long the first picture waits for plants that are quickly drawn, ms. */
+const PATIENCE_MS = 300;
 /** After so long without anything new the page makes ready to go in, ms. */
 const READY_MS = 400;
 /** What the stick turns while something grows: upwards, sideways. A click on it takes the next pair. */
@@ -51,6 +52,8 @@ const TURNS = [
 ] as const satisfies readonly (readonly [keyof Growth, keyof Growth])[];
 /** Triangles of all plants, drawn for each eye; what else is seen has few. */
 const MOST_TRIANGLES = 140_000;
+/** What a hand feels where something snaps into place. */
+const SNAPPED = { strength: 0.4, ms: 15 } as const;
 
 export class Headset {
   private session: XRSession | undefined;
@@ -59,7 +62,7 @@ export class Headset {
   private hands: Controller[] = [];
   private readonly grasping: THREE.Vector3[] = [];
   private readonly pointerLine = line(2, 0xffffff);
-  private readonly trace = line(TRACE, 0x9be07a);
+  private readonly trace = new Trace();
   private readonly lit = new THREE.LineSegments(
     new THREE.BufferGeometry(),
     new THREE.LineBasicMaterial({ color: 0xffd34d, depthTest: false, toneMapped: false }),
@@ -82,9 +85,13 @@ export class Headset {
   private working: { hand: Controller; by: 'trigger' | 'grip'; last: ShapePointer } | undefined;
   private aiming = false;
   private turned = false;
-  private drawn = 0;
+  /** On what the branch in the hand would be dropped, as it was heard last. */
+  private host: number | null = null;
+  /** Without a second hand the board stands beside the person, since it was put there. */
+  private isBoardPut = false;
   private frames = 0;
   private readying = 0;
+  private onSeen: () => void = () => {};
   /** From the wish to go in until the session was there, the scene was given to it, and the first picture was drawn. */
   private readonly entryMs = { session: 0, ready: 0, first: 0 };
   private reportAt = 0;
@@ -100,6 +107,8 @@ export class Headset {
     setSetting('vr.lesson', String(done)),
   );
   private labels: Labels[] = [];
+  /** What one of them says: another language says something else. */
+  private labelled = '';
   /** The plane on which outlines are drawn. */
   private readonly sheet = new THREE.GridHelper(1, 12, 0x9be07a, 0x9be07a);
 
@@ -111,6 +120,7 @@ export class Headset {
       isRecorded: this.recorder.isOn,
       trueScale: this.trueScale,
       leftHanded: this.leftHanded,
+      trace: { colour: `#${this.trace.hex.toString(16).padStart(6, '0')}`, mm: this.trace.mm },
     }),
     say: (text) => this.wrist.say(text),
     undone: () => this.did('undo'),
@@ -119,6 +129,8 @@ export class Headset {
     writeDown: () => void this.writeDown(),
     mirror: (hand) => void this.mirror(this.pointer(hand)),
     brush: (by) => this.brush(by),
+    traceColour: () => this.trace.nextColour(),
+    traceThickness: () => this.trace.nextThickness(),
     resize: () => {
       this.trueScale = !this.trueScale;
       this.blink(() => this.stand());
@@ -141,14 +153,14 @@ export class Headset {
     const { rig } = this.world;
     for (const thing of [this.wrist.board, this.pointerLine, ...this.tips, this.dark, this.readout.sprite])
       rig.add(thing);
-    for (const thing of [this.pointerLine, this.trace, this.lit]) thing.frustumCulled = false;
-    this.lit.renderOrder = this.trace.renderOrder = 9;
+    for (const thing of [this.pointerLine, this.lit]) thing.frustumCulled = false;
+    this.lit.renderOrder = 9;
     this.dark.renderOrder = 20;
     this.dark.visible = this.ring.visible = false;
     this.sheet.matrixAutoUpdate = false;
-    this.makeReady();
     (this.sheet.material as THREE.Material).transparent = true;
     (this.sheet.material as THREE.Material).opacity = 0.45;
+    this.makeReady();
   }
 
   get isOn(): boolean {
@@ -160,9 +172,18 @@ export class Headset {
     const { xr } = navigator as { xr?: XRSystem };
     if (!xr || this.session) return;
     const asked = performance.now();
-    const session = await xr.requestSession(mode, {
-      optionalFeatures: ['local-floor', 'hand-tracking'],
+    // Coarser plants come while the device wakes up; the first picture waits for them a little.
+    const coarser = new Promise<void>((done) => {
+      this.onSeen = done;
+      setTimeout(done, PATIENCE_MS);
     });
+    this.events.most(MOST_TRIANGLES);
+    const session = await xr
+      .requestSession(mode, { optionalFeatures: ['local-floor', 'hand-tracking'] })
+      .catch((e: unknown) => {
+        this.events.most(0);
+        throw e;
+      });
     this.entryMs.session = Math.round(performance.now() - asked);
     this.session = session;
     session.addEventListener('end', () => this.left());
@@ -180,14 +201,17 @@ export class Headset {
     // What the page notes is not seen in here.
     hearNotes((text) => this.wrist.say(text));
     this.shaping.onPlane = (plane, size) => this.showPlane(plane, size);
-    this.label();
+    this.labelAgain();
     const floor = await session.requestReferenceSpace('local-floor').then(
       () => true,
       () => false,
     );
     this.raised = floor ? 0 : EYES_M;
     this.frames = 0;
-    this.events.most(MOST_TRIANGLES);
+    this.isBoardPut = false;
+    await coarser;
+    if (this.session !== session) return;
+    // From here on the page draws no picture of its own: one of all that stands there may take long.
     if (!this.shaping.isOn) this.shaping.toggle();
     this.stand();
     this.tellStep();
@@ -198,7 +222,7 @@ export class Headset {
       this.world.rig,
       mode === 'immersive-ar',
       {
-        things: [this.trace, this.lit, this.ring],
+        things: [this.trace.mesh, this.lit, this.ring],
         frame: (frame, space) => {
           // Of the first picture: all of this is done before the next is begun.
           if (this.frames === 1) this.entryMs.first = Math.round(performance.now() - asked);
@@ -215,6 +239,12 @@ export class Headset {
     await this.session?.end();
   }
 
+  /** The plants were made again, and are seen. */
+  seen(): void {
+    this.recorder.seen();
+    this.onSeen();
+  }
+
   /** The plant that is shaped, its meshes or its edits are others now. */
   renewed(): void {
     if (this.isOn) this.showKeys();
@@ -226,8 +256,10 @@ export class Headset {
     clearTimeout(this.readying);
     this.readying = window.setTimeout(() => {
       if (this.isOn) return;
+      this.labelAgain();
       this.showKeys();
-      void this.view.readyToImmerse([this.world.rig, this.trace, this.lit, this.ring, this.sheet]);
+      this.events.ready(MOST_TRIANGLES);
+      void this.view.readyToImmerse([this.world.rig, this.trace.mesh, this.lit, this.ring, this.sheet]);
     }, READY_MS);
   }
 
@@ -242,8 +274,6 @@ export class Headset {
     this.placing.put(undefined);
     this.readout.say(undefined);
     this.sheet.removeFromParent();
-    for (const labels of this.labels) labels.dispose();
-    this.labels = [];
     this.events.changed(false);
   }
 
@@ -266,7 +296,7 @@ export class Headset {
   private frame(frame: XRFrame, space: XRReferenceSpace): void {
     this.frames += 1;
     const pose = frame.getViewerPose(space);
-    if (pose) head.setFromMatrixPosition(matrix.fromArray(pose.transform.matrix));
+    if (pose) head.setFromMatrixPosition(eyes.fromArray(pose.transform.matrix));
     let tool: Controller | undefined;
     let menu: Controller | undefined;
     for (const hand of this.hands) {
@@ -290,8 +320,10 @@ export class Headset {
   }
 
   private show(tool: Controller | undefined, menu: Controller | undefined): void {
-    this.wrist.board.visible = menu?.tracked ?? false;
+    this.wrist.board.visible = menu ? menu.tracked : tool !== undefined;
     if (menu?.tracked) this.wrist.follow(menu.grip);
+    else if (!menu && tool && !this.isBoardPut) this.wrist.rest(eyes);
+    this.isBoardPut = !menu && tool !== undefined;
     this.readout.follow(tool);
     this.mark(0, tool);
     this.mark(1, menu);
@@ -334,6 +366,7 @@ export class Headset {
       }
     } else if (Math.abs(x) > OUT && !this.turned) {
       this.blink(() => this.world.turn(x > 0 ? -SNAP : SNAP, head));
+      menu.pulse(SNAPPED.strength, SNAPPED.ms);
       this.turned = true;
     }
     if (Math.abs(x) < OUT / 2) this.turned = false;
@@ -406,10 +439,13 @@ export class Headset {
     this.lostAt = 0;
     working.last = at;
     shaping.follow(at);
-    this.draw(hand.tip);
+    this.draw(hand);
     const x = hand.thumb[0];
     const y = hand.thumb[1];
-    if (!shaping.isGrowing || working.by === 'grip') shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
+    const word = working.by === 'grip' ? 'rotate' : shaping.word;
+    const row = word && rowOf(word);
+    if (row?.live && !row.rounds) this.size(hand);
+    else if (!row?.rounds) shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
     else this.turnNumbers(hand, x, y);
   }
 
@@ -448,13 +484,15 @@ export class Headset {
     }
     hand.pulse(0.7, 30);
     this.working = { hand, by, last: at };
-    this.drawn = 0;
+    this.host = null;
+    this.trace.begin();
     const word = tool ?? this.shaping.word;
     if (word && rowOf(word).rounds) this.showKeys();
     if (word === 'rotate') this.did('turn');
     else if (word !== 'pick') this.did('draw');
-    this.trace.visible = word !== undefined && rowOf(word).trace !== undefined;
-    this.draw(hand.tip);
+    // What only points draws elsewhere than it is.
+    this.trace.mesh.visible = word !== undefined && rowOf(word).trace !== undefined && !hand.isPointer;
+    this.draw(hand);
   }
 
   /** The gesture ends where the hand is, or was last. */
@@ -463,7 +501,7 @@ export class Headset {
     const { working } = this;
     if (!working) return;
     this.working = undefined;
-    this.trace.visible = false;
+    this.trace.mesh.visible = false;
     this.lostAt = 0;
     working.hand.pulse(0.9, 40);
     void this.shaping.end(at ?? working.last);
@@ -539,7 +577,14 @@ export class Headset {
 
   /** The stick makes a brush larger or smaller. */
   private size(hand: Controller): void {
-    const y = hand.thumb[1];
+    const [x, y] = hand.thumb;
+    // Sideways: how dense it is.
+    const { word } = this.shaping;
+    if (isBrush(word) && Math.abs(x) > OUT && Math.abs(x) > Math.abs(y)) {
+      const said = this.frames % 12 === 0 && this.shaping.turn('density', Math.sign(x));
+      if (said) this.wrist.say(said);
+      return;
+    }
     if (Math.abs(y) > OUT && this.shaping.resize(BRUSH ** Math.sign(y)))
       this.wrist.say(this.shaping.brushText);
   }
@@ -548,7 +593,12 @@ export class Headset {
     this.world.toScene(hand.tip, from);
     way.copy(hand.direction).applyQuaternion(this.world.rig.quaternion);
     const pressure = hand.holds('trigger') ? hand.value('trigger') : 1;
-    return this.view.pointerInSpace(from, way, pressure);
+    const at = this.view.pointerInSpace(from, way, pressure);
+    if (!at) return undefined;
+    // Of three degrees of freedom only the way it points is known: it works on planes, as a mouse does.
+    if (hand.isPointer) at.tip = null;
+    else at.hand = this.turnOf(hand).toArray();
+    return at;
   }
 
   private reach(): SpaceReach {
@@ -557,7 +607,7 @@ export class Headset {
 
   private pointTo(hand: Controller, distance: number | undefined): void {
     const { pointerLine: drawn } = this;
-    drawn.visible = hand.tracked && !this.trace.visible;
+    drawn.visible = hand.tracked && !this.trace.mesh.visible;
     const place = drawn.geometry.getAttribute('position') as THREE.BufferAttribute;
     place.setXYZ(0, hand.tip.x, hand.tip.y, hand.tip.z);
     from.copy(hand.tip).addScaledVector(hand.direction, distance ?? 0.35);
@@ -565,14 +615,10 @@ export class Headset {
     place.needsUpdate = true;
   }
 
-  private draw(tip: THREE.Vector3): void {
-    if (!this.trace.visible || this.drawn >= TRACE) return;
-    this.world.toScene(tip, from);
-    const place = this.trace.geometry.getAttribute('position') as THREE.BufferAttribute;
-    place.setXYZ(this.drawn, from.x, from.y, from.z);
-    place.needsUpdate = true;
-    this.drawn += 1;
-    this.trace.geometry.setDrawRange(0, this.drawn);
+  private draw(hand: Controller): void {
+    if (!this.trace.mesh.visible) return;
+    this.world.toScene(hand.tip, from);
+    this.trace.add(from, hand.value('trigger'), this.world.size);
   }
 
   /** What tests and support see of it, where they look: it takes memory in every picture. */
@@ -596,6 +642,9 @@ export class Headset {
       plane: this.shaping.plane !== undefined,
       read: this.readout.text,
       page: this.board.page,
+      letters: this.wrist.lettersMm,
+      trace: { points: this.trace.points, colour: this.trace.hex, mm: this.trace.mm },
+      pointer: tool?.isPointer ?? false,
       hand: tool?.isHand ?? false,
       entry: this.entryMs,
       cost: this.view.cost,
@@ -607,7 +656,10 @@ export class Headset {
 
   // What is told --------------------------------------------------------------------------------------------------
 
-  private heard({ turned_deg: degrees, grown, busy }: ShapeAnswer): void {
+  private heard({ turned_deg: degrees, grown, busy, host }: ShapeAnswer): void {
+    // It would sit elsewhere now: the hand feels that it came off, or where it snaps to.
+    if (busy && host !== this.host) this.working?.hand.pulse(SNAPPED.strength, SNAPPED.ms);
+    this.host = host;
     if (degrees !== null) this.wrist.say(`${degrees.toFixed(1)}°`);
     this.readout.say(grown && busy ? grownText(grown) : undefined);
   }
@@ -632,8 +684,8 @@ export class Headset {
       const record = recorder.stop(events.seen().digest);
       if (record) events.write(record);
     } else {
-      const { plant } = events.seen();
-      recorder.start(await events.project(), plant);
+      const project = await events.project();
+      recorder.start(project, events.seen());
       this.wrist.say(t('vr.record.on'));
     }
     this.showKeys();
@@ -663,8 +715,13 @@ export class Headset {
 
   // The first minute ----------------------------------------------------------------------------------------------
 
+  private labelAgain(): void {
+    if (this.labelled !== t('vr.label.work.trigger')) this.label();
+  }
+
   /** What each part does, beside it, until it was used. */
   private label(): void {
+    this.labelled = t('vr.label.work.trigger');
     const used = new Set((setting('vr.used') ?? '').split(' '));
     const learn = (name: string): void => {
       used.add(name);
@@ -692,6 +749,8 @@ export class Headset {
 
   private startLesson(): void {
     this.lesson.again();
+    // Its first step is that of this tool; with others the grip may do something else.
+    this.shaping.take('rotate');
     setSetting('vr.used', '');
     this.label();
     this.tellStep();
@@ -740,5 +799,6 @@ const from = new THREE.Vector3();
 const way = new THREE.Vector3();
 const landing = new THREE.Vector3();
 const turn = new THREE.Quaternion();
-const matrix = new THREE.Matrix4();
+/** The head, in the person's space. */
+const eyes = new THREE.Matrix4().setPosition(0, 1.6, 0);
 const scale = new THREE.Vector3();

@@ -1,12 +1,20 @@
 /** What hands do, written down as `burgeon.gestures/1`: every request in the order in which the core did it. */
 import type { Request } from '../protocol';
-import type { GestureDeed, GestureRecord, HandEdit, ShapeAnswer } from '../wire';
+import type { GestureDeed, GestureRecord, HandEdit, PlantNumbers, ShapeAnswer } from '../wire';
 
 /** Most steps of a record, as the core reads them. */
 const MOST = 300_000;
 
+/** What a project does not say of the document that was saved. */
+export interface Found {
+  /** The plant that is worked on. */
+  readonly plant: number | undefined;
+  /** By which numbers steps name plants. */
+  readonly numbers: PlantNumbers | undefined;
+}
+
 export class Recorder {
-  private record: { project: string; plant: number | undefined; steps: GestureRecord['steps'] } | undefined;
+  private record: { project: string; found: Found; steps: GestureRecord['steps'] } | undefined;
   private began = 0;
   /** What the last gesture made, if it is not asked for yet. */
   private made: HandEdit | undefined;
@@ -18,8 +26,8 @@ export class Recorder {
   }
 
   /** `project`: the document as the hands find it, a file. */
-  start(project: Uint8Array, plant: number | undefined): void {
-    this.record = { project: base64(project), plant, steps: [] };
+  start(project: Uint8Array, found: Found): void {
+    this.record = { project: base64(project), found, steps: [] };
     this.began = this.now();
     this.made = undefined;
   }
@@ -52,7 +60,8 @@ export class Recorder {
     return {
       schema: 'burgeon.gestures/1',
       project: record.project,
-      plant: record.plant ?? null,
+      numbers: record.found.numbers ?? null,
+      plant: record.found.plant ?? null,
       steps: record.steps,
       digest: digest ?? null,
     };

@@ -8,8 +8,9 @@ import { Controller, indexOf, Pinch, Track } from './controller';
 import { Lesson } from './lesson';
 import { obstacleOf } from './placing';
 import { Recorder } from './recorder';
+import { Trace } from './trace';
 import { World } from './world';
-import { layOut } from './wrist';
+import { brokenLine, layOut } from './wrist';
 
 const v = (x: number, y: number, z: number): THREE.Vector3 => new THREE.Vector3(x, y, z);
 
@@ -34,6 +35,108 @@ describe('a controller', () => {
     const far = Array.from({ length: 6 }, () => track.read(v(3, 1, 0)));
     expect(far).toEqual(['lost', 'lost', 'lost', 'lost', 'jumped', 'here']);
   });
+});
+
+describe('a place that is guessed', () => {
+  /** A controller of which a picture after the other says where it is, and whether that is a guess. */
+  const reading = (
+    profiles = ['oculus-go'],
+  ): ((x: number, guessed: boolean) => [boolean, boolean, number]) => {
+    let pose: unknown;
+    const frame = { getPose: () => pose } as unknown as XRFrame;
+    const source = { profiles, targetRaySpace: {}, handedness: 'right' };
+    const hand = new Controller(source as unknown as XRInputSource);
+    return (x, guessed) => {
+      const matrix = new THREE.Matrix4().setPosition(x, 1, 0).toArray();
+      pose = { transform: { matrix, position: v(x, 1, 0) }, emulatedPosition: guessed };
+      hand.read(frame, {} as XRReferenceSpace);
+      return [hand.tracked, hand.isPointer, Number(hand.tip.x.toFixed(6))];
+    };
+  };
+
+  it('is one to point from, of a controller whose place was never seen', () => {
+    const read = reading();
+    expect([read(0, true), read(0.1, true)]).toEqual([
+      [true, true, 0],
+      [true, true, 0.1],
+    ]);
+  });
+
+  it('means nothing of a controller with a grip', () => {
+    const read = reading(['meta-quest-touch-plus', 'generic-trigger-squeeze-thumbstick']);
+    expect([read(0, true), read(0.1, true)]).toEqual([
+      [true, false, 0],
+      [true, false, 0.1],
+    ]);
+  });
+
+  it('is as good as lost, once the place was seen', () => {
+    const read = reading();
+    expect([read(0, true)[1], read(0.1, false)[1]]).toEqual([true, false]);
+    expect(read(0.2, true)).toEqual([false, false, 0.1]);
+    expect(read(0.3, false)).toEqual([true, false, 0.3]);
+  });
+});
+
+describe('a trace', () => {
+  const rings = (trace: Trace): THREE.Vector3[][] => {
+    const place = trace.mesh.geometry.getAttribute('position');
+    const corner = (k: number): THREE.Vector3 => new THREE.Vector3().fromBufferAttribute(place, k);
+    return Array.from({ length: trace.points }, (_, row) =>
+      Array.from({ length: 5 }, (_, side) => corner(5 * row + side)),
+    );
+  };
+
+  it('is a tube about the way of the hand, as thick as it presses', () => {
+    const trace = new Trace();
+    const way = Array.from({ length: 40 }, (_, k) =>
+      v(Math.cos(k / 6), k / 20, Math.sin(k / 6)).multiplyScalar(0.2),
+    );
+    way.forEach((at, k) => trace.add(at, k < 20 ? 1 : 0, 2));
+    // Where the hand stays, and where it is nowhere, nothing is added.
+    trace.add(way.at(-1)!, 1, 2);
+    trace.add(v(Number.NaN, 0, 0), 1, 2);
+    expect(trace.points).toBe(40);
+    const radius = (2 * trace.mm) / 2000;
+    rings(trace).forEach((ring, k) => {
+      for (const corner of ring)
+        expect(corner.distanceTo(way[k]!)).toBeCloseTo(k < 20 ? radius : 0.4 * radius, 6);
+    });
+    // It does not twist: a corner goes straight on.
+    const out = rings(trace).map((ring, k) => ring[0]!.sub(way[k]!).normalize());
+    for (let k = 1; k < out.length; k += 1) expect(out[k]!.dot(out[k - 1]!)).toBeGreaterThan(0.95);
+    expect(trace.mesh.geometry.drawRange.count).toBe(39 * 30);
+    trace.begin();
+    expect([trace.points, trace.mesh.geometry.drawRange.count]).toEqual([0, 0]);
+  });
+
+  it('has an end, colours and thicknesses', () => {
+    const trace = new Trace();
+    for (let k = 0; k < 3000; k += 1) trace.add(v(k, 0, 0), 1, 1);
+    expect(trace.points).toBe(2048);
+    const colours = new Set<number>();
+    const thick = new Set<number>();
+    for (let k = 0; k < 15; k += 1) {
+      colours.add(trace.hex);
+      thick.add(trace.mm);
+      trace.nextColour();
+      trace.nextThickness();
+      expect(trace.mesh.material.color.getHex()).toBe(trace.hex);
+    }
+    expect([colours.size, [...thick]]).toEqual([5, [3, 6, 12]]);
+  });
+});
+
+it('a long line is broken where a part of it ends', () => {
+  expect(brokenLine('Trigger: the tool · Grip: turn a branch')).toEqual([
+    'Trigger: the tool',
+    'Grip: turn a branch',
+  ]);
+  expect(brokenLine('What you draw, brush or grow is made')).toEqual([
+    'What you draw, brush',
+    'or grow is made',
+  ]);
+  expect(brokenLine('绘制涂刷或生长的枝条会出现在两侧')).toEqual(['绘制涂刷或生长的', '枝条会出现在两侧']);
 });
 
 describe('an obstacle that is drawn out', () => {
@@ -222,7 +325,8 @@ describe('a record', () => {
     const edit = { op: 'prune' } as unknown as HandEdit;
     // Before it begins and after it ends nothing is written down.
     recorder.did(shape({ down: at }), {});
-    recorder.start(new Uint8Array([110, 111, 110, 101]), 3);
+    const numbers = { plants: [1, 3], next: 4 };
+    recorder.start(new Uint8Array([110, 111, 110, 101]), { plant: 3, numbers });
     now = 112.4;
     recorder.did(shape({ down: at }), { commit: null });
     recorder.seen();
@@ -238,6 +342,7 @@ describe('a record', () => {
       schema: 'burgeon.gestures/1',
       project: 'bm9uZQ==',
       plant: 3,
+      numbers,
       digest: 'd1',
     });
     expect(record?.steps.map((s) => (typeof s.did === 'string' ? s.did : Object.keys(s.did)[0]))).toEqual([

@@ -8,14 +8,20 @@ export interface Key {
   /** Columns that it takes of `COLUMNS`. */
   readonly wide: number;
   readonly on?: boolean;
+  /** A colour that is shown beside the label. */
+  readonly swatch?: string;
   /** `hand`: that which presses it. */
   readonly act: (hand: Controller) => void;
 }
 
 const COLUMNS = 6;
-/** Pixels of the picture, and its width, metres: letters are 12 mm high, read at half a metre. */
-const PIXELS = { width: 600, row: 84, head: 72, gap: 8 } as const;
+/** Pixels of the picture, and its width, metres. */
+const PIXELS = { width: 600, row: 84, head: 84, gap: 8 } as const;
 const WIDTH_M = 0.22;
+/** Letters, pixels: of 12 mm where there is room, read at half a metre; of two lines; and where there is no room at all. */
+const LETTERS = { most: 32, lines: 28, least: 16 } as const;
+/** Where a line may be broken first. */
+const BREAK = ' · ';
 /** Above the back of the hand, leaning towards the eyes. */
 const OVER_HAND = new THREE.Matrix4().makeRotationX(-0.9).setPosition(0, 0.09, -0.02);
 const COLOURS = {
@@ -53,6 +59,8 @@ export class Wrist {
   private head = '';
   private under: string | undefined;
   private seen = '';
+  /** The smallest letters of what was drawn last, pixels. */
+  private smallest: number = LETTERS.most;
 
   constructor() {
     this.texture.colorSpace = THREE.SRGBColorSpace;
@@ -94,6 +102,25 @@ export class Wrist {
     this.board.matrixWorldNeedsUpdate = true;
   }
 
+  /** Stands beside somebody who has one hand only: `head` is how that one's eyes are now. */
+  rest(head: THREE.Matrix4): void {
+    const [across, ahead] = [
+      way.setFromMatrixColumn(head, 0).setY(0).normalize(),
+      at.setFromMatrixColumn(head, 2),
+    ];
+    ahead.setY(0).normalize();
+    place
+      .setFromMatrixPosition(head)
+      .addScaledVector(across, ASIDE.across)
+      .addScaledVector(ahead, ASIDE.ahead);
+    place.y += ASIDE.up;
+    // Its face to the eyes.
+    this.board.matrix.lookAt(size.setFromMatrixPosition(head), place, UP).setPosition(place);
+    const tall = (WIDTH_M * this.canvas.height) / this.canvas.width;
+    this.board.matrix.scale(size.set(WIDTH_M, tall, 1));
+    this.board.matrixWorldNeedsUpdate = true;
+  }
+
   /** Where a ray of the person's space meets the board: the distance, and the key that it means. Good until the next call. */
   meet(from: THREE.Vector3, direction: THREE.Vector3): Readonly<Met> | undefined {
     if (!this.board.visible) return undefined;
@@ -116,6 +143,11 @@ export class Wrist {
   /** What the line above the keys says. */
   get text(): string {
     return this.head;
+  }
+
+  /** How high the smallest letters on it are, millimetres of the person. */
+  get lettersMm(): number {
+    return (1000 * this.smallest * WIDTH_M) / PIXELS.width;
   }
 
   /** Where the middle of each key is, in the person's space. */
@@ -151,7 +183,8 @@ export class Wrist {
     pen.fillRect(0, 0, width, height);
     pen.textBaseline = 'middle';
     pen.textAlign = 'center';
-    this.write(pen, this.head, width / 2, PIXELS.head / 2, width - 20, COLOURS.text);
+    this.smallest = LETTERS.most;
+    this.writeHead(pen, width);
     const { gap, row, head } = PIXELS;
     for (const key of this.keys) {
       const [x, y, w, h] = [
@@ -169,9 +202,28 @@ export class Wrist {
         pen.strokeStyle = COLOURS.under;
         pen.stroke();
       }
-      this.write(pen, key.label, x + w / 2, y + h / 2, w - 12, key.on ? COLOURS.dark : COLOURS.text);
+      const room = key.swatch ? w - h : w - 12;
+      this.write(pen, key.label, x + room / 2 + 6, y + h / 2, room, key.on ? COLOURS.dark : COLOURS.text);
+      if (!key.swatch) continue;
+      pen.fillStyle = key.swatch;
+      pen.beginPath();
+      pen.arc(x + w - h / 2, y + h / 2, h / 4, 0, 2 * Math.PI);
+      pen.fill();
     }
     this.texture.needsUpdate = true;
+  }
+
+  /** The line above the keys, or two where it is long. */
+  private writeHead(pen: CanvasRenderingContext2D, width: number): void {
+    const [room, middle] = [width - 20, PIXELS.head / 2];
+    pen.font = fontOf(LETTERS.lines);
+    if (pen.measureText(this.head).width <= room) {
+      this.write(pen, this.head, width / 2, middle, room, COLOURS.text);
+      return;
+    }
+    const [first, second] = brokenLine(this.head);
+    this.write(pen, first, width / 2, middle - 0.55 * LETTERS.lines, room, COLOURS.text, LETTERS.lines);
+    this.write(pen, second, width / 2, middle + 0.6 * LETTERS.lines, room, COLOURS.text, LETTERS.lines);
   }
 
   private write(
@@ -181,14 +233,34 @@ export class Wrist {
     y: number,
     room: number,
     colour: string,
+    most: number = LETTERS.most,
   ): void {
     pen.fillStyle = colour;
-    for (let px = 32; px >= 16; px -= 2) {
-      pen.font = `600 ${px}px system-ui, sans-serif`;
-      if (px === 16 || pen.measureText(text).width <= room) break;
+    let px = most;
+    for (; px > LETTERS.least; px -= 2) {
+      pen.font = fontOf(px);
+      if (pen.measureText(text).width <= room) break;
     }
+    pen.font = fontOf(px);
+    this.smallest = Math.min(this.smallest, px);
     pen.fillText(text, x, y, room);
   }
+}
+
+const fontOf = (px: number): string => `600 ${px}px system-ui, sans-serif`;
+
+/** A line in two of about the same length, broken where a part of it ends, at a space, or (in Chinese) anywhere. */
+export function brokenLine(text: string): [string, string] {
+  const middle = text.length / 2;
+  for (const gap of [BREAK, ' ', '']) {
+    let [best, off] = [-1, text.length / 4];
+    for (let at = 1; at < text.length - 1; at += 1) {
+      const away = Math.abs(at + gap.length / 2 - middle);
+      if (text.startsWith(gap, at) && away <= off) [best, off] = [at, away];
+    }
+    if (best > 0) return [text.slice(0, best), text.slice(best + gap.length)];
+  }
+  return [text, ''];
 }
 
 interface Met {
@@ -196,6 +268,10 @@ interface Met {
   key: Key | undefined;
 }
 
+/** Where the board stands without a hand to hold it, metres from the eyes. */
+const ASIDE = { across: -0.3, ahead: -0.45, up: -0.25 } as const;
+const UP = new THREE.Vector3(0, 1, 0);
+const place = new THREE.Vector3();
 const met: Met = { distance: 0, key: undefined };
 const size = new THREE.Vector3();
 const inverse = new THREE.Matrix4();

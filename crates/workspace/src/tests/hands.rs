@@ -1,9 +1,13 @@
 //! Hands on plants: what is carried, what is kept of a gesture, and records of gestures.
 
+use burgeon::LiteMap;
+use burgeon::document::PlantNumbers;
 use burgeon::glam::{DQuat, DVec3};
 use burgeon::plant::AxisId;
+use data_encoding::BASE64;
 
 use super::*;
+use crate::shown::Shown;
 use crate::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, ShapePointer, ShapeReach};
 
 /// Nodes of a branch and of all that it bears.
@@ -229,6 +233,103 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
     assert_eq!(refused(GestureRecord { plant, ..GestureRecord::default() }), "plant-gone");
 }
 
+/// All that can be seen of the plants: number and digest of each.
+fn digests(s: &mut Workspace) -> Vec<(u64, String)> {
+    let view = json(&s.evaluate(&run()).unwrap());
+    let digest = |p: &Value| (p["id"].as_u64().unwrap(), p["item"]["digest"].as_str().unwrap().to_owned());
+    view["plants"].as_array().unwrap().iter().map(digest).collect()
+}
+
+#[test]
+fn a_record_means_the_plants_that_it_names_in_a_scene_of_several() {
+    let (mut s, (x, y)) = bush();
+    for _ in 0..2 {
+        s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+    }
+    s.ask(r#"{"scene":{"remove":[1]}}"#).unwrap();
+    s.ask(r#"{"plant":[3,{"set-seed":"77"}]}"#).unwrap();
+    s.select(PlantId(2)).unwrap();
+    s.evaluate(&run()).unwrap();
+    let numbers = s.document().numbers();
+    assert_eq!((&numbers.plants[..], numbers.next), (&[PlantId(2), PlantId(3)][..], 4));
+    let project = BASE64.encode(&s.save().unwrap());
+    let turn =
+        |input: &str| format!(r#"{{"did":{{"hand":{{"tool":"rotate","reach":{REACH},"input":{input}}}}}}}"#);
+    // A branch of the first is turned, the second gets another seed, a copy of it comes in and goes by its own number.
+    let steps = [
+        turn(&format!(r#"{{"down":{}}}"#, at(x, y))),
+        turn(r#"{"twist":30}"#),
+        turn(&format!(r#"{{"up":{}}}"#, at(x, y))),
+        KEPT.to_owned(),
+        r#"{"did":{"command":{"plant":[3,{"set-seed":"5"}]}}}"#.to_owned(),
+        r#"{"did":{"command":{"scene":{"duplicate":[3,[1.5,0,0]]}}}}"#.to_owned(),
+        r#"{"did":"seen"},{"did":{"select":4}}"#.to_owned(),
+        r#"{"did":{"command":{"plant":[4,{"set-seed":"6"}]}}}"#.to_owned(),
+    ];
+    let text = format!(r#"{{"schema":"{GESTURES_SCHEMA}","plant":2,"steps":[{}]}}"#, steps.join(","));
+    let here = GestureRecord::read(text.as_bytes()).unwrap();
+    let came = replayed(&mut s, &here).unwrap();
+    let done = digests(&mut s);
+    assert_eq!((came.edits, done.iter().map(|d| d.0).collect::<Vec<_>>()), (1, vec![2, 3, 4]));
+    let record = GestureRecord { project: Some(project), numbers: Some(numbers.clone()), ..here.clone() };
+    let text = serde_json::to_string(&record).unwrap();
+    let record = GestureRecord::read(text.as_bytes()).unwrap();
+    let mut again = Workspace::default();
+    assert_eq!(replayed(&mut again, &record).unwrap(), came);
+    assert_eq!(digests(&mut again), done);
+    // Without its numbers it is not known which plants are meant.
+    let lost = GestureRecord { numbers: None, ..record.clone() };
+    let code =
+        |record: &GestureRecord| Refusal::of(&replayed(&mut Workspace::default(), record).unwrap_err()).code;
+    assert_eq!(code(&lost), "plant-gone");
+    // Numbers that are too few, taken twice, or not given yet.
+    for (plants, next) in [(vec![2], 4), (vec![2, 2], 4), (vec![2, 9], 4), (vec![2, 3, 4], 9)] {
+        let plants = plants.into_iter().map(PlantId).collect();
+        let numbers = Some(PlantNumbers { plants, next });
+        assert_eq!(code(&GestureRecord { numbers, ..record.clone() }), "record-numbers");
+    }
+}
+
+#[test]
+fn a_branch_that_is_pulled_off_says_on_what_it_would_be_dropped() {
+    /// A hand that turned by about 17 degrees.
+    const SPUN: DQuat = DQuat::from_xyzw(0.0, 0.15, 0.0, 0.99);
+    let (mut s, _) = bush();
+    let before = look(&mut s)["item"]["digest"].clone();
+    let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap().clone();
+    let axis = plant.axes.iter().position(|a| a.order == 1).unwrap();
+    let points = plant.axis_points(AxisId::new(axis));
+    let (base, tip) = (points[0], *points.last().unwrap());
+    let held = |p: DVec3, turn: DQuat| {
+        let [x, y, z] = p.to_array();
+        let hand = json(&turn.to_array());
+        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}],"hand":{hand}"#))
+    };
+    let rotate = r#""rotate""#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, held(tip, DQuat::IDENTITY)));
+    let axis = u32::try_from(down["picked"]["axis"].as_u64().unwrap()).unwrap();
+    let near = tip + (tip - base) * 0.1;
+    let turned = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, held(near, SPUN)));
+    assert!(turned["host"].is_null() && turned["turned_deg"].as_f64().unwrap() > 1.0, "{turned}");
+    let far = base + (tip - base) * 2.5 + DVec3::Y * 0.3;
+    let off = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, held(far, SPUN)));
+    assert!(off["host"].is_u64() && off["again"] == false, "{off}");
+    let foresaw = foreseen(&s, axis, &off["carried"]);
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, held(far, SPUN)));
+    assert_eq!((&up["commit"]["op"], up["commit"]["turn"].is_object()), (&"move".into(), true), "{up}");
+    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
+    look(&mut s);
+    // Rows may be others now; its key stays.
+    let moved = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
+    let key = plant.axis(AxisId::new(axis as usize)).key;
+    let row = moved.axes.iter().position(|a| a.key == key).unwrap();
+    let off = |(q, p): (&DVec3, &[f64; 3])| q.distance(DVec3::from_array(*p));
+    let worst = moved.axis_points(AxisId::new(row)).iter().zip(&foresaw).map(off).fold(0.0, f64::max);
+    assert!(worst < 1e-9, "as it was carried: {worst}");
+    assert_eq!(s.undo(), Some("shape-move"));
+    assert_eq!(look(&mut s)["item"]["digest"], before);
+}
+
 #[test]
 fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
     let (mut first, (x, y)) = bush();
@@ -324,8 +425,17 @@ fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_show
         (0..parts).map(|part| s.indices(PlantId(1), part).len() / 3).sum()
     };
     let all = shown(&s, &whole);
+    // Made before it is wished for, it is not seen, and is not made again when it is.
+    s.ready_levels(all as u64 / 2, &run());
+    let still = look(&mut s);
+    assert_eq!(shown(&s, &still), all);
+    let columns = |of: &LiteMap<PlantId, Shown>| {
+        of.values().next().map(|shown| shown.made.model.parts[0].mesh.positions.as_ptr())
+    };
+    let ready = columns(&s.levels.ready);
     s.set_most_triangles(Some(all as u64 / 2));
     let fewer = look(&mut s);
+    assert!(ready.is_some() && columns(&s.levels.shown) == ready);
     assert!(fewer["fresh"] == true && fewer["mesh"] != whole["mesh"], "{} {}", fewer["fresh"], fewer["mesh"]);
     let now = shown(&s, &fewer);
     assert!(now <= all / 2 && now > all / 40, "{now} of {all}");
