@@ -2130,7 +2130,9 @@ export type StructureFormat =
   | /** The structure of each plant with the meshes of its organs, as Open Plant Format. */
   "opf"
   | /** The structure of each plant as a table of cylinders. */
-  "qsm";
+  "qsm"
+  | /** The skeleton of each plant as a table of points. */
+  "swc";
 
 /** Surface of a measured blade (Wang et al. */
 export type SurfaceKind =
