@@ -353,8 +353,7 @@ async function fingers({ page, url, shot }) {
     await page.keyboard.press('Escape');
     await page.waitForTimeout(200);
   }
-  await page.keyboard.press('v');
-  await page.keyboard.press('Tab');
+  await page.keyboard.press(']');
   await page.locator('.card').first().waitFor();
   await look('the card of a stroke');
   await page.keyboard.press('Escape');

@@ -711,6 +711,7 @@ async function own({ page, url, shot }) {
   await slide(page, 'keep', 0.3);
   // What the head changed goes back to what the species has.
   const back = page.locator('.maker-head .f-reset');
+  await changed(page, plain, 'fewer leaves');
   assert.equal(await back.count(), 1, 'one value is another than at first');
   await back.click();
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);

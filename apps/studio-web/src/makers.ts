@@ -319,7 +319,7 @@ export class MakerPanel {
         element: this.section(
           t('tree.species'),
           gallery(catalogue, tree.preset, (key) => this.events.act({ preset: { plant: plant.id, key } })),
-          this.own(plant, spec, (own) => ({ tree: [plant.id, { 'set-spec': [null, own] }] })),
+          this.own(plant, (own) => ({ tree: [plant.id, { 'set-spec': [null, own] }] })),
         ),
       };
     }
@@ -345,11 +345,15 @@ export class MakerPanel {
     ];
   }
 
-  /** Presets of the person's own. */
-  private own(plant: PlantState, spec: Fields, take: (own: Fields) => Command): HTMLElement {
+  /** Presets of the person's own. What is kept is the plant as it is then: the section stays while its settings change. */
+  private own(plant: PlantState, take: (own: Fields) => Command): HTMLElement {
     return ownChips({
       maker: plant.maker,
-      now: () => ({ name: plant.name, spec }),
+      now: () => {
+        const { name, tree, flower, leaf } = this.plant ?? plant;
+        const spec = tree?.spec ?? flower?.spec ?? leaf?.settings ?? {};
+        return { name, spec: spec as unknown as Fields };
+      },
       take: (own) => this.events.run(take(own)),
       renew: () => {
         this.species = undefined;
@@ -525,7 +529,7 @@ export class MakerPanel {
       ),
       this.section(
         t('leaf.own'),
-        this.own(plant, leaf.settings as unknown as Fields, (own) => ({
+        this.own(plant, (own) => ({
           leaf: [id, { set: own as unknown as LeafSpec }],
         })),
       ),
@@ -603,7 +607,7 @@ export class MakerPanel {
       this.section(
         t('flower.species'),
         chips,
-        this.own(plant, flower.spec, (own) => ({ flower: [id, { 'set-spec': [null, own] }] })),
+        this.own(plant, (own) => ({ flower: [id, { 'set-spec': [null, own] }] })),
       ),
       this.section(t('flower.day'), this.dayRow(flower.day)),
       this.section(t('flower.law'), law),
