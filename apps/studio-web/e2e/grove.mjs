@@ -331,7 +331,8 @@ async function fingers({ page, url, shot }) {
       const wanted = 'button, a, select, summary, input, [role=button], [role=option], [role=tab]';
       const seen = (e) => e.getBoundingClientRect().width > 0 && getComputedStyle(e).visibility !== 'hidden';
       // What stands in a label is pressed by it.
-      const target = (e) => (e.type === 'checkbox' ? (e.closest('label') ?? e) : e).getBoundingClientRect();
+      const inLabel = (e) => (['checkbox', 'color'].includes(e.type) ? (e.closest('label') ?? e) : e);
+      const target = (e) => inLabel(e).getBoundingClientRect();
       return [...document.querySelectorAll(wanted)]
         .filter((e) => seen(e) && Math.min(target(e).width, target(e).height) < 43.5)
         .map((e) => `${e.tagName} ${e.id || e.className} ${e.textContent.slice(0, 20)}`);
@@ -369,6 +370,7 @@ async function fingers({ page, url, shot }) {
   await page.locator('#b-walk-stick').waitFor();
   await look('the stick');
   const eye = () => page.evaluate(() => JSON.parse(document.querySelector('.view').dataset.eye).position);
+  await page.waitForTimeout(1500);
   const from = await eye();
   const box = await page.locator('#b-walk-stick').boundingBox();
   const at = { x: box.x + box.width / 2, y: box.y + box.height * 0.1, id: 1 };

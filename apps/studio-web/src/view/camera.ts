@@ -139,7 +139,8 @@ export class Rig {
   /** Wishes to see a box whole; `across`: the share of the height that is free on both sides. */
   frame(box: THREE.Box3, across: number, now: boolean): void {
     const radius = box.getSize(new THREE.Vector3()).length() / 2;
-    if (!(radius > 0)) return;
+    // Whoever walks is led by nothing else.
+    if (!(radius > 0) || this.walk) return;
     const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
     const distance = Math.min(FARTHEST, (radius / Math.sin(angle) / across) * 0.98);
     this.controls.minDistance = Math.min(0.1, Math.max(0.004, 0.4 * radius));
