@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
 
+#: As what the structure of a plant is written.
+STRUCTURES = ("mtg", "opf", "qsm", "swc")
+
 
 class _Table:
     """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
@@ -404,9 +407,11 @@ class Plant:
         return read_mtg(text)
 
     def to_bytes(self, extension: str, unit: str = "m", up: "Optional[str]" = None) -> bytes:
-        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (a table of cylinders), ``burgeon`` (a project)."""
+        """The file of a format: models, ``mtg``, ``opf``, ``qsm`` (a table of cylinders), ``swc`` (a skeleton), ``burgeon`` (a
+        project).
+        """
         extension = extension.lower().lstrip(".")
-        if extension in ("mtg", "opf", "qsm"):
+        if extension in STRUCTURES:
             return bytes(self._raw.structure(extension, unit, up or "z"))
         if extension == "burgeon":
             return bytes(self._raw.project())
@@ -425,8 +430,8 @@ class Plant:
         pack: "Optional[str]" = None,
         sway: bool = False,
     ) -> None:
-        """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``), its
-        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
+        """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``, ``.opf``,
+        ``.swc``), its cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all.
 
         Of models: ``lods`` coarser copies, 0 to 6, beside it (``x-lod1.glb``, ...); ``impostor``: one more, views from all sides
         in an atlas of so many pixels, 128 to 4096. Of ``.glb``: ``one_file`` takes the copies in; ``instances``: each form of
@@ -445,7 +450,7 @@ class Plant:
             "pack": None if pack is None else word("pack", pack),
             "sway": flag("sway", sway),
         }
-        if extension in ("mtg", "opf", "qsm", "burgeon"):
+        if extension in (*STRUCTURES, "burgeon"):
             asked = [word for word, value in form.items() if value not in (0, False, None)]
             if asked:
                 raise wrong(f"{asked[0]} is of models, not of .{extension} files", asked[0], "given", "left out")

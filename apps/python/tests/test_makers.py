@@ -135,6 +135,14 @@ def test_structure_is_written_as_opf(small):
     assert text.count('class="Leaf"') == leaves > 0 and "+Z up" in text
 
 
+def test_structure_is_written_as_swc(small, tmp_path):
+    small.save(tmp_path / "small.swc")
+    rows = [line.split() for line in (tmp_path / "small.swc").read_text().splitlines() if not line.startswith("#")]
+    borne = sum(axis >= 0 for axis in small.axes.bearer)
+    assert len(rows) == len(small.nodes.radius) - borne
+    assert all(int(row[6]) < int(row[0]) for row in rows), "bearers come first"
+
+
 def test_a_spec_is_the_same_as_file_dict_and_keywords(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text('name = "mine"\nage = 5\n[leaves]\nleaf_keep = 0.5\n')
