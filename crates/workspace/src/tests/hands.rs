@@ -326,7 +326,7 @@ fn a_branch_that_is_pulled_off_says_on_what_it_would_be_dropped() {
     let off = |(q, p): (&DVec3, &[f64; 3])| q.distance(DVec3::from_array(*p));
     let worst = moved.axis_points(AxisId::new(row)).iter().zip(&foresaw).map(off).fold(0.0, f64::max);
     assert!(worst < 1e-9, "as it was carried: {worst}");
-    assert_eq!(s.undo(), Some("shape-move"));
+    assert_eq!(s.undo(), Some("move"));
     assert_eq!(look(&mut s)["item"]["digest"], before);
 }
 
