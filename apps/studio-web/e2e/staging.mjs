@@ -543,8 +543,13 @@ async function preview({ page, url, shot }) {
   await page.click('#b-exportview-go');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   const { size } = statSync(await download.path());
+  assert.match(download.suggestedFilename(), /\.glb$/, 'one file');
   assert.equal(joined.written, size, 'levels and views in one file');
+  // Fewer levels are written than was looked at: the coarsest of them is shown.
   await page.uncheck('#b-exported-impostor');
+  await page.selectOption('#b-exported-levels', '1');
+  await lookedAt(page);
+  assert.equal(await page.inputValue('[data-exported=level]'), '0');
   // Formats without wind say so; a zip is counted as one.
   await page.selectOption('[data-exported=format]', 'obj');
   await slide(page, 'level', 0);

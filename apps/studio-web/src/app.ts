@@ -353,6 +353,7 @@ export class App implements Page {
       viewed: (name) => this.show.model(name),
       photo: (file) => this.panels.layPhoto(file),
       look: () => this.openPreview(),
+      exportChosen: () => this.preview?.renew(),
       blank: () => this.isBlank,
       offered: (name, version) => this.writing.opened(name, version),
     });

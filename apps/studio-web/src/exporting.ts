@@ -34,7 +34,13 @@ export const PLAIN: ExportOptions = {
   impostor: false,
 };
 
-let last: { format: Target; options: ExportOptions } = { format: 'glb', options: PLAIN };
+/** The preview holds on to the options: another choice is written into them. */
+const last: { format: Target; readonly options: ExportOptions } = { format: 'glb', options: { ...PLAIN } };
+
+function choose(format: Target, options: ExportOptions): void {
+  last.format = format;
+  Object.assign(last.options, options);
+}
 
 /** What was chosen last; the preview of the export and its dialogue share it. */
 export function optionsOf(): typeof last {
@@ -228,7 +234,7 @@ export function openExport(
       class: 'link',
       id: 'b-export-look',
       onclick: () => {
-        last = { format, options };
+        choose(format, options);
         d.close();
         look();
       },
@@ -242,7 +248,7 @@ export function openExport(
       class: 'export',
       onsubmit: (e) => {
         e.preventDefault();
-        last = { format, options };
+        choose(format, options);
         d.close();
         act(format, { ...options });
       },

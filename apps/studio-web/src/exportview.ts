@@ -85,10 +85,9 @@ export class ExportPreview {
     this.rows.querySelector('select')?.focus();
   }
 
-  /** What will be written; the level that is shown is one of it. */
+  /** What will be written. */
   private get request(): ExportRequest {
     const { format, options } = optionsOf();
-    options.levels = Math.max(options.levels, last.level + 1);
     const whole = options.whole || !this.isSeveral;
     return { format: format as ExportFormat, ...options, whole, wind: last.wind > 0 };
   }
@@ -99,6 +98,8 @@ export class ExportPreview {
 
   private fill(): void {
     const { format, options } = optionsOf();
+    // The level that is shown is one of those that are written.
+    last.level = Math.min(last.level, options.levels - 1);
     const several = this.isSeveral;
     this.several = several;
     const formats = FORMATS.map((f) => [f, `${nameOf(f)} · ${t(`export.${f}` as TextKey)}`] as const);
@@ -107,17 +108,12 @@ export class ExportPreview {
     const notes: string[] = [];
     if (!carries) notes.push(t('exported.windless'));
     else if (this.calm) notes.push(t('exported.calm'));
-    const again = (): void => {
-      fine.show(format);
-      this.ask();
-    };
-    const fine = levelRows(options, again, 'b-exported-');
+    const fine = levelRows(options, () => this.renew(), 'b-exported-');
     fine.show(format);
     this.rows.replaceChildren(
       select('exported.format', 'format', formats, format as ExportFormat, (f) => {
         optionsOf().format = f;
-        this.fill();
-        this.ask();
+        this.renew();
       }),
       ...(several
         ? [
@@ -147,7 +143,8 @@ export class ExportPreview {
         (x) => {
           last.level = x;
           options.levels = Math.max(options.levels, x + 1);
-          again();
+          fine.show(format);
+          this.ask();
         },
       ),
       ...fine.rows,
@@ -162,6 +159,12 @@ export class ExportPreview {
       }),
       ...notes.map((text) => el('p', { class: 'muted' }, text)),
     );
+  }
+
+  /** Something else is chosen, here or in the dialogue. */
+  renew(): void {
+    this.fill();
+    this.ask();
   }
 
   /** The document changed: age and season of a tree are lent by its panel, and what is seen is out of date. */

@@ -13,6 +13,8 @@ import { dialog, download, el, note } from './ui';
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
 const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
+/** How a zip begins: PK. */
+const ZIP = [0x50, 0x4b] as const;
 const TYPES: Record<string, string> = {
   glb: 'model/gltf-binary',
   ply: 'application/octet-stream',
@@ -35,6 +37,8 @@ export interface FilesEvents {
   photo(file: File): Promise<void>;
   /** The export is to be seen before it is written. */
   look(): void;
+  /** Another export was chosen. */
+  exportChosen(): void;
   /** Nothing is drawn or planted. */
   blank(): boolean;
   /** The file with which the page was opened came in, of this version. */
@@ -223,7 +227,10 @@ export class Files {
     openExport(
       this.events.several(),
       this.events.kind(),
-      (format, options) => void this.exportAs(format, options),
+      (format, options) => {
+        this.events.exportChosen();
+        void this.exportAs(format, options);
+      },
       () => this.events.look(),
     );
   }
@@ -234,23 +241,21 @@ export class Files {
       return;
     }
     try {
-      const levelled = LEVELS.has(format);
-      if (!levelled) options.levels = 1;
+      if (!LEVELS.has(format)) options.levels = 1;
       const structure = structureFile(format);
-      const several = structure !== undefined && options.whole && this.events.several();
-      const zipped = format === 'obj' || format === 'usda' || several || (options.levels > 1 && levelled);
-      const extension = structure?.extension ?? format;
-      const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;
+      const stem = safe(this.events.name());
+      let name = `${stem}.${structure?.extension ?? format}`;
       if (format === 'png') {
         const picture = await this.events.picture();
         if (!picture) throw new Error(t('note.nowebgl'));
         download(name, picture, 'image/png');
       } else {
-        download(
-          name,
-          await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request: { format, ...options } }),
-          zipped ? 'application/zip' : (structure?.type ?? TYPES[format] ?? ''),
-        );
+        const request = { format, ...options };
+        const bytes = await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request });
+        // Several files come as a zip.
+        const zipped = bytes[0] === ZIP[0] && bytes[1] === ZIP[1];
+        if (zipped) name = `${stem}.${format}.zip`;
+        download(name, bytes, zipped ? 'application/zip' : (structure?.type ?? TYPES[format] ?? ''));
       }
       note(t('note.exported', { name }));
     } catch (e) {

@@ -60,7 +60,7 @@ const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
 /** The keys that the board has now, in rows. */
 export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
   // The trigger is taken while something grows: these alone are pressed, by another button.
-  if (shaping.isGrowing) return numberRows(shaping, board);
+  if (shaping.isGrowing) return numberRows(board, shaping);
   const rows = {
     tools: () => toolRows(board, shaping, events),
     more: () => moreRows(board, shaping, events),
@@ -81,7 +81,7 @@ export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): R
 }
 
 /** Numbers of the tool in the hand: a key for less and one for more. */
-function numberRows(shaping: Shaping, board: Board): Rows {
+function numberRows(board: Board, shaping: Shaping): Rows {
   const settings = Object.entries(shaping.word ? rowOf(shaping.word).settings : {});
   const numbers = settings.filter(([, setting]) => isNumber(setting) && setting.notch !== undefined);
   return numbers.map(([of]) =>
@@ -157,7 +157,7 @@ function settingRows(board: Board, shaping: Shaping): Rows {
     ...(isBrush(word) ? [brushed] : []),
     ...(row.climbs ? [borne] : []),
     ...turned,
-    ...numberRows(shaping, board),
+    ...numberRows(board, shaping),
   ];
 }
 
