@@ -153,6 +153,19 @@ impl ModelFormat {
         }
     }
 
+    /// How the names of its files end, without the dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+            Self::Usda => "usda",
+            Self::Usdz => "usdz",
+        }
+    }
+
     /// The format that a file's extension (without the dot, any case) stands for.
     ///
     /// ```
@@ -160,16 +173,7 @@ impl ModelFormat {
     /// assert_eq!(ModelFormat::from_extension("GLB"), Some(ModelFormat::Glb));
     /// ```
     pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "glb" => Some(Self::Glb),
-            "gltf" => Some(Self::Gltf),
-            "obj" => Some(Self::Obj),
-            "ply" => Some(Self::Ply),
-            "stl" => Some(Self::Stl),
-            "usda" => Some(Self::Usda),
-            "usdz" => Some(Self::Usdz),
-            _ => None,
-        }
+        Self::ALL.into_iter().find(|f| f.extension().eq_ignore_ascii_case(extension))
     }
 
     /// The format that the first bytes of a file look like. A binary STL has no mark and is not recognised.

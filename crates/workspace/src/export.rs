@@ -392,12 +392,7 @@ pub(crate) fn written(
         _ => {
             let mut out = Vec::new();
             formats::write_model(model, format, spec, &mut out, &mut Report::default())?;
-            let extension = match format {
-                ModelFormat::Ply => "ply",
-                ModelFormat::Stl => "stl",
-                _ => "glb",
-            };
-            ((extension, out), Vec::new())
+            ((format.extension(), out), Vec::new())
         }
     };
     let mut all = vec![(format!("{stem}.{}", main.0), main.1)];

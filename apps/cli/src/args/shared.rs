@@ -254,16 +254,6 @@ impl FormatWord {
             Self::Usdz => ModelFormat::Usdz,
         }
     }
-
-    pub(crate) const fn extension(self) -> &'static str {
-        match self {
-            Self::Glb => "glb",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-            Self::Usda => "usda",
-            Self::Usdz => "usdz",
-        }
-    }
 }
 
 /// What a plant is written as, by the ending of its file.
@@ -365,10 +355,7 @@ impl PlantFormat {
     /// How names of its files end, without the dot.
     pub(crate) fn extension(self) -> &'static str {
         match self {
-            Self::Model(model) => FormatWord::value_variants()
-                .iter()
-                .find(|f| f.format() == model)
-                .map_or("stl", |f| f.extension()),
+            Self::Model(model) => model.extension(),
             Self::Structure(structure) => structure.extension(),
         }
     }
@@ -379,20 +366,25 @@ impl PlantFormat {
             .or_else(|| ModelFormat::from_extension(extension).map(Self::Model))
     }
 
-    /// All that are told by the ending of a file, but bare triangles.
+    /// All that a folder of plants can hold: bare triangles are written one by one.
     fn written() -> Vec<Self> {
-        let models = FormatWord::value_variants().iter().map(|f| Self::Model(f.format()));
-        let structures = StructureFormat::ALL
-            .into_iter()
-            .filter(|f| Self::from_extension(f.extension()) == Some(Self::Structure(*f)));
-        models.chain(structures.map(Self::Structure)).collect()
+        FormatWord::value_variants()
+            .iter()
+            .map(|f| Self::Model(f.format()))
+            .chain(Self::structures())
+            .collect()
+    }
+
+    /// The structures that are told by the ending of a file.
+    fn structures() -> impl Iterator<Item = Self> {
+        let named = |f: &StructureFormat| StructureFormat::from_extension(f.extension()) == Some(*f);
+        StructureFormat::ALL.into_iter().filter(named).map(Self::Structure)
     }
 
     /// How files of plants may end, for messages.
     pub(crate) fn endings() -> String {
-        let structures = Self::written().into_iter().map(Self::extension);
-        let mut all: Vec<&str> = structures.collect();
-        all.insert(3, "stl");
+        let models = ModelFormat::ALL.into_iter().filter(|f| *f != ModelFormat::Gltf).map(Self::Model);
+        let mut all: Vec<&str> = models.chain(Self::structures()).map(Self::extension).collect();
         let last = all.pop().unwrap_or_default();
         format!("plants are written as .{} or .{last}", all.join(", ."))
     }

@@ -66,7 +66,7 @@ pub(super) fn write_show(
         (None, _) => {
             let name = names::safe(&show.name);
             for k in 0..args.frames {
-                let name = format!("{name}-{k:03}.{}", args.format.extension());
+                let name = format!("{name}-{k:03}.{}", args.format.format().extension());
                 one(at(k), &args.output.join(name), &mut written, &mut digest)?;
             }
         }
