@@ -18,16 +18,21 @@ import {
 } from './headset.mjs';
 import { begin, changed, data, drop, settled, until } from './journeys.mjs';
 
-/** A whole oak is drawn for both eyes within 300,000 triangles and 100 calls; out of the headset it is whole again. */
-async function levels({ page, url, shot }) {
-  await wear(page, 'metaQuest3');
-  await begin(page, url);
+/** The oak of the presets, of its own file. */
+async function growOak(page) {
   await drop(
     page,
     'oak.toml',
     readFileSync(new URL('../../../crates/studio/presets/oak.toml', import.meta.url), 'utf8'),
   );
   await until(page, 'triangles', ['above', 150_000], 'an oak has grown');
+}
+
+/** A whole oak is drawn for both eyes within 300,000 triangles and 100 calls; out of the headset it is whole again. */
+async function levels({ page, url, shot }) {
+  await wear(page, 'metaQuest3');
+  await begin(page, url);
+  await growOak(page);
   const plain = await settled(page);
   // Two pictures, as a headset has them: what is counted is both.
   await page.evaluate(() => {
@@ -107,12 +112,7 @@ async function first({ page, url }) {
     };
   });
   await begin(page, url);
-  await drop(
-    page,
-    'oak.toml',
-    readFileSync(new URL('../../../crates/studio/presets/oak.toml', import.meta.url), 'utf8'),
-  );
-  await until(page, 'triangles', ['above', 150_000], 'an oak has grown');
+  await growOak(page);
   await settled(page);
   await page.evaluate(() => {
     window.device.stereoEnabled = true;

@@ -7,6 +7,7 @@ import {
   WIDE,
   carries,
   click,
+  editsOf,
   enter,
   find,
   frames,
@@ -85,13 +86,7 @@ function rollOf(steps, carried) {
 /** A branch rolls with the hand, comes off when it is pulled, is moved and grown anew; what bears it is meant, too. */
 async function grab({ page, url, shot, burgeon, out }) {
   const plain = await enter(page, url);
-  const digests = [plain];
-  const done = async (what) => {
-    const count = digests.length;
-    await until(page, 'edits', ['is', count], what);
-    await until(page, 'done', ['is', count], `${what}: done`);
-    digests.push(await changed(page, digests.at(-1), what));
-  };
+  const { digests, done } = editsOf(page, plain);
   await key(page, 'scene');
   await key(page, 'record');
   await key(page, 'scene');

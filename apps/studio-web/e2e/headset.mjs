@@ -701,13 +701,7 @@ const whole =
     const undo = side === 'right' ? 'b-button' : 'y-button';
     if (side === 'left') await key(page, 'left');
     const at = (word) => key(page, word, side);
-    const digests = [plain];
-    const done = async (what) => {
-      const count = digests.length;
-      await until(page, 'edits', ['is', count], what);
-      await until(page, 'done', ['is', count], `${what}: done`);
-      digests.push(await changed(page, digests.at(-1), what));
-    };
+    const { digests, done } = editsOf(page, plain);
     await at('scene');
     await at('record');
     await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).records);
@@ -796,6 +790,18 @@ const whole =
     await page.reload();
     await page.waitForFunction((d) => document.body.dataset.digest === d, digests.at(-1));
   };
+
+/** The digests after each edit of a plant, the plain one first, and a step that waits for one more. */
+export function editsOf(page, plain) {
+  const digests = [plain];
+  const done = async (what) => {
+    const count = digests.length;
+    await until(page, 'edits', ['is', count], what);
+    await until(page, 'done', ['is', count], `${what}: done`);
+    digests.push(await changed(page, digests.at(-1), what));
+  };
+  return { digests, done };
+}
 
 export const SMALL = { viewport: { width: 420, height: 300 } };
 
