@@ -468,11 +468,12 @@ async function slide(page, key, value) {
   }, String(value));
 }
 
-/** How far the pictures of two moments are apart, of a part of the view. */
+/** How far the pictures of two moments are apart, of a part of the view; notes come and go over it and are left out. */
 async function sways(page, part) {
-  const a = await page.locator('.view canvas').screenshot();
+  const picture = () => page.locator('.view canvas').screenshot({ style: '.notes { display: none }' });
+  const a = await picture();
   await page.waitForTimeout(1300);
-  const b = await page.locator('.view canvas').screenshot();
+  const b = await picture();
   return page.evaluate(
     async ([first, second, [x0, y0, x1, y1]]) => {
       const pixels = async (base64) => {
@@ -511,6 +512,7 @@ async function preview({ page, url, shot }) {
   assert.ok(whole.parts.petal.triangles > 0 && whole.parts.leaf.triangles > 0, JSON.stringify(whole.parts));
   // Still, then in the wind.
   await rest(page);
+  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
   const [crown, foot] = [
     [0.1, 0.1, 0.85, 0.7],
     [0.1, 0.88, 0.85, 1],
