@@ -89,6 +89,87 @@ async function gizmos({ page, url, shot }) {
   assert.match(await page.locator('#b-undo').getAttribute('title'), /place/);
 }
 
+/** Plants that are chosen together are a group, and go as one. */
+async function groups({ page, url, shot }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  const rows = page.locator('.plant[data-plant=tree]');
+  const menu = async (row, item) => {
+    await page.click(`[id^=b-more-] >> nth=${row}`);
+    await page.click(`.menu >> text=${item}`);
+  };
+  for (const k of [2, 3]) {
+    await menu(0, 'Duplicate');
+    await until(page, 'plants', ['is', k], 'a copy');
+    await rows.first().click();
+  }
+  // The copies stand in one place: the second one goes on.
+  await rows.nth(2).click();
+  await page.fill('[data-key=nz]', '-1');
+  await page.locator('[data-key=nz]').blur();
+  await page.waitForFunction(() => document.querySelector('[data-key=nz]').value === '-1');
+  const place = async (row) => {
+    await rows.nth(row).click();
+    return [await field(page, 'nx'), await field(page, 'nz')];
+  };
+  const before = [await place(1), await place(2)];
+  await rows.nth(1).click();
+  await rows.nth(2).click({ modifiers: ['Control'] });
+  await page.getByText('2 plants chosen').waitFor();
+  assert.equal(await page.locator('.plant[aria-pressed=true]').count(), 2);
+  await page.keyboard.press('Control+g');
+  const group = page.locator('.plant.group');
+  await group.waitFor();
+  assert.match(await group.textContent(), /Group 1 × 2/);
+  assert.equal(await group.getAttribute('aria-pressed'), 'true', 'it is chosen');
+  // The gizmo takes both; where its handle is, is found as for one.
+  await page.keyboard.press('g');
+  await page.waitForTimeout(900);
+  const { x, y, box } = await middle(page);
+  const undone = () => page.locator('#b-undo').getAttribute('title');
+  for (let k = 0; k < 120 && !/place/.test(await undone()); k += 1) {
+    const [px, py] = [x - 40 + 10 * (k % 20), y + box.height * (0.02 + 0.05 * Math.floor(k / 20))];
+    await page.mouse.move(px, py);
+    await page.mouse.down();
+    await page.mouse.move(px + 60, py, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForTimeout(60);
+  }
+  assert.match(await undone(), /place/, 'the handle moves them');
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(600);
+  await shot('grove-group');
+  const after = [await place(1), await place(2)];
+  const by = after.map((at, row) => at.map((v, k) => v - before[row][k]));
+  assert.ok(Math.hypot(...by[0]) > 0.01, `${by[0]}`);
+  assert.ok(Math.hypot(by[0][0] - by[1][0], by[0][1] - by[1][1]) < 0.002, `${by} are alike`);
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((z) => Number(document.querySelector('[data-key=nz]').value) === z, before[1][1]);
+  assert.deepEqual([await place(1), await place(2)], before, 'one step of undo takes both back');
+  // Hidden, copied, parted, deleted as one.
+  await page.click('[data-key="geGroup 1"]');
+  assert.equal(await page.locator('li.is-hidden').count(), 3, 'the group and its plants');
+  await page.keyboard.press('Control+z');
+  await page.locator('li.is-hidden').first().waitFor({ state: 'detached' });
+  await page.click('[data-key="gmGroup 1"]');
+  await page.click('.menu >> text=Duplicate');
+  await until(page, 'plants', ['is', 5], 'a copy of both');
+  await page.getByText('Group 2 × 2').waitFor();
+  await page.getByText('Group 2 × 2').click();
+  await page.keyboard.press('Control+Shift+G');
+  await page.getByText('Group 2 × 2').waitFor({ state: 'detached' });
+  await group.click();
+  await group.press('Delete');
+  await until(page, 'plants', ['is', 3], 'its plants went with it');
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 5], 'and came back');
+  await group.waitFor();
+  // A locked plant keeps all of them.
+  await group.click();
+  await page.click('#b-fix');
+  await page.locator('[data-gizmo=translate]:disabled').waitFor();
+}
+
 /** Copies along a line on the ground; they are a group. */
 async function scatter({ page, url, shot }) {
   await bush(page, url);
@@ -115,7 +196,7 @@ async function scatter({ page, url, shot }) {
   assert.match(await page.locator('.plant.group').textContent(), new RegExp(`bush × ${many}`));
   await page.waitForTimeout(1500);
   await shot('grove-line');
-  await page.click('[data-key="getree bush"]');
+  await page.click('[data-key="gebush"]');
   await page.locator('li.is-hidden').first().waitFor();
   await page.keyboard.press('Control+z');
   await page.locator('li.is-hidden').first().waitFor({ state: 'detached' });
@@ -463,6 +544,7 @@ export const grove = [
   ['grove: a large tree is seen before it is whole', seen, WIDE],
   ['grove: copies share one plant', copies, WIDE],
   ['grove: gizmos by keys', gizmos, WIDE],
+  ['grove: chosen together, a group', groups, WIDE],
   ['grove: copies along a line and in an area', scatter, WIDE],
   ['grove: several files, and a model that is closed', files, WIDE],
   ['grove: tools keep to themselves', tools, WIDE],

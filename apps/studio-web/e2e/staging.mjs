@@ -542,6 +542,12 @@ async function preview({ page, url, shot }) {
   await page.check('#b-exported-impostor');
   await page.selectOption('#b-exported-files', 'one');
   const joined = await lookedAt(page);
+  // Those views are seen, too, on four triangles.
+  await slide(page, 'level', 4);
+  const afar = await lookedAt(page);
+  assert.deepEqual([afar.parts.all.triangles, afar.seen], [4, 4]);
+  assert.ok(afar.file > 100_000 && afar.file < joined.written, 'they are a part of what is written');
+  await shot('export-afar');
   await page.click('#b-exportview-go');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   const { size } = statSync(await download.path());

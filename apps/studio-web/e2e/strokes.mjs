@@ -116,7 +116,43 @@ async function readings({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
+/** What a stroke turned into something else is said, and turned back by one click. */
+async function turned({ page, url, shot }) {
+  await begin(page, url);
+  const ring = Array.from({ length: 33 }, (_, k) => [
+    250 + 34 * Math.cos((k * Math.PI) / 16),
+    230 + 34 * Math.sin((k * Math.PI) / 16),
+  ]);
+  const strokes = [
+    ring,
+    line(250, 560, 250, 262, 8),
+    ...[0, 1, 2, 3, 4, 5].map((k) => blade(250, 230, -Math.PI / 2 + (k * Math.PI) / 3, 130, 34)),
+  ];
+  const chip = page.locator('.readings .chip.turned');
+  let drawn = 0;
+  while (drawn < strokes.length && (await chip.count()) === 0) {
+    const before = drawn > 0 ? await settled(page) : '';
+    await draw(page, strokes[drawn]);
+    drawn += 1;
+    await until(page, 'strokes', ['is', drawn], 'a stroke was drawn');
+    await changed(page, before, 'it is read');
+    await page.waitForTimeout(300);
+  }
+  assert.equal(await chip.count(), 1, 'a ring alone is something else than one among petals');
+  await shot('readings-turned');
+  const read = await settled(page);
+  await chip.click();
+  await step(page, 'change what a stroke is');
+  const back = await changed(page, read, 'turned back');
+  await chip.waitFor({ state: 'detached' });
+  // It is theirs now: the next stroke does not turn it.
+  await draw(page, line(250, 480, 330, 420, 6));
+  await changed(page, back, 'one stroke more');
+  assert.equal(await chip.count(), 0);
+}
+
 export const strokes = [
+  ['a stroke that was turned is turned back', turned],
   ['another reading of the whole', readings],
   ['strokes are edited', edit],
 ];

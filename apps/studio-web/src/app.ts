@@ -275,6 +275,7 @@ export class App implements Page {
     return new SceneList({
       run: (c) => this.session.run(c),
       select: (plant) => this.session.select(plant),
+      chose: (plants) => this.view?.setChosen(plants),
       add: (maker) => void this.panels.add(maker),
       split: (plant) => this.session.act({ split: { plant } }),
       gizmo: (mode) => {
@@ -363,7 +364,7 @@ export class App implements Page {
   private makeView(): PlantView {
     const { session } = this;
     return new PlantView(t('view.label'), {
-      pick: (plant) => session.select(plant),
+      pick: (plant, more) => (more ? this.list.chooseToo(plant) : this.list.choose([plant])),
       drawn: () => this.shaping?.drawn(),
       front: (on) => this.show.press('front', on),
       walked: (mode) => this.scenery.walked(mode),
@@ -373,6 +374,7 @@ export class App implements Page {
       placeBegin: () => session.begin('place'),
       place: (plant, position, yaw_deg, scale) =>
         session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] }),
+      carry: (plants, how) => session.stage({ scene: { carry: [plants, how] } }),
       placeEnd: () => session.commit(),
       obstacle: (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] }),
     });

@@ -310,6 +310,20 @@ const TABLE = [
     when: hasSelection,
     run: (p: Page) => turn(p, angle, across),
   })),
+  {
+    id: 'group',
+    label: 'scene.group.make',
+    keys: 'Ctrl+G',
+    when: (p) => p.list.chosen.length > 1,
+    run: (p) => p.list.group(),
+  },
+  {
+    id: 'ungroup',
+    label: 'scene.ungroup',
+    keys: 'Ctrl+Shift+G',
+    when: (p) => p.list.chosen.some((plant) => plant.group !== ''),
+    run: (p) => p.list.ungroup(),
+  },
   { id: 'clear', label: 'act.clear', run: (p) => p.session.draw('clear') },
   {
     id: 'split',
@@ -386,6 +400,7 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [['guide-figure'], '', 'guide.figure'],
   [['place-move', 'place-turn', 'place-size'], ' · ', 'key.place'],
   [['place-x', 'place-z'], ' · ', 'key.place.axis'],
+  [['group', 'ungroup'], ' · ', 'key.group'],
   [['wire', 'skeleton'], ' · ', 'key.modes'],
   [['stats'], '', 'view.stats'],
   [['shape'], '', 'key.shape'],

@@ -98,8 +98,9 @@ export class ExportPreview {
 
   private fill(): void {
     const { format, options } = optionsOf();
+    const far = options.impostor && format === 'glb';
     // The level that is shown is one of those that are written.
-    last.level = Math.min(last.level, options.levels - 1);
+    if (last.level < MOST_LEVELS || !far) last.level = Math.min(last.level, options.levels - 1);
     const several = this.isSeveral;
     this.several = several;
     const formats = FORMATS.map((f) => [f, `${nameOf(f)} · ${t(`export.${f}` as TextKey)}`] as const);
@@ -136,13 +137,13 @@ export class ExportPreview {
         'exported.level',
         'level',
         last.level,
-        MOST_LEVELS - 1,
+        far ? MOST_LEVELS : MOST_LEVELS - 1,
         1,
-        (x) => `LOD ${x}`,
+        (x) => (x < MOST_LEVELS ? `LOD ${x}` : t('exported.far')),
         true,
         (x) => {
           last.level = x;
-          options.levels = Math.max(options.levels, x + 1);
+          if (x < MOST_LEVELS) options.levels = Math.max(options.levels, x + 1);
           fine.show(format);
           this.ask();
         },

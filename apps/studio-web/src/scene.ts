@@ -1,5 +1,5 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
-import type { Command, DocumentState, MakerWord, PlantState, SceneView } from './wire';
+import type { Command, DocumentState, MakerWord, PlantCommand, PlantState, SceneView } from './wire';
 import { t, tell, type TextKey } from './text';
 import { askName, button, closePopover, el, icon, popover, relabel } from './ui';
 
@@ -17,6 +17,8 @@ export interface Wish {
 export interface SceneEvents {
   run(command: Command): void;
   select(plant: number): void;
+  /** These plants are chosen together. */
+  chose(plants: readonly number[]): void;
   add(maker: MakerWord): void;
   /** Puts the plants of a drawing in its place. */
   split(plant: number): void;
@@ -34,8 +36,6 @@ export interface SceneEvents {
 const MAKERS: readonly MakerWord[] = ['sketch', 'tree', 'leaf', 'flower'];
 /** A copy stands beside its plant, metres, if it is not known how wide that is. */
 const ASIDE = 0.5;
-/** So many plants of one name are a group. */
-const GROUP = 3;
 const GIZMO_KEYS: Record<Gizmo, string> = { translate: 'G', rotate: 'R', scale: 'S' };
 const PATTERNS: readonly Pattern[] = ['line', 'area', 'brush'];
 
@@ -52,6 +52,9 @@ export class SceneList {
   private spacing: { plant: number; metres: number } | undefined;
   private pattern: Pattern | undefined;
   private current: PlantState | undefined;
+  private plants: readonly PlantState[] = [];
+  /** What is chosen: the current plant, and others beside it. */
+  private selected = new Set<number>();
   private again: () => void = () => {};
 
   private readonly fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold' });
@@ -83,6 +86,63 @@ export class SceneList {
     this.again();
   }
 
+  /** The plants that are chosen, in the order of the list. */
+  get chosen(): PlantState[] {
+    return this.plants.filter((p) => this.selected.has(p.id));
+  }
+
+  /** Chooses plants, and no others; the first of them is the current one if it was not among them. */
+  choose(plants: readonly number[]): void {
+    this.selected = new Set(plants);
+    const first = plants[0];
+    if (first === undefined || plants.includes(this.current?.id ?? first)) this.again();
+    else this.events.select(first);
+  }
+
+  /** Chooses a plant beside the others, or no longer. */
+  chooseToo(plant: number): void {
+    const others = [...this.selected].filter((id) => id !== plant);
+    if (!this.selected.has(plant)) this.choose([...others, plant]);
+    else if (others.length > 0) this.choose(others);
+  }
+
+  /** Chooses all plants from the current one to this. */
+  private chooseTo(plant: number): void {
+    const row = (id: number | undefined): number => this.plants.findIndex((p) => p.id === id);
+    const [from, to] = [row(this.current?.id), row(plant)].sort((a, b) => a - b) as [number, number];
+    this.choose([...this.selected, ...this.plants.slice(Math.max(0, from), to + 1).map((p) => p.id)]);
+  }
+
+  /** Makes the chosen plants a group. */
+  group(): void {
+    if (this.chosen.length < 2) return;
+    const taken = new Set(this.plants.map((p) => p.group));
+    const names = Array.from({ length: taken.size + 1 }, (_, k) => t('scene.group.name', { number: k + 1 }));
+    this.into(this.chosen, names.find((name) => !taken.has(name))!);
+  }
+
+  /** Takes the chosen plants out of their groups. */
+  ungroup(): void {
+    this.into(this.chosen, '');
+  }
+
+  private into(plants: readonly PlantState[], group: string): void {
+    const others = plants.filter((p) => p.group !== group);
+    this.opened.add(group);
+    this.each('group', others, { group });
+  }
+
+  /** Asks several plants the same, as one step. */
+  private each(name: string, plants: readonly PlantState[], command: PlantCommand): void {
+    const commands = plants.map((p): Command => ({ plant: [p.id, command] }));
+    if (commands.length === 1) this.events.run(commands[0]!);
+    else if (commands.length > 1) this.events.together(name, commands);
+  }
+
+  private remove(plants: readonly PlantState[]): void {
+    this.events.run({ scene: { remove: plants.map((p) => p.id) } });
+  }
+
   private spacingOf(p: PlantState): number {
     if (this.spacing?.plant === p.id) return this.spacing.metres;
     const wide = this.events.width(p.id);
@@ -94,7 +154,12 @@ export class SceneList {
       ? document.activeElement?.getAttribute('data-key')
       : null;
     this.element.setAttribute('aria-label', t('scene.title'));
+    this.plants = state.plants;
     this.current = state.plants.find((p) => p.id === state.current);
+    this.selected = new Set(this.chosen.map((p) => p.id));
+    // What became the current one by other ways is chosen alone.
+    if (state.current !== null && !this.selected.has(state.current)) this.selected = new Set([state.current]);
+    this.events.chose([...this.selected]);
     this.again = () => this.show(state, view);
     const rows = this.rows(state, view);
     const folded = this.folds ?? state.plants.length === 1;
@@ -114,8 +179,9 @@ export class SceneList {
     const content: HTMLElement[] = [];
     if (!folded) {
       content.push(el('ul', { class: 'plants' }, ...rows));
-      const { current } = this;
-      if (current && (state.plants.length > 1 || current.maker !== 'sketch'))
+      const { current, chosen } = this;
+      if (chosen.length > 1) content.push(this.placingAll(chosen));
+      else if (current && (state.plants.length > 1 || current.maker !== 'sketch'))
         content.push(this.placing(current));
     }
     while (this.head.nextSibling) this.head.nextSibling.remove();
@@ -135,66 +201,75 @@ export class SceneList {
     return this.mode;
   }
 
-  /** A row a plant; plants of one name and maker are a group, which is folded. */
+  /** A row a plant; a group has one, below which its plants are listed where it is unfolded. */
   private rows(state: DocumentState, view: SceneView | undefined): HTMLElement[] {
     const groups = new Map<string, PlantState[]>();
     for (const p of state.plants) {
-      const key = `${p.maker} ${p.name}`;
+      // Plants of no group stand where they came in.
+      const key = p.group === '' ? String(p.id) : `g${p.group}`;
       groups.set(key, [...(groups.get(key) ?? []), p]);
     }
-    return [...groups].flatMap(([key, plants]) => {
-      if (plants.length < GROUP) return plants.map((p) => this.row(p, state, view));
-      const open = this.opened.has(key);
-      const shown = open ? plants : plants.filter((p) => p.id === state.current);
-      return [this.groupRow(key, plants, open), ...shown.map((p) => this.row(p, state, view))];
+    return [...groups.values()].flatMap((plants) => {
+      const { group } = plants[0]!;
+      if (group === '') return plants.map((p) => this.row(p, state, view));
+      const shown = this.opened.has(group) ? plants : plants.filter((p) => p.id === state.current);
+      return [this.groupRow(group, plants), ...shown.map((p) => this.row(p, state, view))];
     });
   }
 
-  private groupRow(key: string, plants: readonly PlantState[], open: boolean): HTMLElement {
-    const name = plants[0]!.name;
-    const fold = el(
+  private groupRow(name: string, plants: readonly PlantState[]): HTMLElement {
+    const open = this.opened.has(name);
+    const ids = plants.map((p) => p.id);
+    const turn = (): void => {
+      this.opened[open ? 'delete' : 'add'](name);
+      this.again();
+    };
+    const twist = button(open ? 'folds' : 'unfolds', t(open ? 'scene.fold' : 'scene.unfold', { name }), turn);
+    twist.setAttribute('data-key', `gt${name}`);
+    twist.setAttribute('aria-expanded', String(open));
+    const row = el(
       'button',
       {
         type: 'button',
         class: 'plant group',
-        'data-key': `f${key}`,
-        'aria-expanded': String(open),
-        onclick: () => {
-          if (open) this.opened.delete(key);
-          else this.opened.add(key);
-          this.again();
+        'data-key': `f${name}`,
+        'aria-pressed': String(ids.every((id) => this.selected.has(id))),
+        onclick: (e) => {
+          const { ctrlKey, metaKey, shiftKey } = e as MouseEvent;
+          this.choose(ctrlKey || metaKey || shiftKey ? [...this.selected, ...ids] : ids);
         },
-        onkeydown: (e) => this.key(e as KeyboardEvent),
+        ondblclick: () => this.renameGroup(plants),
+        onkeydown: (e) => this.key(e as KeyboardEvent, plants),
       },
-      icon(plants[0]!.maker),
       el('span', {}, t('scene.group', { name, count: plants.length })),
     );
     const hidden = plants.every((p) => p.hidden);
-    const eye = button(hidden ? 'hidden' : 'eye', t(hidden ? 'scene.show' : 'scene.hide', { name }), () =>
-      this.events.together(
+    const eye = button(hidden ? 'hidden' : 'eye', t(hidden ? 'scene.show' : 'scene.hide', { name }), () => {
+      this.each(
         'hide',
-        plants.filter((p) => p.hidden === hidden).map((p) => ({ plant: [p.id, { hide: !hidden }] })),
-      ),
-    );
-    eye.setAttribute('data-key', `ge${key}`);
+        plants.filter((p) => p.hidden === hidden),
+        { hide: !hidden },
+      );
+    });
+    eye.setAttribute('data-key', `ge${name}`);
+    const fixed = plants.every((p) => p.fixed);
     const more = button('more', t('scene.more', { name }), () => {
       popover(
         more,
         el(
           'div',
           { class: 'menu' },
-          item('scene.rename', () => this.rename(plants)),
-          item(
-            'scene.delete',
-            () => this.events.run({ scene: { remove: plants.map((p) => p.id) } }),
-            'danger',
-          ),
+          item('scene.rename', () => this.renameGroup(plants)),
+          item('scene.duplicate', () => this.duplicate(plants)),
+          item(fixed ? 'scene.free' : 'scene.fix', () => this.fix(plants, !fixed)),
+          item('scene.ungroup', () => this.into(plants, '')),
+          item('scene.delete', () => this.remove(plants), 'danger'),
         ),
         name,
       );
     });
-    more.setAttribute('data-key', `gm${key}`);
-    return el('li', { class: hidden ? 'is-hidden' : '' }, fold, eye, more);
+    more.setAttribute('data-key', `gm${name}`);
+    return el('li', { class: hidden ? 'is-hidden' : '' }, twist, row, eye, more);
   }
 
   private row(p: PlantState, state: DocumentState, view: SceneView | undefined): HTMLElement {
@@ -207,10 +282,16 @@ export class SceneList {
         'data-key': `p${p.id}`,
         'data-plant': p.maker,
         title: error ? tell(error) : t(`maker.${p.maker}` as TextKey),
-        'aria-pressed': String(p.id === state.current),
-        onclick: () => this.events.select(p.id),
-        ondblclick: () => this.rename([p]),
-        onkeydown: (e) => this.key(e as KeyboardEvent, p),
+        'aria-pressed': String(this.selected.has(p.id)),
+        'aria-current': String(p.id === state.current),
+        onclick: (e) => {
+          const { ctrlKey, metaKey, shiftKey } = e as MouseEvent;
+          if (shiftKey) this.chooseTo(p.id);
+          else if (ctrlKey || metaKey) this.chooseToo(p.id);
+          else this.choose([p.id]);
+        },
+        ondblclick: () => this.rename(p),
+        onkeydown: (e) => this.key(e as KeyboardEvent, [p]),
       },
       icon(error ? 'warning' : p.maker),
       el('span', {}, p.name),
@@ -224,20 +305,25 @@ export class SceneList {
     const more = button('more', t('scene.more', { name: p.name }), () => this.openMore(more, p));
     more.id = `b-more-${p.id}`;
     more.setAttribute('data-key', `m${p.id}`);
-    return el('li', { class: p.hidden ? 'is-hidden' : '' }, name, eye, more);
+    const states = [...(p.hidden ? ['is-hidden'] : []), ...(p.group === '' ? [] : ['in-group'])];
+    return el('li', { class: states.join(' ') }, name, eye, more);
   }
 
-  /** Arrows go from row to row; `p`: the plant of a row that is no group. */
-  private key(e: KeyboardEvent, p?: PlantState): void {
+  /** Arrows go from row to row; `of`: the plants of the row. */
+  private key(e: KeyboardEvent, of: readonly PlantState[]): void {
     const by = { ArrowDown: 1, ArrowUp: -1 }[e.key];
     const rows = [...this.element.querySelectorAll<HTMLElement>('.plant')];
     const to = by && rows[rows.indexOf(e.currentTarget as HTMLElement) + by];
+    const group = (e.currentTarget as HTMLElement).matches('.group');
     const act = to
-      ? () => to.focus()
-      : p && e.key === 'F2'
-        ? () => this.rename([p])
-        : p && e.key === 'Delete'
-          ? () => this.events.run({ scene: { remove: [p.id] } })
+      ? () => {
+          to.focus();
+          if (e.shiftKey) to.dispatchEvent(new MouseEvent('click', { ctrlKey: true, bubbles: true }));
+        }
+      : e.key === 'F2'
+        ? () => (group ? this.renameGroup(of) : this.rename(of[0]!))
+        : e.key === 'Delete'
+          ? () => this.remove(this.meant(of))
           : undefined;
     if (!act) return;
     e.preventDefault();
@@ -245,19 +331,43 @@ export class SceneList {
     act();
   }
 
-  /** Beside it, so that their crowns touch. */
-  private duplicate(p: PlantState): void {
-    const aside = this.events.width(p.id) || ASIDE;
-    this.events.run({ scene: { duplicate: [p.id, [Math.round(aside * 100) / 100, 0, 0]] } });
+  /** Those of a row, or all that are chosen if they are among them. */
+  private meant(of: readonly PlantState[]): readonly PlantState[] {
+    return of.every((p) => this.selected.has(p.id)) ? this.chosen : of;
   }
 
-  /** The plants of a group have one name. */
-  private rename(plants: readonly PlantState[]): void {
-    askName(t('scene.rename'), t('scene.name'), plants[0]!.name, (name) => {
-      const commands = plants.map((p): Command => ({ plant: [p.id, { rename: name }] }));
-      if (commands.length === 1) this.events.run(commands[0]!);
-      else this.events.together('rename', commands);
+  /** Beside them, so that crowns touch. */
+  private duplicate(plants: readonly PlantState[]): void {
+    const [one] = plants;
+    const places = plants.map((p) => p.position[0]);
+    const wide = Math.max(...plants.map((p) => this.events.width(p.id))) || ASIDE;
+    const aside = Math.round((Math.max(...places) - Math.min(...places) + wide) * 100) / 100;
+    const ids = plants.map((p) => p.id);
+    this.events.run({
+      scene:
+        plants.length === 1 && one
+          ? { duplicate: [one.id, [aside, 0, 0]] }
+          : { 'duplicate-all': [ids, [aside, 0, 0]] },
     });
+  }
+
+  private rename(p: PlantState): void {
+    askName(t('scene.rename'), t('scene.name'), p.name, (name) =>
+      this.events.run({ plant: [p.id, { rename: name }] }),
+    );
+  }
+
+  private renameGroup(plants: readonly PlantState[]): void {
+    askName(t('scene.rename'), t('scene.group.title'), plants[0]!.group, (name) => this.into(plants, name));
+  }
+
+  private fix(plants: readonly PlantState[], fixed: boolean): void {
+    if (fixed) this.take(undefined);
+    this.each(
+      'fix',
+      plants.filter((p) => p.fixed !== fixed),
+      { fix: fixed },
+    );
   }
 
   openAdd(anchor: HTMLElement): void {
@@ -288,31 +398,68 @@ export class SceneList {
   }
 
   private openMore(anchor: HTMLElement, p: PlantState): void {
+    const chosen = this.selected.has(p.id);
+    const alone = chosen && this.selected.size === 1;
+    const meant = this.meant([p]);
     popover(
       anchor,
       el(
         'div',
         { class: 'menu' },
-        item('scene.rename', () => this.rename([p])),
-        item('scene.duplicate', () => this.duplicate(p)),
+        item('scene.rename', () => this.rename(p)),
+        item('scene.duplicate', () => this.duplicate(meant)),
+        // For fingers, which hold no key meanwhile.
+        ...(alone ? [] : [item(chosen ? 'scene.unchoose' : 'scene.choose', () => this.chooseToo(p.id))]),
+        ...(meant.length > 1 ? [item('scene.group.make', () => this.group())] : []),
+        ...(p.group === '' ? [] : [item('scene.group.leave', () => this.into(meant, ''))]),
         ...(p.maker === 'sketch' ? [item('scene.split', () => this.events.split(p.id))] : []),
-        item('scene.delete', () => this.events.run({ scene: { remove: [p.id] } }), 'danger'),
+        item('scene.delete', () => this.remove(meant), 'danger'),
       ),
       p.name,
     );
   }
 
+  private gizmoButton(name: Gizmo, off: boolean): HTMLElement {
+    const act = (): void => this.take(this.mode === name ? undefined : name);
+    const b = button(name, t(`place.${name}` as TextKey), act, GIZMO_KEYS[name]);
+    b.setAttribute('data-gizmo', name);
+    b.setAttribute('data-key', `g${name}`);
+    b.setAttribute('aria-pressed', String(this.mode === name));
+    b.disabled = off;
+    return b;
+  }
+
+  /** What moves them, which of them it moves, and whether it may. */
+  private gizmos(plants: readonly PlantState[]): HTMLElement {
+    const off = plants.some((p) => p.fixed);
+    const modes = (['translate', 'rotate', 'scale'] as const).map((name) => this.gizmoButton(name, off));
+    return el('div', { class: 'chips' }, ...modes, this.snapChip(), this.fixButton(plants));
+  }
+
+  /** Gizmos for several plants, and what can be done with all of them. */
+  private placingAll(plants: readonly PlantState[]): HTMLElement {
+    const act = (key: TextKey, run: () => void, keys?: string): HTMLElement =>
+      el('button', { type: 'button', class: 'chip', 'data-key': key, onclick: run, title: keys ?? '' }, t(key));
+    const grouped = plants.some((p) => p.group !== '');
+    const one = grouped && plants.every((p) => p.group === plants[0]!.group);
+    return el(
+      'div',
+      { class: 'placing' },
+      el('span', { class: 'muted' }, t('scene.chosen', { count: plants.length })),
+      this.gizmos(plants),
+      el(
+        'div',
+        { class: 'chips' },
+        ...(one ? [] : [act('scene.group.make', () => this.group(), 'Ctrl+G')]),
+        ...(grouped ? [act('scene.ungroup', () => this.ungroup(), 'Ctrl+Shift+G')] : []),
+        act('scene.duplicate', () => this.duplicate(plants)),
+        act('scene.delete', () => this.remove(plants)),
+      ),
+    );
+  }
+
   /** Gizmos, and the same as numbers. */
   private placing(p: PlantState): HTMLElement {
-    const mode = (name: Gizmo): HTMLElement => {
-      const act = (): void => this.take(this.mode === name ? undefined : name);
-      const b = button(name, t(`place.${name}` as TextKey), act, GIZMO_KEYS[name]);
-      b.setAttribute('data-gizmo', name);
-      b.setAttribute('data-key', `g${name}`);
-      b.setAttribute('aria-pressed', String(this.mode === name));
-      b.disabled = p.fixed;
-      return b;
-    };
     const place = (change: Partial<Pick<PlantState, 'position' | 'yaw_deg' | 'scale'>>): void => {
       const { position, yaw_deg, scale } = { ...p, ...change };
       this.events.run({ plant: [p.id, { place: { position, yaw_deg, scale } }] });
@@ -341,15 +488,7 @@ export class SceneList {
     return el(
       'div',
       { class: 'placing' },
-      el(
-        'div',
-        { class: 'chips' },
-        mode('translate'),
-        mode('rotate'),
-        mode('scale'),
-        this.snapChip(),
-        this.fixButton(p),
-      ),
+      this.gizmos([p]),
       el(
         'div',
         { class: 'numbers' },
@@ -373,16 +512,14 @@ export class SceneList {
     );
   }
 
-  /** Its place is kept, whatever is dragged. */
-  private fixButton(p: PlantState): HTMLElement {
-    const text = t(p.fixed ? 'place.free' : 'place.fix');
-    const b = button(p.fixed ? 'lock' : 'unlock', text, () => {
-      if (!p.fixed) this.take(undefined);
-      this.events.run({ plant: [p.id, { fix: !p.fixed }] });
-    });
+  /** Their places are kept, whatever is dragged. */
+  private fixButton(plants: readonly PlantState[]): HTMLElement {
+    const fixed = plants.some((p) => p.fixed);
+    const text = t(fixed ? 'place.free' : 'place.fix');
+    const b = button(fixed ? 'lock' : 'unlock', text, () => this.fix(plants, !fixed));
     b.id = 'b-fix';
     b.setAttribute('data-key', 'fix');
-    b.setAttribute('aria-pressed', String(p.fixed));
+    b.setAttribute('aria-pressed', String(fixed));
     return b;
   }
 

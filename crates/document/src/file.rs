@@ -21,7 +21,7 @@ use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, Sket
 use crate::names::shortened;
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault};
 use crate::versions::{
-    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV6, EditV4, FlowerV5, LeafV3,
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV7, EditV4, FlowerV5, LeafV3,
     MakerV5, ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::{
@@ -30,9 +30,9 @@ use crate::{
 };
 
 /// The version that is written, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/6";
+pub const PROJECT_SCHEMA: &str = "project/7";
 /// Earlier versions that are read.
-const EARLIER: [&str; 5] = ["project/1", "project/2", "project/3", "project/4", "project/5"];
+const EARLIER: [&str; 6] = ["project/1", "project/2", "project/3", "project/4", "project/5", "project/6"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -134,7 +134,7 @@ pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, Proj
     let row =
         |id: PlantId| document.plants().iter().position(|p| p.id() == id).and_then(|r| u32::try_from(r).ok());
     let plants = document.plants().iter().map(|p| plant_to_file(p, &row)).collect();
-    let file = DocumentV6 { name: document.name().into(), plants };
+    let file = DocumentV7 { name: document.name().into(), plants };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
     let mut files = vec![
@@ -201,6 +201,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         locked: s.locked,
         fixed: s.fixed,
         hidden: s.hidden,
+        group: s.group.clone(),
         position: position.to_array(),
         yaw_deg,
         scale,
@@ -237,7 +238,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     let second = |v1: DocumentV1| DocumentV2::from(v1);
     let third = |v2: DocumentV2| DocumentV3::from(v2);
     let fifth = |v4: DocumentV4| DocumentV5::try_from(v4).map_err(ProjectError::Setting);
-    let file = match version {
+    let mut file = match version {
         "project/1" => fifth(third(second(from_json(&document).map_err(json)?)).into())?,
         "project/2" => fifth(third(from_json(&document).map_err(json)?).into())?,
         "project/3" => fifth(from_json::<DocumentV3>(&document).map_err(json)?.into())?,
@@ -245,6 +246,9 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
         _ => from_json(&document).map_err(json)?,
     };
     drop(document);
+    if version != PROJECT_SCHEMA {
+        group_alike(&mut file);
+    }
     let earlier = matches!(version, "project/1" | "project/2");
     let entry = |name: String| {
         let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
@@ -273,13 +277,27 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     checked(file, photo, &mut pictures)
 }
 
+/// Before plants had groups, so many or more of one name and maker were shown as one.
+const ALIKE: usize = 3;
+
+/// Puts plants of files without groups into those in which they were shown.
+fn group_alike(file: &mut DocumentV7) {
+    let key = |p: &PlantV4<MakerV5>| (p.name.clone(), core::mem::discriminant(&p.maker));
+    let keys: Vec<_> = file.plants.iter().map(key).collect();
+    for (plant, own) in file.plants.iter_mut().zip(&keys) {
+        if keys.iter().filter(|k| *k == own).count() >= ALIKE {
+            plant.group = shortened(plant.name.trim());
+        }
+    }
+}
+
 /// As text, because commands are read from text: reading from bytes would be all the same code once more.
 fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::Error> {
     serde_json::from_str(core::str::from_utf8(bytes).map_err(serde_json::Error::custom)?)
 }
 
 fn checked(
-    file: DocumentV6,
+    file: DocumentV7,
     photo: impl Fn(usize) -> Result<Photo, ProjectError>,
     pictures_of: &mut dyn FnMut(Vec<String>) -> Result<WornPictures, ProjectError>,
 ) -> Result<Document, ProjectError> {
@@ -304,6 +322,7 @@ fn checked(
             locked,
             fixed,
             hidden,
+            group,
             position,
             yaw_deg,
             scale,
@@ -330,6 +349,7 @@ fn checked(
             locked,
             fixed,
             hidden,
+            group: shortened(&group),
             placement: Placement { position: DVec3::from_array(position), yaw_deg, scale },
             wear: Wear { strokes: Vec::new(), ..wear },
             pictures: pictures_of(pictures)?,

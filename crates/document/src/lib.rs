@@ -32,7 +32,7 @@ mod versions;
 
 pub use archive::{ArchiveError, pack};
 pub use command::{
-    Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
+    Carry, Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
     ShapeCommand, SketchCommand, TreeCommand,
 };
 pub use editor::{Editor, Step};

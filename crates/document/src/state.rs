@@ -73,6 +73,8 @@ pub struct Settings {
     pub fixed: bool,
     /// Whether it is left out of the view and of exports of the scene. Default false.
     pub hidden: bool,
+    /// The group it belongs to, by name; empty for none. At most 200 characters.
+    pub group: String,
     /// Where it stands.
     pub placement: Placement,
     /// The materials of its organs by their kinds; `strokes` is empty, as strokes have theirs with them.
@@ -108,6 +110,7 @@ impl Default for Settings {
             locked: false,
             fixed: false,
             hidden: false,
+            group: String::new(),
             placement: Placement::default(),
             wear: Wear::default(),
             pictures: WornPictures::new(),
@@ -416,6 +419,24 @@ impl Document {
         fault.map_or(Ok(self), Err)
     }
 
+    /// A name that no group has: this one, or with the least number from 2 on behind it; nothing for nothing.
+    pub(crate) fn free_group(&self, name: &str) -> String {
+        if name.is_empty() {
+            return String::new();
+        }
+        let stem = match name.rsplit_once(' ') {
+            Some((stem, number)) if !stem.is_empty() && number.parse::<u32>().is_ok() => stem,
+            _ => name,
+        };
+        let taken = |name: &str| self.plants.iter().any(|p| p.settings.group == name);
+        let names = (2..).map(|k: u32| {
+            let behind = format!(" {k}");
+            let room = NAME_LENGTH - behind.len();
+            stem.chars().take(room).collect::<String>() + &behind
+        });
+        std::iter::once(name.to_owned()).chain(names).find(|n| !taken(n)).unwrap_or_default()
+    }
+
     pub(crate) fn plant_mut(&mut self, id: PlantId) -> Option<&mut DocumentPlant> {
         self.plants.iter_mut().find(|p| p.id == id)
     }
@@ -484,7 +505,7 @@ impl Document {
                 taken.then_some(DocumentFault::PlantNumber(p.id)),
                 strokes.then_some(DocumentFault::Strokes(p.id)),
                 leaf.then_some(DocumentFault::Leaf(p.id)),
-                too_long(&p.settings.name).then_some(DocumentFault::Name),
+                (too_long(&p.settings.name) || too_long(&p.settings.group)).then_some(DocumentFault::Name),
                 range_fault(&p.settings).map(DocumentFault::Setting),
             ]
             .into_iter()

@@ -16,6 +16,10 @@ use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
 use crate::state::is_width;
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
 
+/// Version 7: as version 6, with groups of plants, and branches that are turned while they are moved. A program that reads
+/// version 6 would refuse these by the names of their fields.
+pub(crate) type DocumentV7 = DocumentV6;
+
 /// Version 6: as version 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so the structs
 /// of version 5 have them too.
 pub(crate) type DocumentV6 = DocumentV5;
@@ -42,6 +46,9 @@ pub(crate) struct PlantV4<M> {
     pub(crate) fixed: bool,
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) hidden: bool,
+    /// From version 7 on.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(crate) group: String,
     /// Metres.
     #[serde(default)]
     pub(crate) position: [f64; 3],
@@ -82,6 +89,7 @@ impl TryFrom<DocumentV4> for DocumentV5 {
                 locked,
                 fixed,
                 hidden,
+                group,
                 position,
                 yaw_deg,
                 scale,
@@ -97,6 +105,7 @@ impl TryFrom<DocumentV4> for DocumentV5 {
                 locked,
                 fixed,
                 hidden,
+                group,
                 position,
                 yaw_deg,
                 scale,
@@ -114,13 +123,15 @@ impl From<DocumentV3> for DocumentV4 {
     fn from(v3: DocumentV3) -> Self {
         let plants = v3.plants.into_iter().map(|p| {
             let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = p;
-            let (fixed, edits, wear, pictures) = (false, Vec::new(), Wear::default(), Vec::new());
+            let (fixed, group) = (false, String::new());
+            let (edits, wear, pictures) = (Vec::new(), Wear::default(), Vec::new());
             PlantV4 {
                 name,
                 seed,
                 locked,
                 fixed,
                 hidden,
+                group,
                 position,
                 yaw_deg,
                 scale,

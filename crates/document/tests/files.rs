@@ -70,6 +70,22 @@ fn materials_and_layers_that_do_not_hold_together_are_refused() {
     }
 }
 
+/// Files without groups showed plants of one name and maker as one from three on.
+#[test]
+fn plants_of_one_name_are_a_group_in_files_that_have_none() {
+    let groups = |version: &str, names: &[&str], more: &str| -> Vec<String> {
+        let plant = |n: &&str| format!(r#"{{"name":"{n}","seed":1{more},"maker":{{"sketch":{{"strokes":[]}}}}}}"#);
+        let plants = names.iter().map(plant).collect::<Vec<_>>().join(",");
+        let manifest = format!(r#"{{"burgeon":"{version}"}}"#);
+        let read = read_project(&project(&manifest, &format!(r#"{{"name":"a","plants":[{plants}]}}"#))).unwrap();
+        read.plants().iter().map(|p| p.settings().group.clone()).collect()
+    };
+    assert_eq!(groups("project/6", &["a", "b", "a", "a"], ""), ["a", "", "a", "a"]);
+    assert_eq!(groups("project/6", &["a", "b", "a"], ""), ["", "", ""]);
+    assert_eq!(groups("project/7", &["a", "a", "a"], ""), ["", "", ""]);
+    assert_eq!(groups("project/7", &["a", "b"], r#","group":"bed""#), ["bed", "bed"]);
+}
+
 #[test]
 fn refusals_say_what_and_what_to_do() {
     assert!(is_project(&sample()));
@@ -79,7 +95,7 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/7"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/8"}"#, "{}"), "take a newer Burgeon"),
         (
             project(
                 V2,

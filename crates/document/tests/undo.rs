@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use base::Seed;
 use document::{
-    Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
+    Carry, Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
     NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand, Settings,
     ShapeCommand, SketchCommand, StrokeId, TreeCommand, WornPicture, read_project, write_project,
 };
@@ -174,6 +174,7 @@ fn plant_command() -> impl Strategy<Value = PlantCommand> {
         any::<u64>().prop_map(|n| PlantCommand::SetSeed(Seed::new(n))),
         any::<bool>().prop_map(PlantCommand::Lock),
         any::<bool>().prop_map(PlantCommand::Hide),
+        ".{0,300}".prop_map(PlantCommand::Group),
         (point(), -1e3..1e3f64, -1.0..3.0f64).prop_map(|(at, yaw_deg, scale)| {
             PlantCommand::Place(Placement { position: DVec3::new(at.x, 0.0, at.y), yaw_deg, scale })
         }),
@@ -256,6 +257,14 @@ fn scene_command() -> impl Strategy<Value = SceneCommand> {
         1 => ".{0,300}".prop_map(SceneCommand::Rename),
         3 => new_plant().prop_map(|p| SceneCommand::Add(Box::new(p))),
         1 => (plant(), point()).prop_map(|(id, by)| SceneCommand::Duplicate(id, by.extend(0.0))),
+        1 => (vec(plant(), 0..3), point())
+            .prop_map(|(ids, by)| SceneCommand::DuplicateAll(ids, by.extend(0.0))),
+        1 => (vec(plant(), 0..3), point(), -400.0..400.0f64, -1.0..3.0f64).prop_map(
+            |(ids, by, turn_deg, scale)| {
+                let carry = Carry { about: DVec3::X, by: by.extend(0.0), turn_deg, scale };
+                SceneCommand::Carry(ids, carry)
+            }
+        ),
         2 => vec(plant(), 0..3).prop_map(SceneCommand::Remove),
         1 => vec(vec(point(), 0..5), 0..4).prop_map(|lines| {
             SceneCommand::Open(Box::new(Document::from_drawing(&Drawing::from_polylines("other", &lines))))
@@ -383,6 +392,48 @@ proptest! {
         }
         prop_assert_eq!(back.validate().collect::<Vec<_>>(), vec![]);
     }
+}
+
+/// Plants that are carried together turn about one point; a locked one keeps all where they are.
+#[test]
+fn plants_are_carried_as_one_thing() {
+    let mut editor = Editor::default();
+    editor.run(SceneCommand::Duplicate(PlantId(0), DVec3::new(2.0, 0.0, 0.0))).unwrap();
+    let both = vec![PlantId(0), PlantId(1)];
+    let carry = Carry { about: DVec3::X, by: DVec3::new(0.0, 0.0, 5.0), turn_deg: 90.0, scale: 2.0 };
+    editor.run(SceneCommand::Carry(both.clone(), carry)).unwrap();
+    // A quarter turn counter-clockwise, seen from above, takes +x to -z.
+    let places = |e: &Editor| -> Vec<Placement> {
+        e.document().plants().iter().map(|p| p.settings().placement).collect()
+    };
+    let at = |z: f64| Placement { position: DVec3::new(1.0, 0.0, z), yaw_deg: 90.0, scale: 2.0 };
+    assert_eq!(places(&editor), [at(7.0), at(3.0)]);
+    let before = places(&editor);
+    let back = Carry { about: DVec3::new(1.0, 0.0, 5.0), by: -carry.by, turn_deg: -90.0, scale: 0.5 };
+    editor.run(SceneCommand::Carry(both.clone(), back)).unwrap();
+    assert_eq!(places(&editor)[1].position, DVec3::new(2.0, 0.0, 0.0));
+    editor.undo();
+    assert_eq!(places(&editor), before);
+    editor.run(PlantCommand::Fix(true).of(PlantId(1))).unwrap();
+    assert_eq!(editor.run(SceneCommand::Carry(both, back)), Err(CommandError::Fixed));
+    assert_eq!(places(&editor), before);
+}
+
+#[test]
+fn copies_of_a_group_are_a_group_of_their_own() {
+    let mut editor = Editor::default();
+    editor.run(SceneCommand::Duplicate(PlantId(0), DVec3::X)).unwrap();
+    for id in [0, 1] {
+        editor.run(PlantCommand::Group("bed 2".into()).of(PlantId(id))).unwrap();
+    }
+    editor.run(SceneCommand::DuplicateAll(vec![PlantId(0), PlantId(1)], DVec3::Z)).unwrap();
+    let groups = |e: &Editor| -> Vec<String> {
+        e.document().plants().iter().map(|p| p.settings().group.clone()).collect()
+    };
+    assert_eq!(groups(&editor), ["bed 2", "bed 2", "bed 3", "bed 3"]);
+    assert_eq!(editor.document().plants()[3].settings().placement.position, DVec3::new(1.0, 0.0, 1.0));
+    assert_eq!(editor.undo(), Some("duplicate-plant"));
+    assert_eq!(editor.document().plants().len(), 2, "one step");
 }
 
 fn strokes(editor: &Editor) -> &[document::DocumentStroke] {

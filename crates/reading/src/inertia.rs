@@ -8,7 +8,8 @@ use crate::{Kind, Reading, Scored};
 pub const AS_SHOWN: &str = "as-shown";
 
 /// Another kind than the one that was shown explains the drawing clearly with at least this share, and so many times as
-/// well.
+/// well; and as many times more as the one that was shown explained it better without the last stroke. So one stroke
+/// outweighs all before it only where it says more than they did, and two that say the same are believed.
 const SURE: f64 = 0.5;
 const BETTER: f64 = 2.0;
 /// Of one kind, the classifier's shares of the new classes are larger by this than those of the classes that were shown,
@@ -33,17 +34,26 @@ fn class_of(reading: &Reading, index: u32) -> Option<&crate::StrokeReading> {
     reading.strokes.get(at)
 }
 
-/// Whether a reading speaks clearly against what was shown.
+/// Whether a reading speaks clearly against what was shown. `before`: how well each kind explains the drawing without its
+/// last stroke.
 pub(crate) fn is_clear(
     ink: &Ink,
     classes: &[Classified],
     (free, kind): (&Reading, Kind),
     shown: Kind,
     scores: &[Scored],
+    before: impl FnOnce() -> Vec<Scored>,
 ) -> bool {
-    let score = |kind: Kind| scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum::<f64>();
+    let score = |scores: &[Scored], kind: Kind| -> f64 {
+        scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
+    };
     if !kind.is_like(shown) {
-        return score(kind) > SURE && score(kind) > BETTER * score(shown);
+        let (new, old) = (score(scores, kind), score(scores, shown));
+        if new <= SURE || new <= BETTER * old || ink.strokes.len() == 1 {
+            return new > SURE && new > BETTER * old;
+        }
+        let before = before();
+        return new * score(&before, kind) > BETTER * old * score(&before, shown);
     }
     let (mut sum, mut length) = (0.0, 0.0);
     for (stroke, said) in ink.strokes.iter().zip(classes) {

@@ -248,7 +248,12 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let mut again = Report::default();
         let mut tried = attempt(asked, taken, ink, &shown, &mut again);
         let was = Kind::of(&tried);
-        if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores) {
+        let before = || {
+            let rows = (0..ink.strokes.len().saturating_sub(1)).collect();
+            let part = several::part(ink, classes, rows);
+            First::of(asked, &part.ink, &part.classes).shares.kinds
+        };
+        if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores, before) {
             inertia::tell(&mut tried, ink, classes);
             (reading, said, kind) = (tried, again, was);
         }

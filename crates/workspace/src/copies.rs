@@ -19,6 +19,9 @@ impl Workspace {
         let plant = document.plant(wanted.plant).ok_or(WorkspaceError::PlantGone)?;
         let Placement { position, scale, .. } = plant.settings().placement;
         let seed = plant.settings().seed;
+        let own = plant.settings();
+        // Copies are one with the plant they are of.
+        let group = if own.group.is_empty() { own.name.clone() } else { own.group.clone() };
         let taken: Vec<DVec2> = document
             .plants()
             .iter()
@@ -35,6 +38,13 @@ impl Workspace {
             return Err(WorkspaceError::NowhereToStand);
         }
         self.editor.begin_gesture("scatter")?;
+        match self.editor.run(PlantCommand::Group(group).of(wanted.plant)) {
+            Ok(()) | Err(CommandError::Nothing(_)) => {}
+            Err(e) => {
+                self.editor.cancel_gesture();
+                return Err(e.into());
+            }
+        }
         for (k, at) in places.into_iter().enumerate() {
             let place = turned(at, position.y, scale, vary, &mut stream);
             let kind = stream.below(wanted.kinds.max(1) as usize) as u64;

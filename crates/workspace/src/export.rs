@@ -132,6 +132,11 @@ impl ExportRequest {
         self.sway && self.format == ExportFormat::Glb
     }
 
+    /// Whether the level after the others is views from all sides.
+    pub(crate) fn ends_far(&self) -> bool {
+        self.impostor && self.format == ExportFormat::Glb
+    }
+
     /// Whether each level is written as one model of the whole scene.
     fn joined(&self) -> bool {
         let several = self.levels > 1 || self.impostor;
@@ -234,8 +239,7 @@ fn joined(
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     if wanted.impostor
         && let Some(finest) = models.first()
-        && let Some(far) = burgeon::render::impostor(finest, IMPOSTOR, run)
-            .map_err(|_cancelled| WorkspaceError::Cancelled)?
+        && let Some(far) = far(finest, run)?
     {
         models.push(far);
     }
@@ -258,6 +262,11 @@ fn joined(
         Ok((name, out))
     };
     models.iter().enumerate().map(file).collect()
+}
+
+/// Views of a model from all sides; none of nothing.
+pub(crate) fn far(model: &Model, run: &Run<'_>) -> Result<Option<Model>, WorkspaceError> {
+    burgeon::render::impostor(model, IMPOSTOR, run).map_err(|_cancelled| WorkspaceError::Cancelled)
 }
 
 /// Which plants are written: all that are not hidden, or one.

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use burgeon::Run;
+use burgeon::{Run, scene_model};
 use burgeon::document::PlantId;
 use burgeon::formats::ModelFormat;
 use burgeon::mesh::{Material, Model, Texture, TriMesh};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::export::{Level, MOST_LEVELS, chosen, made, packed, scene_files, written};
+use crate::export::{Level, MOST_LEVELS, chosen, far, made, packed, scene_files, written};
 use crate::export_preview::ExportPreview;
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
@@ -31,7 +31,7 @@ pub struct ExportView {
     pub parts: Vec<PartFigures>,
     /// Its meshes; copies share theirs. See [`Workspace::exported_column`].
     pub models: Vec<PlantView>,
-    /// Which of them each plant is.
+    /// Which of them each plant is; none where the one model is all that there is, as it stands.
     pub plants: Vec<ExportedPlant>,
 }
 
@@ -60,7 +60,8 @@ pub struct ExportedPlant {
 }
 
 impl Workspace {
-    /// What [`Workspace::export`] would write of one level (0 to 3), to be seen and counted. `wanted.levels` is not read.
+    /// What [`Workspace::export`] would write of one level (0 to 3, 4 for the views from all sides where `wanted` has them), to
+    /// be seen and counted. `wanted.levels` is not read.
     /// Its meshes stay until the next preview or [`Workspace::end_preview`].
     ///
     /// # Cost
@@ -77,6 +78,7 @@ impl Workspace {
         let (format, spec) = (wanted.format.model()?, wanted.spec());
         let mut preview = std::mem::take(&mut self.export_preview).unwrap_or_default();
         preview.models.clear();
+        let from_afar = level >= MOST_LEVELS && wanted.ends_far();
         let level = level.min(MOST_LEVELS - 1);
         if let Some(model) = &self.guest {
             let files = written(model, format, "plant", &spec)?;
@@ -99,7 +101,15 @@ impl Workspace {
             &mut self.scene
         };
         let plants = made(scene, document, only, run)?;
-        let at = Level::of(scene, document, &plants, level, run)?;
+        let at = Level::of(scene, document, &plants, if from_afar { 0 } else { level }, run)?;
+        if from_afar {
+            let finest = scene_model(document.name(), &at.standing(&plants, only.is_some()));
+            let far = far(&finest, run)?.ok_or(WorkspaceError::NothingMade)?;
+            let bytes = packed(wanted.format, written(&far, format, "plant", &spec)?)?.len();
+            preview.models.push(far);
+            let rows: Vec<_> = only.map(|id| (id, 0)).into_iter().collect();
+            return self.counted(preview, (MOST_LEVELS, bytes), format, &rows);
+        }
         let standing = at.standing(&plants, only.is_some());
         let files = scene_files(document.name(), &standing, format, "plant", &spec, &mut preview.pngs)?;
         let bytes = packed(wanted.format, files)?.len();
@@ -180,7 +190,8 @@ fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> 
     let single = is_single(format);
     let mut all: Vec<PartFigures> = Vec::new();
     for (k, model) in models.iter().enumerate() {
-        let places = rows.iter().filter(|(_, row)| *row == k).count() as u64;
+        // Without a plant of its own it is all that there is.
+        let places = rows.iter().filter(|(_, row)| *row == k).count().max(usize::from(rows.is_empty())) as u64;
         for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
             let kind = model.materials.get(part.material.index()).map_or("other", |m| m.kind.word());
             let row = all.iter().position(|p| p.kind == kind).unwrap_or_else(|| {
@@ -295,6 +306,28 @@ mod tests {
         assert_eq!(s.preview_export(&all, 0, &Run::plain()).unwrap().plants.len(), 3);
         let one = s.preview_export(&ExportRequest::default(), 0, &Run::plain()).unwrap();
         assert_eq!(one.plants.len(), 1);
+    }
+
+    #[test]
+    fn views_from_all_sides_are_seen_as_they_are_written() {
+        let mut s = Workspace::default();
+        let maker = NewMaker::Flower("lily".into());
+        s.act(&crate::Action::Add { name: "a lily".into(), maker }).unwrap();
+        let lily = s.current().unwrap();
+        s.run(SceneCommand::Duplicate(lily, DVec3::X)).unwrap();
+        for whole in [false, true] {
+            let wanted = ExportRequest { whole, impostor: true, ..ExportRequest::default() };
+            let view = s.preview_export(&wanted, MOST_LEVELS, &Run::plain()).unwrap();
+            let files = s.export(&wanted, &Run::plain()).unwrap();
+            let (_, file) = files.last().unwrap();
+            assert_eq!((told(&view), view.file_bytes), (held(file), file.len() as u64));
+            // A scene of several is one thing, which no plant stands for.
+            assert_eq!(view.plants.len(), usize::from(!whole));
+            assert_eq!(s.exported_indices(0, 0).len(), 12, "two upright pictures");
+        }
+        // Without them the finest levels end before.
+        let plain = s.preview_export(&ExportRequest::default(), MOST_LEVELS, &Run::plain()).unwrap();
+        assert_eq!(plain.level, MOST_LEVELS - 1);
     }
 
     #[test]

@@ -67,6 +67,8 @@ pub struct PlantState<'a> {
     pub fixed: bool,
     /// It is left out of the view.
     pub hidden: bool,
+    /// The group it belongs to; empty for none.
+    pub group: &'a str,
     /// Metres.
     pub position: [f64; 3],
     /// Turn about +Y, degrees.
@@ -260,6 +262,7 @@ impl<'a> PlantState<'a> {
             seed: s.seed.number().to_string(),
             locked: s.locked,
             fixed: s.fixed,
+            group: &s.group,
             hidden: s.hidden,
             position: s.placement.position.to_array(),
             yaw_deg: s.placement.yaw_deg,

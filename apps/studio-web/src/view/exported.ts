@@ -15,7 +15,8 @@ const MOMENT_S = 0.7;
 const APART_S = 3.7;
 
 interface Standing {
-  readonly id: number;
+  /** Row of its meshes. */
+  readonly model: number;
   readonly group: THREE.Group;
   readonly wind: Gust;
   readonly height: number;
@@ -23,6 +24,8 @@ interface Standing {
 
 export class Exported implements StandIn {
   readonly groups = new Map<number, THREE.Group>();
+  /** All that there is, where it is one thing. */
+  readonly whole: THREE.Group | undefined;
   private readonly standing: Standing[] = [];
   private readonly shapes: THREE.BufferGeometry[][];
   private strength = 0;
@@ -35,19 +38,20 @@ export class Exported implements StandIn {
   ) {
     for (const texture of sent.textures) looks.addTexture(texture);
     this.shapes = sent.models.map((parts) => parts.map(shapeOf));
-    for (const { plant, model } of sent.view.plants) {
+    const stand = (model: number): THREE.Group => {
       const group = new THREE.Group();
       const { min, max } = sent.view.models[model]!;
-      this.standing.push({ id: plant, group, wind: gustOf(), height: max[1] - min[1] });
-      this.groups.set(plant, group);
-    }
+      this.standing.push({ model, group, wind: gustOf(), height: max[1] - min[1] });
+      return group;
+    };
+    for (const { plant, model } of sent.view.plants) this.groups.set(plant, stand(model));
+    this.whole = sent.view.plants.length === 0 ? stand(0) : undefined;
     this.relook();
   }
 
   relook(): void {
-    for (const { id, group, wind } of this.standing) {
+    for (const { model: row, group, wind } of this.standing) {
       this.clear(group);
-      const row = this.sent.view.plants.find((p) => p.plant === id)!.model;
       const { parts, materials } = this.sent.view.models[row]!;
       parts.forEach(({ name, material }, i) => {
         const geometry = this.shapes[row]![i]!;

@@ -54,6 +54,14 @@ export class Handles {
     controls.showY = mode !== 'translate';
   }
 
+  get isShown(): boolean {
+    return this.controls.object !== undefined;
+  }
+
+  setVisible(on: boolean): void {
+    this.controls.getHelper().visible = on && this.isShown;
+  }
+
   /** A handle is under the pointer. */
   get isUnderPointer(): boolean {
     return this.controls.object !== undefined && this.controls.axis !== null;

@@ -83,7 +83,7 @@ const CLICK = 5;
 export function listenForClicks(
   canvas: HTMLCanvasElement,
   free: () => boolean,
-  clicked: (x: number, y: number) => void,
+  clicked: (x: number, y: number, more: boolean) => void,
 ): void {
   let from: [number, number] | undefined;
   canvas.addEventListener('pointerdown', (e) => {
@@ -92,6 +92,6 @@ export function listenForClicks(
   canvas.addEventListener('pointerup', (e) => {
     const still = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) <= CLICK;
     from = undefined;
-    if (still) clicked(e.clientX, e.clientY);
+    if (still) clicked(e.clientX, e.clientY, e.shiftKey || e.ctrlKey || e.metaKey);
   });
 }

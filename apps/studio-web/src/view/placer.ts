@@ -1,11 +1,22 @@
 /** The hand that places a plant: handles that move, turn and size it, in steps or freely. */
 import * as THREE from 'three';
 import type { Gizmo } from '../scene';
+import type { Carry } from '../wire';
 import type { GizmoEvents, Handles } from './gizmo';
 
 /** What a gizmo snaps to: metres, degrees, sizes. */
 const SNAP = { m: 0.25, deg: 15, size: 0.1 } as const;
 const SIZES = { least: 0.001, most: 1000 } as const;
+
+const UP = new THREE.Vector3(0, 1, 0);
+
+/** A plant that goes where others go, and how it stood. */
+interface Hanging {
+  place: THREE.Object3D;
+  position: THREE.Vector3;
+  turn: number;
+  scale: number;
+}
 
 interface Placed {
   position: [number, number, number];
@@ -49,6 +60,10 @@ export class Placer {
   /** Gizmos go by steps; while Shift is held, the other way. */
   snaps = false;
   private shifted = false;
+  /** Several plants hang on it and go where it goes. */
+  private readonly pivot = new THREE.Object3D();
+  private readonly from = new THREE.Vector3();
+  private hanging: Hanging[] = [];
 
   constructor(
     private readonly camera: THREE.Camera,
@@ -70,9 +85,48 @@ export class Placer {
     this.handles ??= new Handles(this.camera, this.canvas, this.scene, this.events);
   }
 
-  /** Puts the handles to a plant; none takes them away. */
-  show(place: THREE.Object3D | undefined): void {
-    this.handles?.show(place, this.gizmo);
+  /** Puts the handles to plants, amid them if they are several; none takes the handles away. */
+  show(places: readonly THREE.Object3D[]): void {
+    this.pivot.removeFromParent();
+    this.hanging = [];
+    if (places.length > 1) {
+      this.hanging = places.map((place) => ({
+        place,
+        position: place.position.clone(),
+        turn: place.rotation.y,
+        scale: place.scale.x,
+      }));
+      this.from.set(0, 0, 0);
+      for (const { position } of this.hanging) this.from.addScaledVector(position, 1 / places.length);
+      this.pivot.position.copy(this.from);
+      this.pivot.rotation.set(0, 0, 0);
+      this.pivot.scale.setScalar(1);
+      places[0]!.parent?.add(this.pivot);
+    }
+    this.handles?.show(places.length > 1 ? this.pivot : places[0], this.gizmo);
+  }
+
+  /** Takes the plants along that hang together, and says how they were carried. */
+  carried(): Carry {
+    const { position, yaw, scale } = placed(this.pivot, this.gizmo, 1, this.snaps !== this.shifted);
+    const turn = THREE.MathUtils.degToRad(yaw);
+    for (const { place, ...was } of this.hanging) {
+      place.position.copy(was.position).sub(this.from).multiplyScalar(scale).applyAxisAngle(UP, turn);
+      place.position.add(this.pivot.position);
+      place.rotation.set(0, was.turn + turn, 0);
+      place.scale.setScalar(was.scale * scale);
+    }
+    const about = this.from.toArray();
+    const by = position.map((x, k) => x - about[k]!) as [number, number, number];
+    return { about, by, turn_deg: yaw, scale };
+  }
+
+  get isShown(): boolean {
+    return this.handles?.isShown ?? false;
+  }
+
+  setVisible(on: boolean): void {
+    this.handles?.setVisible(on);
   }
 
   /** They go along one axis only, or along all of them again. */

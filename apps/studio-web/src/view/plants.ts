@@ -8,6 +8,8 @@ import { SharedShapes } from './shapes';
 /** Meshes in the place of the plants, by the plants' names. */
 export interface StandIn {
   readonly groups: ReadonlyMap<number, THREE.Group>;
+  /** All plants as one thing, in the coordinates of the scene. */
+  readonly whole: THREE.Group | undefined;
   /** It is drawn again and again. */
   readonly moves: boolean;
   tick(seconds: number): void;
@@ -22,8 +24,6 @@ export interface Shown {
   front: boolean;
   /** The chosen plant as lines. */
   boned: boolean;
-  /** A hand moves the chosen plant. */
-  dragging: boolean;
 }
 
 export class Plants {
@@ -34,6 +34,8 @@ export class Plants {
   standIn: StandIn | undefined;
   private states: PlantState[] = [];
   current: number | null = null;
+  /** Those that a hand moves, while it does. */
+  held: ReadonlySet<number> = new Set();
 
   /** `holder`: holds what is shown of them. */
   constructor(
@@ -56,6 +58,14 @@ export class Plants {
 
   stateOf(plant: number): PlantState | undefined {
     return this.states.find((s) => s.id === plant);
+  }
+
+  /** How wide it is seen from above, metres; 0 before it is made. */
+  widthOf(plant: number): number {
+    const seen = this.named.get(plant)?.view;
+    if (!seen || seen.parts.length === 0) return 0;
+    const wide = Math.max(seen.max[0] - seen.min[0], seen.max[2] - seen.min[2]);
+    return wide * (this.stateOf(plant)?.scale ?? 1);
   }
 
   setStates(states: PlantState[], current: number | null): void {
@@ -125,6 +135,7 @@ export class Plants {
   setStandIn(make: ((looks: Looks) => StandIn) | undefined): void {
     this.standIn?.dispose();
     this.standIn = make?.(this.looks);
+    if (this.standIn?.whole) this.holder.add(this.standIn.whole);
     if (this.guest) {
       const other = this.standIn?.groups.get(this.guest.view?.id ?? -1);
       if (other) this.guest.place.add(other);
@@ -133,7 +144,7 @@ export class Plants {
   }
 
   /** Puts them where they stand. */
-  stand({ front, boned, dragging }: Shown): void {
+  stand({ front, boned }: Shown): void {
     const alone = front || this.guest !== undefined;
     for (const [id, plant] of this.named) {
       const state = this.stateOf(id);
@@ -144,8 +155,8 @@ export class Plants {
         plant.place.add(other);
         other.visible = !(boned && mine);
       }
-      plant.group.visible = !(boned && mine) && !other;
-      if (!state || (dragging && mine)) continue;
+      plant.group.visible = !(boned && mine) && !other && !this.standIn?.whole;
+      if (!state || this.held.has(id)) continue;
       // The front view is the drawing, wherever the plant stands.
       const [x, y, z] = front ? [0, 0, 0] : state.position;
       plant.place.position.set(x, y, z);

@@ -4,6 +4,7 @@ import type { Sent } from '../protocol';
 import type { MirrorPlane } from './mirror';
 import type {
   CarriedPose,
+  Carry,
   Mirror,
   PlantState,
   PlantView as Seen,
@@ -30,6 +31,7 @@ import { Looks, type PlantMeshes } from './plant';
 import { Plants, type StandIn } from './plants';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
+import { Rings } from './rings';
 import { cameraFor, type ShotSize, shoot } from './shot';
 import { snapshotOf } from './snapshot';
 import { Stage } from './stage';
@@ -41,8 +43,8 @@ const SHADOW = { fast: 512, fine: 2048 } as const;
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
 /** What a person does in the view, and what it says of itself. */
 export interface ViewEvents {
-  /** A plant was clicked. */
-  pick(plant: number): void;
+  /** A plant was clicked; `more`: it is to be chosen beside the others. */
+  pick(plant: number, more: boolean): void;
   /** A picture was drawn: what lies over it may have to move. */
   drawn(): void;
   /** The front view is shown, or not any more. */
@@ -52,6 +54,8 @@ export interface ViewEvents {
   context(lost: boolean): void;
   placeBegin(): void;
   place(plant: number, position: [number, number, number], yaw: number, scale: number): void;
+  /** Several plants go as one. */
+  carry(plants: number[], how: Carry): void;
   placeEnd(): void;
   obstacle(plant: number, row: number, by: [number, number, number]): void;
 }
@@ -79,6 +83,8 @@ export class PlantView {
   private fine: boolean | undefined;
   private readonly placer: Placer;
   private dragging = false;
+  private selection: readonly number[] = [];
+  private readonly rings = new Rings();
   private boned = false;
   private readonly framing: Framing;
   private readonly slow: boolean;
@@ -174,12 +180,14 @@ export class PlantView {
     this.placer = new Placer(this.rig.far, canvas, this.stage.scene, {
       begin: () => {
         this.dragging = true;
+        this.plants.held = new Set(this.selection);
         this.rig.controls.enabled = false;
         events.placeBegin();
       },
       moved: () => this.moved(),
       end: () => {
         this.dragging = false;
+        this.plants.held = new Set();
         this.rig.controls.enabled = true;
         events.placeEnd();
       },
@@ -192,10 +200,10 @@ export class PlantView {
     listenForClicks(
       canvas,
       () => !this.framing.hands && !this.dragging,
-      (x, y) => {
+      (x, y, more) => {
         if (this.dragging || this.plants.guest) return;
         const plant = this.plantAt(x, y);
-        if (plant !== undefined && plant !== this.plants.current) events.pick(plant);
+        if (plant !== undefined && (more || plant !== this.plants.current)) events.pick(plant, more);
       },
     );
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
@@ -323,7 +331,7 @@ export class PlantView {
   }
 
   private stand(): void {
-    this.plants.stand({ front: this.isFront, boned: this.boned, dragging: this.dragging });
+    this.plants.stand({ front: this.isFront, boned: this.boned });
   }
 
   async setGizmo(mode: Gizmo | undefined): Promise<void> {
@@ -343,19 +351,33 @@ export class PlantView {
     this.redraw();
   }
 
+  /** Plants that are chosen together: the gizmo takes them all. */
+  setChosen(plants: readonly number[]): void {
+    if (String(plants) === String(this.selection)) return;
+    this.selection = plants;
+    this.showHandles();
+    this.redraw();
+  }
+
   private showHandles(): void {
     if (this.dragging) return;
-    const fixed = this.plants.state?.fixed ?? false;
-    const plant = this.isFront || this.plants.guest || fixed ? undefined : this.chosen;
-    this.placer.show(plant?.place.visible ? plant.place : undefined);
+    const fixed = this.selection.some((id) => this.plants.stateOf(id)?.fixed);
+    const places = this.selection.flatMap((id) => this.plants.named.get(id)?.place ?? []);
+    const away = this.isFront || this.plants.guest !== undefined || fixed;
+    this.placer.show(away ? [] : places.filter((place) => place.visible));
+    // One that is chosen alone has its panel open.
+    this.rings.show(
+      this.selection.length > 1 ? this.selection.flatMap((id) => this.plants.named.get(id) ?? []) : [],
+    );
   }
 
   private moved(): void {
-    const place = this.chosen?.place;
-    if (!place || this.plants.current === null) return;
-    const was = this.plants.state?.scale ?? 1;
-    const { position, yaw, scale } = this.placer.placed(place, was);
-    this.events.place(this.plants.current, position, yaw, scale);
+    const { current } = this.plants;
+    if (this.selection.length > 1) this.events.carry([...this.selection], this.placer.carried());
+    else if (this.chosen && current !== null) {
+      const { position, yaw, scale } = this.placer.placed(this.chosen.place, this.plants.state?.scale ?? 1);
+      this.events.place(current, position, yaw, scale);
+    }
     this.stage.touch();
     this.redraw();
   }
@@ -405,10 +427,7 @@ export class PlantView {
 
   /** The crown of a plant seen from above, metres: how wide it is where it is widest; 0 before it is made. */
   widthOf(plant: number): number {
-    const seen = this.plants.named.get(plant)?.view;
-    const scale = this.plants.stateOf(plant)?.scale ?? 1;
-    if (!seen || seen.parts.length === 0) return 0;
-    return Math.max(seen.max[0] - seen.min[0], seen.max[2] - seen.min[2]) * scale;
+    return this.plants.widthOf(plant);
   }
 
   /** A point of the screen as a ray in the coordinates of the chosen plant. */
@@ -669,16 +688,27 @@ export class PlantView {
     const { renderer, stage, effects, holder: plants } = this;
     const shadow = stage.shadowSize;
     const before = (): void => {
+      this.showAids(false);
       stage.sharpen(SHADOW.fine);
       if (size.transparent) stage.setBare(true);
       this.guides.face(camera);
     };
-    const after = (): void => stage.setBare(false);
+    const after = (): void => {
+      this.showAids(true);
+      stage.setBare(false);
+    };
     const steps = { before, after, watch };
     const pixels = await shoot({ renderer, stage, plants, pipeline, camera, effects }, size, steps);
     if (shadow !== SHADOW.fine) stage.sharpen(shadow);
     this.redraw();
     return pixels;
+  }
+
+  /** Handles, rings and panes are for who works, and in no picture that is kept. */
+  private showAids(on: boolean): void {
+    this.placer.setVisible(on);
+    this.rings.setVisible(on);
+    if (this.mirror) this.mirror.mesh.visible = on;
   }
 
   /** The front view shows the same part of the plane as the sheet. */
@@ -706,7 +736,11 @@ export class PlantView {
   /** The picture as it is shown now, or would be at rest. */
   async picture(): Promise<Blob> {
     this.frames.settle();
+    const aided = this.placer.isShown || this.selection.length > 1 || this.mirror !== undefined;
+    if (aided) this.showAids(false);
     this.render();
+    if (aided) this.showAids(true);
+    if (aided) this.redraw();
     const canvas = this.renderer.domElement;
     return new Promise((resolve, reject) => {
       canvas.toBlob((b) => (b ? resolve(b) : reject(new Error('no picture'))), 'image/png');

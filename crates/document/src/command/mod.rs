@@ -14,7 +14,7 @@ use crate::{Document, DocumentPlant, PlantId, SettingFault, StrokeId};
 
 pub use self::shape::ShapeCommand;
 pub use makers::{FlowerCommand, LeafCommand, TreeCommand};
-pub use scene::{NewPlant, PlantCommand, SceneCommand};
+pub use scene::{Carry, NewPlant, PlantCommand, SceneCommand};
 pub use sketch::{NewStroke, SketchCommand};
 
 /// What can be asked of a document: of the scene, of any plant, or of a plant of one maker.

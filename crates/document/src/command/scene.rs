@@ -1,6 +1,6 @@
 //! Commands of the scene, and those that every plant takes.
 
-use base::Seed;
+use base::{Seed, ops};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,11 @@ pub enum SceneCommand {
     Add(Box<NewPlant>),
     /// Adds a moved copy of a plant after the others, metres.
     Duplicate(PlantId, #[schemars(with = "[f64; 3]")] DVec3),
+    /// Adds moved copies of plants after the others, metres. They are a new group, named after that of the first plant; of
+    /// plants without one, none.
+    DuplicateAll(Vec<PlantId>, #[schemars(with = "[f64; 3]")] DVec3),
+    /// Moves, turns and sizes plants as one thing.
+    Carry(Vec<PlantId>, Carry),
     /// Deletes plants; a plant that bore the leaf of one bears its own again.
     Remove(Vec<PlantId>),
     /// Puts another document in the place of this one.
@@ -45,7 +50,8 @@ impl SceneCommand {
         match self {
             Self::Rename(_) => "rename-scene",
             Self::Add(_) => "add-plant",
-            Self::Duplicate(..) => "duplicate-plant",
+            Self::Duplicate(..) | Self::DuplicateAll(..) => "duplicate-plant",
+            Self::Carry(..) => "place",
             Self::Remove(_) => "remove-plant",
             Self::Open(_) => "open",
         }
@@ -61,14 +67,9 @@ impl SceneCommand {
                 Ok(vec![Event::Renamed { before, after }])
             }
             Self::Add(new) => add(*new, document).map(|e| vec![e]),
-            Self::Duplicate(id, by) => {
-                let DocumentPlant { settings, strokes, .. } = plant(id, document)?.clone();
-                let mut new = NewPlant { settings, strokes: Vec::new() };
-                new.settings.placement.position += by;
-                new.settings.fixed = false;
-                new.strokes = strokes.iter().map(NewStroke::of).collect();
-                add(new, document).map(|e| vec![e])
-            }
+            Self::Duplicate(id, by) => add(copy(id, by, document)?, document).map(|e| vec![e]),
+            Self::DuplicateAll(ids, by) => duplicate_all(&ids, by, document),
+            Self::Carry(ids, how) => carry(&ids, how, document),
             Self::Remove(ids) => remove(&ids, document),
             Self::Open(other) => Ok(vec![Event::Opened { before: Box::new(document.clone()), after: other }]),
         }
@@ -81,12 +82,90 @@ impl From<SceneCommand> for Command {
     }
 }
 
+/// How plants are carried: sized and turned about a point, then moved. Every plant keeps its place among the others.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Carry {
+    /// What stays where it is while they are sized and turned, metres.
+    #[schemars(with = "[f64; 3]")]
+    pub about: DVec3,
+    /// Metres.
+    #[schemars(with = "[f64; 3]")]
+    pub by: DVec3,
+    /// About +Y, degrees, counter-clockwise seen from above.
+    pub turn_deg: f64,
+    /// Times their size, above 0.
+    pub scale: f64,
+}
+
+impl Carry {
+    /// Where a plant stands that stood at `from`. To the millimetre, the tenth of a degree and the thousandth, as people
+    /// place plants.
+    fn place(&self, from: Placement) -> Placement {
+        let (sin, cos) = ops::sin_cos(self.turn_deg.to_radians());
+        let arm = (from.position - self.about) * self.scale;
+        let turned = DVec3::new(cos * arm.x + sin * arm.z, arm.y, cos * arm.z - sin * arm.x);
+        let to = |x: f64, parts: f64| (x * parts).round() / parts;
+        let position = self.about + turned + self.by;
+        Placement {
+            position: DVec3::new(to(position.x, 1e3), to(position.y, 1e3), to(position.z, 1e3)),
+            yaw_deg: to(from.yaw_deg + self.turn_deg, 10.0),
+            scale: to(from.scale * self.scale, 1e3),
+        }
+    }
+}
+
+fn carry(ids: &[PlantId], how: Carry, document: &Document) -> Result<Vec<Event>, CommandError> {
+    let mut events = Vec::new();
+    for (row, &id) in ids.iter().enumerate() {
+        let plant = plant(id, document)?;
+        if ids[..row].contains(&id) {
+            continue;
+        }
+        let to = how.place(plant.settings.placement);
+        match PlantCommand::Place(to).decide(plant) {
+            Ok(event) => events.push(event),
+            Err(CommandError::Nothing(_)) => {}
+            Err(e) => return Err(e),
+        }
+    }
+    if events.is_empty() { Err(CommandError::Nothing("they stand like that already")) } else { Ok(events) }
+}
+
+/// A plant as a moved copy, free to go.
+fn copy(id: PlantId, by: DVec3, document: &Document) -> Result<NewPlant, CommandError> {
+    let DocumentPlant { settings, strokes, .. } = plant(id, document)?.clone();
+    let mut new = NewPlant { settings, strokes: strokes.iter().map(NewStroke::of).collect() };
+    new.settings.placement.position += by;
+    new.settings.fixed = false;
+    Ok(new)
+}
+
+fn duplicate_all(ids: &[PlantId], by: DVec3, document: &Document) -> Result<Vec<Event>, CommandError> {
+    let Some(&first) = ids.first() else {
+        return Err(CommandError::Nothing("there is no plant to copy"));
+    };
+    let group = document.free_group(&plant(first, document)?.settings.group);
+    // Each copy is numbered after the one before.
+    let mut grown = document.clone();
+    let mut events = Vec::new();
+    for &id in ids {
+        let mut new = copy(id, by, document)?;
+        new.settings.group.clone_from(&group);
+        let event = add(new, &grown)?;
+        event.apply(&mut grown);
+        events.push(event);
+    }
+    Ok(events)
+}
+
 fn add(mut new: NewPlant, document: &Document) -> Result<Event, CommandError> {
     if document.plants.len() >= MAX_PLANTS {
         return Err(CommandError::Full("plants"));
     }
     let after = document.next_plant.checked_add(1).ok_or(CommandError::Full("plants"))?;
     new.settings.name = shortened(new.settings.name.trim());
+    new.settings.group = shortened(new.settings.group.trim());
     if let Some(fault) = range_fault(&new.settings) {
         return Err(CommandError::OutOfRange(fault));
     }
@@ -163,6 +242,8 @@ pub enum PlantCommand {
     Lock(bool),
     /// Takes it out of the view, or back.
     Hide(bool),
+    /// Puts it into the group of a name; an empty one takes it out of its group.
+    Group(String),
     /// Sets where it stands.
     Place(Placement),
     /// Keeps it where it stands, or no longer. A copy is free to go.
@@ -186,6 +267,7 @@ impl PlantCommand {
             Self::SetSeed(_) => "seed",
             Self::Lock(_) => "lock",
             Self::Hide(_) => "hide",
+            Self::Group(_) => "group",
             Self::Place(_) => "place",
             Self::Fix(_) => "fix",
             Self::Wear(..) | Self::AddPicture(_) => "material",
@@ -210,6 +292,7 @@ impl PlantCommand {
                 Self::SetSeed(seed) => s.seed = seed,
                 Self::Lock(on) => s.locked = on,
                 Self::Hide(on) => s.hidden = on,
+                Self::Group(name) => s.group = shortened(name.trim()),
                 Self::Place(_) if s.fixed => return Err(CommandError::Fixed),
                 Self::Place(placement) => s.placement = placement,
                 Self::Fix(on) => s.fixed = on,

@@ -40,9 +40,12 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
             points.truncate(from);
         }
     }
-    let flat: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.x, p.z)).collect();
+    let hull = geom::convex_hull3(&points);
+    // The shadow of a body is that of its corners, which are few beside the points of all leaves.
+    let corners = hull.as_ref().map_or(&points[..], |h| &h.points);
+    let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(p.x, p.z)).collect();
     let projection_m2 = geom::signed_area(&geom::convex_hull(&flat)).abs();
-    let volume_m3 = geom::convex_hull3(&points).map_or(0.0, |h| h.volume());
+    let volume_m3 = hull.map_or(0.0, |h| h.volume());
     Crown { height_m, base_m, volume_m3, projection_m2 }
 }
 
