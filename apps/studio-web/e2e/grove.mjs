@@ -66,6 +66,7 @@ async function gizmos({ page, url, shot }) {
   assert.equal(await pressed('scale'), 'false');
   await page.click('[data-key=snap]');
   await page.keyboard.press('g');
+  await page.keyboard.press('x');
   await page.waitForTimeout(900);
   // The handle along x, wherever it is: the gizmo answers by a cursor of its own, so what moves the plant is found.
   const { x, y, box } = await middle(page);
@@ -80,6 +81,7 @@ async function gizmos({ page, url, shot }) {
     moved = (await field(page, 'nx')) !== 0 || (await field(page, 'nz')) !== 0;
   }
   assert.ok(moved, 'the handle moves the plant');
+  assert.equal(await field(page, 'nz'), 0, 'it is bound to x');
   await page.waitForTimeout(600);
   await shot('grove-gizmo');
   for (const key of ['nx', 'nz']) {
@@ -138,13 +140,17 @@ async function groups({ page, url, shot }) {
   assert.match(await undone(), /place/, 'the handle moves them');
   await page.keyboard.press('Escape');
   await page.waitForTimeout(600);
+  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
   await shot('grove-group');
   const after = [await place(1), await place(2)];
   const by = after.map((at, row) => at.map((v, k) => v - before[row][k]));
   assert.ok(Math.hypot(...by[0]) > 0.01, `${by[0]}`);
   assert.ok(Math.hypot(by[0][0] - by[1][0], by[0][1] - by[1][1]) < 0.002, `${by} are alike`);
   await page.keyboard.press('Control+z');
-  await page.waitForFunction((z) => Number(document.querySelector('[data-key=nz]').value) === z, before[1][1]);
+  await page.waitForFunction(
+    (z) => Number(document.querySelector('[data-key=nz]').value) === z,
+    before[1][1],
+  );
   assert.deepEqual([await place(1), await place(2)], before, 'one step of undo takes both back');
   // Hidden, copied, parted, deleted as one.
   await page.click('[data-key="geGroup 1"]');

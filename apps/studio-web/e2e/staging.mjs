@@ -38,6 +38,64 @@ const seen = (page, part) =>
 const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
+/** How much neighbouring pixels of a part of the view differ, 0 to 255. */
+async function edges(page, [x0, y0, x1, y1]) {
+  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
+  const bytes = await page.locator('.view canvas').screenshot();
+  return page.evaluate(
+    async ([base64, a, b, c, d]) => {
+      const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
+      const image = await createImageBitmap(new Blob([raw]));
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const [w, h] = [image.width, image.height];
+      const box = [a * w, b * h, (c - a) * w, (d - b) * h].map(Math.floor);
+      const { data: p, width } = context.getImageData(...box);
+      let sum = 0;
+      for (let i = 0; i + 4 * width < p.length; i += 4)
+        sum += Math.abs(p[i] - p[i + 4]) + Math.abs(p[i] - p[i + 4 * width]);
+      return (2 * sum) / p.length;
+    },
+    [bytes.toString('base64'), x0, y0, x1, y1],
+  );
+}
+
+/** Far ground fades into fog, and what is out of focus has no edges. */
+async function air({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  await page.keyboard.press('t');
+  await page.click('[data-preset-stage=noon]');
+  await page.locator('[data-preset-stage=noon][aria-pressed=true]').waitFor();
+  // The panel lies over the view: it is closed while the view is looked at.
+  const set = async (key, value) => {
+    if ((await page.locator('.scenery').count()) === 0) await page.keyboard.press('t');
+    await page.locator(`[data-stage="stage.${key}"]`).evaluate((e, v) => {
+      e.value = v;
+      e.dispatchEvent(new Event('input', { bubbles: true }));
+      e.dispatchEvent(new Event('change', { bubbles: true }));
+    }, String(value));
+    await page.keyboard.press('Escape');
+    await page.waitForTimeout(1500);
+  };
+  await set('fog', 0);
+  await rest(page);
+  // Where the ground is far away, beside the plant.
+  const far = [0.02, 0.66, 0.3, 0.78];
+  const clear = [(await seen(page, far)).rgb, await edges(page, far)];
+  await set('fog', 1);
+  const fogged = [(await seen(page, far)).rgb, await edges(page, far)];
+  await shot('stage-fog');
+  assert.ok(apart(clear[0], fogged[0]) > 6, `${clear[0]} and ${fogged[0]}`);
+  assert.ok(fogged[1] < 0.7 * clear[1], `fog hides the ground: ${fogged[1]} of ${clear[1]}`);
+  await set('fog', 0);
+  await set('blur', 1);
+  const blurred = await edges(page, far);
+  await shot('stage-blur');
+  assert.ok(blurred < 0.7 * clear[1], `it is out of focus: ${blurred} of ${clear[1]}`);
+}
+
 /** Waits until the camera rests. */
 async function rest(page) {
   let last = '';
@@ -248,6 +306,16 @@ async function camera({ page, url, shot }) {
   assert.ok(size({ position: from.position, target: to.position }) > 0.1, 'W walks');
   assert.equal(to.position[1], from.position[1], 'on the ground');
   assert.equal(await page.locator('#b-wire').getAttribute('aria-pressed'), 'false', 'W is the walker’s');
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.body.dataset.walk === '');
+  // In flight, E rises.
+  await page.keyboard.press('Shift+N');
+  await page.waitForFunction(() => document.body.dataset.walk === 'fly');
+  await page.keyboard.down('e');
+  await page.waitForTimeout(900);
+  await page.keyboard.up('e');
+  const up = await rest(page);
+  assert.ok(up.position[1] > to.position[1] + 0.05, `${up.position[1]} is above ${to.position[1]}`);
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => document.body.dataset.walk === '');
   await palette(page, 'frame');
@@ -468,12 +536,15 @@ async function slide(page, key, value) {
   }, String(value));
 }
 
-/** How far the pictures of two moments are apart, of a part of the view; notes come and go over it and are left out. */
+/** How far the pictures of two moments are apart, of a part of the view. */
 async function sways(page, part) {
-  const picture = () => page.locator('.view canvas').screenshot({ style: '.notes { display: none }' });
-  const a = await picture();
+  // Notes lie over it, and go by themselves.
+  await page.evaluate(() => {
+    for (const note of document.querySelectorAll('.note')) note.remove();
+  });
+  const a = await page.locator('.view canvas').screenshot();
   await page.waitForTimeout(1300);
-  const b = await picture();
+  const b = await page.locator('.view canvas').screenshot();
   return page.evaluate(
     async ([first, second, [x0, y0, x1, y1]]) => {
       const pixels = async (base64) => {
@@ -907,6 +978,7 @@ export const staging = [
   ['an export is seen before it is written: levels, wind, figures', preview],
   ['an export of a tree is seen at its age, and stands still for whom it should', scene],
   ['the stage: presets, ground, background, quality', stage],
+  ['the stage: fog and what is out of focus', air],
   ['the stage keeps its cameras and its picture', keptStage],
   ['the camera: to the pointer, sides, lens, kept, on foot', camera],
   ['a picture of any size, with transparency', picture],

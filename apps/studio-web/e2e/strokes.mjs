@@ -125,7 +125,7 @@ async function turned({ page, url, shot }) {
   ]);
   const strokes = [
     ring,
-    line(250, 560, 250, 262, 8),
+    line(250, 540, 250, 262, 8),
     ...[0, 1, 2, 3, 4, 5].map((k) => blade(250, 230, -Math.PI / 2 + (k * Math.PI) / 3, 130, 34)),
   ];
   const chip = page.locator('.readings .chip.turned');

@@ -7,7 +7,7 @@ import type { Documents } from './documents';
 import type { Files } from './files';
 import type { Panels } from './panels';
 import type { GroundPen } from './scattering';
-import type { Gizmo } from './scene';
+import type { Gizmo, SceneList } from './scene';
 import type { Scenery } from './scenery';
 import type { Session } from './session';
 import type { Shaping } from './shaping';
@@ -32,6 +32,7 @@ export interface Page {
   /** What draws on the ground. */
   readonly pen: GroundPen | undefined;
   readonly modes: ViewModes;
+  readonly list: SceneList;
   readonly documents: Documents;
   readonly scenery: Scenery;
   readonly door: Door;

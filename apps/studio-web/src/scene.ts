@@ -439,7 +439,11 @@ export class SceneList {
   /** Gizmos for several plants, and what can be done with all of them. */
   private placingAll(plants: readonly PlantState[]): HTMLElement {
     const act = (key: TextKey, run: () => void, keys?: string): HTMLElement =>
-      el('button', { type: 'button', class: 'chip', 'data-key': key, onclick: run, title: keys ?? '' }, t(key));
+      el(
+        'button',
+        { type: 'button', class: 'chip', 'data-key': key, onclick: run, title: keys ?? '' },
+        t(key),
+      );
     const grouped = plants.some((p) => p.group !== '');
     const one = grouped && plants.every((p) => p.group === plants[0]!.group);
     return el(

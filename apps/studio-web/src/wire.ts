@@ -261,6 +261,18 @@ export type CarriedPose = {
   turn: [number, number, number, number];
 };
 
+/** How plants are carried: sized and turned about a point, then moved. */
+export type Carry = {
+  /** What stays where it is while they are sized and turned, metres. */
+  about: [number, number, number];
+  /** Metres. */
+  by: [number, number, number];
+  /** Times their size, above 0. */
+  scale: number;
+  /** About +Y, degrees, counter-clockwise seen from above. */
+  turn_deg: number;
+};
+
 /** What an edit changed. */
 export type Changed = {
   /** Branches added. */
@@ -450,7 +462,7 @@ export type ExportView = {
   models: PlantView[];
   /** What it holds, by what it is of. */
   parts: PartFigures[];
-  /** Which of them each plant is. */
+  /** Which of them each plant is; none where the one model is all that there is, as it stands. */
   plants: ExportedPlant[];
   /** Their bytes as PNG. */
   texture_bytes: number;
@@ -1457,6 +1469,10 @@ export type PlantCommand =
   {
     hide: boolean;
   }
+  | /** Puts it into the group of a name; an empty one takes it out of its group. */
+  {
+    group: string;
+  }
   | /** Sets where it stands. */
   {
     place: Placement;
@@ -1493,6 +1509,8 @@ export type PlantState = {
   flower: 
     | FlowerState
     | null;
+  /** The group it belongs to; empty for none. */
+  group: string;
   /** It is left out of the view. */
   hidden: boolean;
   /** Its name within the document. */
@@ -1662,6 +1680,14 @@ export type SceneCommand =
   | /** Adds a moved copy of a plant after the others, metres. */
   {
     duplicate: [PlantId, [number, number, number]];
+  }
+  | /** Adds moved copies of plants after the others, metres. */
+  {
+    'duplicate-all': [PlantId[], [number, number, number]];
+  }
+  | /** Moves, turns and sizes plants as one thing. */
+  {
+    carry: [PlantId[], Carry];
   }
   | /** Deletes plants; a plant that bore the leaf of one bears its own again. */
   {

@@ -772,7 +772,7 @@ export const en = {
   'exported.title': 'Preview of the export',
   'exported.hint': 'The view shows what will be written.',
   'exported.format': 'File',
-  'exported.far': 'Views from all sides',
+  'exported.far': 'views',
   'exported.level': 'Level of detail',
   'exported.wind': 'Wind',
   'exported.still': 'still',

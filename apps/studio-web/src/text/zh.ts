@@ -759,7 +759,7 @@ export const zh: Record<TextKey, string> = {
   'exported.title': '导出预览',
   'exported.hint': '视图里显示的就是将要写出的模型。',
   'exported.format': '文件',
-  'exported.far': '四周视图',
+  'exported.far': '视图',
   'exported.level': '细节层级',
   'exported.wind': '风',
   'exported.still': '静止',

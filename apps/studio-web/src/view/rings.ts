@@ -14,7 +14,13 @@ export class Rings {
       return new THREE.Vector3(Math.cos(turn), 0, Math.sin(turn));
     }),
   );
-  private readonly ink = new THREE.LineBasicMaterial({ color: COLOUR, toneMapped: false, depthTest: false });
+  /** Among what is transparent, which is drawn after the ground. */
+  private readonly ink = new THREE.LineBasicMaterial({
+    color: COLOUR,
+    toneMapped: false,
+    depthTest: false,
+    transparent: true,
+  });
   private rings: THREE.LineLoop[] = [];
 
   /** Lays a ring around each of these plants, and no others; it goes where its plant goes. */

@@ -7,7 +7,6 @@ import type {
   Carry,
   Mirror,
   PlantState,
-  PlantView as Seen,
   SceneView,
   ShapePointer,
   ShapeReach,
@@ -54,7 +53,6 @@ export interface ViewEvents {
   context(lost: boolean): void;
   placeBegin(): void;
   place(plant: number, position: [number, number, number], yaw: number, scale: number): void;
-  /** Several plants go as one. */
   carry(plants: number[], how: Carry): void;
   placeEnd(): void;
   obstacle(plant: number, row: number, by: [number, number, number]): void;
@@ -276,11 +274,6 @@ export class PlantView {
     return this.plants.chosen;
   }
 
-  /** The plant whose front view is shown. */
-  private get seen(): Seen | undefined {
-    return this.chosen?.view;
-  }
-
   update(view: SceneView, fresh: Sent[]): void {
     this.plants.update(view, fresh);
     this.stand();
@@ -409,7 +402,7 @@ export class PlantView {
   }
 
   private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
-    return this.isFront && this.seen?.front ? this.flat : this.rig.far;
+    return this.isFront && this.chosen?.view?.front ? this.flat : this.rig.far;
   }
 
   /** The place of the ground under a point of the screen: x and z, metres of the scene; none at or above the horizon. */
