@@ -2,14 +2,16 @@
 //! end`.
 //!
 //! Every drawing is drawn stroke by stroke, as it was drawn and in shuffled orders, and read after each stroke, once
-//! afresh and once with what was shown before. Counted is how often a stroke that was there becomes something else.
+//! afresh and once with what was shown before. Counted is how often a stroke that was there becomes something else. Then
+//! each whole drawing gets one straight line more, across it, and counted is how often that makes another kind of it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use base::{Draw, Report, Run, Seed};
-use ink::{Drawing, StrokeClass};
-use reading::Reading;
+use glam::DVec2;
+use ink::{Drawing, InkSample, Stroke, StrokeClass};
+use reading::{Kind, Reading};
 use serde_json::Value;
 
 use crate::ablation::fixtures_of;
@@ -89,6 +91,50 @@ fn draw(
     }
 }
 
+/// Lines across a drawing: from the middles of the sides of its box, from its corners, and shorter ones near its middle.
+const ACROSS: [[f64; 4]; 8] = [
+    [0.0, 0.5, 1.0, 0.5],
+    [0.5, 0.0, 0.5, 1.0],
+    [0.0, 0.0, 1.0, 1.0],
+    [1.0, 0.0, 0.0, 1.0],
+    [0.0, 0.7, 1.0, 0.8],
+    [0.3, 0.5, 0.7, 0.5],
+    [0.5, 0.3, 0.5, 0.7],
+    [0.35, 0.6, 0.65, 0.75],
+];
+
+/// How often one line more makes another kind of a drawing: afresh, and with what was shown. `of` that many lines.
+#[derive(Default)]
+struct Lines {
+    of: u32,
+    afresh: u32,
+    shown: u32,
+}
+
+fn one_line_more(tally: &mut Lines, drawing: &Drawing) {
+    let nothing = BTreeMap::new();
+    let whole = read(drawing, &nothing);
+    let sure = whole.strokes.iter().filter(|s| s.confidence >= DOUBTFUL);
+    let shown: BTreeMap<u32, StrokeClass> = sure.map(|s| (s.index, s.class)).collect();
+    let points = || drawing.strokes.iter().flat_map(|s| s.samples.iter().map(|p| p.at));
+    let (low, high) = points().fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
+    for [x0, y0, x1, y1] in ACROSS {
+        let at = |x: f64, y: f64| low + DVec2::new(x, y) * (high - low);
+        let ends = (at(x0, y0), at(x1, y1));
+        let samples = (0..=20).map(|k| InkSample {
+            at: ends.0.lerp(ends.1, f64::from(k) / 20.0),
+            time_ms: None,
+            pressure: None,
+        });
+        let mut more = drawing.clone();
+        more.strokes.push(Stroke { samples: samples.collect(), ..Stroke::default() });
+        let other = |shown| Kind::of(&read(&more, shown)) != Kind::of(&whole);
+        tally.of += 1;
+        tally.afresh += u32::from(other(&nothing));
+        tally.shown += u32::from(other(&shown));
+    }
+}
+
 /// # Errors
 /// A sentence that names the file and what is wrong with it.
 pub(crate) fn run(args: &[String]) -> Outcome {
@@ -146,6 +192,15 @@ pub(crate) fn run(args: &[String]) -> Outcome {
                 ));
             }
         }
+    }
+    say("| drawings | one line more | another kind, afresh | another kind, with what was shown |");
+    say("|---|---|---|---|");
+    for (what, set) in [("labelled", &labelled), ("our own", &own)] {
+        let mut tally = Lines::default();
+        for (drawing, _) in set.iter().filter(|(d, _)| d.strokes.len() <= MOST) {
+            one_line_more(&mut tally, drawing);
+        }
+        say(&format!("| {what} | {} | {} | {} |", tally.of, tally.afresh, tally.shown));
     }
     Ok(())
 }
