@@ -53,7 +53,7 @@ fn measured(drawings: &Path, organs: &Path, out: &Path) -> Outcome<Digests> {
         Ok(())
     };
     let projects = repository().join("fixtures/projects");
-    for version in 1..=6 {
+    for version in 1..=7 {
         let name = format!("version-{version}");
         let mut c = prepare(burgeon("debug"), &["sketch"]);
         c.arg(projects.join(format!("{name}.burgeon")));

@@ -163,7 +163,7 @@ fn ground() -> Ground {
     add("x.inkml", INKML.as_bytes(), &[SKETCH, "convert IN -o out.json"]);
     add("x.ndjson", NDJSON.as_bytes(), &["convert IN -o out.json", INFO]);
     add("x.json", &read("flower.json"), &[SKETCH, INFO]);
-    for version in [1, 2, 3, 4, 6] {
+    for version in [1, 2, 3, 4, 7] {
         let bytes = fixture(&format!("projects/version-{version}.burgeon"));
         add("x.burgeon", &bytes, &[INFO, "sketch IN -o out.ply"]);
     }

@@ -246,6 +246,16 @@ fn files_of_version_5_stay_readable() {
     assert_eq!(again, document);
 }
 
+/// As version 6, and its plant is in a group.
+#[test]
+fn files_of_version_7_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-7.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(only(&document).settings().group, "a bed");
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
 /// A drawing with layers, a wide pen, materials of a kind and of a stroke, and a picture.
 #[test]
 fn files_of_version_6_stay_readable() {
