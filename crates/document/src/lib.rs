@@ -32,8 +32,8 @@ mod versions;
 
 pub use archive::{ArchiveError, pack};
 pub use command::{
-    Carry, Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
-    ShapeCommand, SketchCommand, TreeCommand,
+    Carry, Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand,
+    SceneCommand, ShapeCommand, SketchCommand, TreeCommand,
 };
 pub use editor::{Editor, Step};
 pub use event::{Event, StrokeRows};

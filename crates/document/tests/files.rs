@@ -74,10 +74,12 @@ fn materials_and_layers_that_do_not_hold_together_are_refused() {
 #[test]
 fn plants_of_one_name_are_a_group_in_files_that_have_none() {
     let groups = |version: &str, names: &[&str], more: &str| -> Vec<String> {
-        let plant = |n: &&str| format!(r#"{{"name":"{n}","seed":1{more},"maker":{{"sketch":{{"strokes":[]}}}}}}"#);
+        let plant =
+            |n: &&str| format!(r#"{{"name":"{n}","seed":1{more},"maker":{{"sketch":{{"strokes":[]}}}}}}"#);
         let plants = names.iter().map(plant).collect::<Vec<_>>().join(",");
         let manifest = format!(r#"{{"burgeon":"{version}"}}"#);
-        let read = read_project(&project(&manifest, &format!(r#"{{"name":"a","plants":[{plants}]}}"#))).unwrap();
+        let read =
+            read_project(&project(&manifest, &format!(r#"{{"name":"a","plants":[{plants}]}}"#))).unwrap();
         read.plants().iter().map(|p| p.settings().group.clone()).collect()
     };
     assert_eq!(groups("project/6", &["a", "b", "a", "a"], ""), ["a", "", "a", "a"]);

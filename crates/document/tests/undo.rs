@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use base::Seed;
 use document::{
-    Carry, Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
-    NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand, Settings,
-    ShapeCommand, SketchCommand, StrokeId, TreeCommand, WornPicture, read_project, write_project,
+    Carry, Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker,
+    NamedObstacle, NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand,
+    Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, WornPicture, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};

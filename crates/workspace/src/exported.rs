@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use burgeon::{Run, scene_model};
 use burgeon::document::PlantId;
 use burgeon::formats::ModelFormat;
 use burgeon::mesh::{Material, Model, Texture, TriMesh};
+use burgeon::{Run, scene_model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -191,7 +191,8 @@ fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> 
     let mut all: Vec<PartFigures> = Vec::new();
     for (k, model) in models.iter().enumerate() {
         // Without a plant of its own it is all that there is.
-        let places = rows.iter().filter(|(_, row)| *row == k).count().max(usize::from(rows.is_empty())) as u64;
+        let places =
+            rows.iter().filter(|(_, row)| *row == k).count().max(usize::from(rows.is_empty())) as u64;
         for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
             let kind = model.materials.get(part.material.index()).map_or("other", |m| m.kind.word());
             let row = all.iter().position(|p| p.kind == kind).unwrap_or_else(|| {
