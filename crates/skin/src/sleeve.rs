@@ -93,16 +93,16 @@ impl<'a> Sleeve<'a> {
         Self { ribs, repeats, ..self }
     }
 
-    /// A corner of a ring with the normal there, given the column, the ray and the normal of the plain tube; the share of
-    /// the depth of the furrows.
-    fn corner(&self, ring: &Ring, column: usize, ray: DVec3, normal: DVec3, share: f64) -> (DVec3, DVec3) {
+    /// By the column of a ring: the radius there over that of the ring, and the normal, given the ray, the normal of the plain
+    /// tube and the share of the depth of the furrows.
+    fn corner(&self, ring: &Ring, column: usize, (ray, normal): (DVec3, DVec3), share: f64) -> (f64, DVec3) {
         if self.ribs.count == 0 {
-            return (ray * ring.radius, normal);
+            return (1.0, normal);
         }
         #[expect(clippy::cast_precision_loss, reason = "at most 64")]
         let angle = ops::TAU * column as f64 / self.sides();
         let (radius, lean) = self.ribs.at(angle, share);
-        (ray * (ring.radius * radius), normal + ring.tangent.cross(ray) * lean)
+        (radius, normal + ring.tangent.cross(ray) * lean)
     }
 
     fn vertex(&mut self, p: DVec3, normal: DVec3, u: f64, v: f64) -> u32 {
@@ -167,8 +167,8 @@ impl<'a> Sleeve<'a> {
             let share = if row == round { 0.0 } else { 1.0 };
             for (column, corner) in circle.0[..circle.sides()].iter().enumerate() {
                 let ray = ring.ray(*corner);
-                let (out, normal) = self.corner(ring, column, ray, ring.normal(ray), share);
-                self.vertex(ring.centre + out, normal, u, v);
+                let (wide, normal) = self.corner(ring, column, (ray, ring.normal(ray)), share);
+                self.vertex(ring.centre + ray * (ring.radius * wide), normal, u, v);
                 u += du;
             }
             self.seam(first, u, v);
@@ -192,7 +192,9 @@ impl<'a> Sleeve<'a> {
         let normal = -ring.tangent;
         let apex = self.vertex(ring.centre, normal, 0.5, 0.5);
         for (column, &(cos, sin)) in circle.0[..circle.sides()].iter().enumerate() {
-            let p = ring.centre + self.corner(ring, column, ring.ray((cos, sin)), normal, 1.0).0;
+            let ray = ring.ray((cos, sin));
+            let wide = self.corner(ring, column, (ray, normal), 1.0).0;
+            let p = ring.centre + ray * (ring.radius * wide);
             self.vertex(p, normal, 0.5 + 0.5 * cos, 0.5 + 0.5 * sin);
         }
         let n = index(circle.sides());
@@ -223,8 +225,9 @@ impl<'a> Sleeve<'a> {
             let (v, mut u) = (self.v, 0.0);
             for (column, corner) in circle.0[..circle.sides()].iter().enumerate() {
                 let ray = end.ray(*corner);
-                let (out, normal) = self.corner(end, column, ray, ray, 1.0);
-                self.vertex(centre + out * cos, normal * cos + end.tangent * sin, u, v);
+                let (wide, normal) = self.corner(end, column, (ray, ray), 1.0);
+                let out = ray * (end.radius * wide * cos);
+                self.vertex(centre + out, normal * cos + end.tangent * sin, u, v);
                 u += du;
             }
             self.seam(first, u, v);
