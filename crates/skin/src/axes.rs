@@ -98,18 +98,7 @@ pub(crate) fn tubes<'p>(
         .enumerate()
         .map(|(i, s)| s.as_ref().map_or(3, |s| budget.sides(s.r[0], least(i))))
         .collect();
-    let ribs: Vec<Ribs> =
-        chains.iter().zip(&spines).map(|(c, s)| ribs(c, s.as_ref(), spec, thickest)).collect();
-    // A rib takes four corners, or two where the whole is coarse.
-    let of_rib = if spec.detail >= 0.8 { 4 } else { 2 };
-    let sides: Vec<u32> = sides
-        .into_iter()
-        .zip(&ribs)
-        .map(|(sides, r)| if r.count > 0 { (of_rib * r.count).min(2 * r.count.max(32)) } else { sides })
-        .collect();
-    // For what grows out of it, a furrow is as deep as a flat face.
-    let faces: Vec<u32> =
-        sides.iter().zip(&ribs).map(|(sides, r)| r.faces().map_or(*sides, |f| f.min(*sides))).collect();
+    let (ribs, sides, faces) = ribbed(&chains, &spines, spec, thickest, sides);
     // Circles for every number of sides that can occur: 3 to 24, and up to 64 of what has ribs.
     let most = if ribs.iter().any(|r| r.count > 0) { 64 } else { 24 };
     let circles: Vec<Circle> = (0..=most).map(Circle::new).collect();
@@ -203,6 +192,28 @@ pub(crate) fn tubes<'p>(
         Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
     })?;
     Ok((tubes.into_iter().flatten().collect(), wind))
+}
+
+/// By chain: its ribs, the sides that they take, and those as which its surface counts for what grows out of it, for which a
+/// furrow is as deep as a flat face.
+fn ribbed(
+    chains: &[Chain],
+    spines: &[Option<Spine>],
+    spec: &SkinSpec,
+    thickest: f64,
+    sides: Vec<u32>,
+) -> (Vec<Ribs>, Vec<u32>, Vec<u32>) {
+    let ribs: Vec<Ribs> =
+        chains.iter().zip(spines).map(|(c, s)| ribs(c, s.as_ref(), spec, thickest)).collect();
+    // A rib takes four corners, or two where the whole is coarse.
+    let of_rib = if spec.detail >= 0.8 { 4 } else { 2 };
+    let of = |(sides, r): (u32, &Ribs)| {
+        if r.count > 0 { (of_rib * r.count).min(2 * r.count.max(32)) } else { sides }
+    };
+    let sides: Vec<u32> = sides.into_iter().zip(&ribs).map(of).collect();
+    let faces =
+        sides.iter().zip(&ribs).map(|(sides, r)| r.faces().map_or(*sides, |f| f.min(*sides))).collect();
+    (ribs, sides, faces)
 }
 
 /// The ribs of a chain: of thick stems, where they are asked for and are not too fine to be drawn.
