@@ -46,6 +46,15 @@ export const TREES = [
   'tree-fern',
   'banana',
   'maize',
+  'saguaro',
+  'wheat',
+  'lavender',
+  'reed',
+  'baobab',
+  'agave',
+  'fig',
+  'mangrove',
+  'boston-ivy',
 ] as const;
 
 /** The species of flowers. */
@@ -153,7 +162,9 @@ export type Bark =
   | /** Rings that fallen leaves have left: palm. */
   "ringed"
   | /** Smooth and jointed: bamboo. */
-  "cane";
+  "cane"
+  | /** Green ribs with rows of spines on them: columnar cacti. */
+  "ribbed";
 
 /** The shape of a leaf blade, drawn by formula. */
 export type BladeForm =
@@ -173,6 +184,10 @@ export type BladeForm =
   "lobed"
   | /** Five pointed lobes from one place: maple, plane. */
   "palmate"
+  | /** Five blunt lobes from one place, deep notches between them: fig. */
+  "fingered"
+  | /** Three pointed lobes, broad and toothed: Boston ivy, grape. */
+  "tricuspid"
   | /** A fan on a wedge, with a notch in the middle: ginkgo. */
   "fan"
   | /** Leaflets in pairs along a midrib: ash, walnut, rowan. */
@@ -222,12 +237,16 @@ export type BlossomSpec = {
   diameter_m?: number;
   /** How far the outermost petals open from the flower's axis, degrees, 5 to 90, default 76; of a goblet about 30. */
   open_deg?: number;
+  /** Width of a petal over that which closes the whorl, 0.1 to 1.5, default 1; of spikelets and plumes less. */
+  petal_width?: number;
   /** Petals of a flower's whorl, 3 to 12, default 5. */
   petals?: number;
-  /** Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers. */
+  /** Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers but those that rules set. */
   share?: number;
   /** Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7. */
   stalk?: number;
+  /** Width of the tuft of stamens over that of the flower, 0 to 1, default 0.3; 0: none is seen. */
+  tuft?: number;
   /** Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's. */
   whorls?: number;
 };
@@ -815,6 +834,10 @@ export type Look = {
     | null;
   /** How far they vary, 0 to 1, default 0.5. */
   leaf_variation?: number;
+  /** Depth of the furrows between ribs over the radius of the stem, 0 to 0.5, default 0.15. */
+  rib_depth?: number;
+  /** Ribs along thick stems, 0 to 32, default 0: round stems. */
+  ribs?: number;
   /** The season, -1 to 1, default 0: leaves as in summer; -1: bare before spring, from where leaves unfold; 0.5: all in the colours of autumn; 1: all fallen. */
   season?: number;
   /** Mean colour of the bark of twigs. */
@@ -1054,6 +1077,20 @@ export type PetalMesh = {
   columns: number;
   /** Rows from base to tip, 2 to 100. */
   rows: number;
+};
+
+/** Roots that arch from the stem to the ground and carry it: mangroves, screw pines. */
+export type PropSpec = {
+  /** How many leave the stem, 0 to 200, default 0. */
+  count?: number;
+  /** The chance that a further arch leaves one half-way down, 0 to 1, default 0.5. */
+  fork?: number;
+  /** Mean radius, metres, 0.001 to 5, default 0.025. */
+  radius_m?: number;
+  /** How far from the stem the highest come down, metres, 0.01 to 50, default 1.5; each by half more or less. */
+  reach_m?: number;
+  /** The height up to which they leave it when the tree is whole, metres, 0.01 to 50, default 1.5. */
+  rise_m?: number;
 };
 
 /** The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand off from their bearer. */
@@ -1360,10 +1397,14 @@ export type WoodSpec = {
   internode_share?: number;
   /** Exponent t of `r^t = sum of r_i^t` (Yang et al. */
   pipe_exponent?: number;
+  /** Roots that arch from the bole to the ground. */
+  props?: PropSpec;
   /** How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at forks become acute and courses straighter; each time costs half an internode of size. */
   relax?: number;
   /** Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). */
   smooth?: boolean;
+  /** How much thicker the bole is than what its crown asks for, a factor, 1 to 20, default 1: baobabs and bottle trees store water there. */
+  swell?: number;
   /** Joints that bear nothing are left out where this takes the course aside by less than this share of the radius, 0 to 10, default 0.25. */
   thin_out?: number;
   /** Radius of a tip, metres, above 0, default 0.004. */

@@ -18,6 +18,7 @@
 //! | `lsystem` | rules read from text |
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |
+//! | `props` | roots that arch from the stem to the ground |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
 //! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
 //! | `tree` | the whole way: [`grow`] |
@@ -37,6 +38,7 @@ mod look;
 mod lsystem;
 mod mesh_faults;
 mod obstacle;
+mod props;
 mod self_organize;
 mod set_down;
 mod sieve;
@@ -63,10 +65,11 @@ pub use look::{Bark, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
+pub use props::PropSpec;
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use set_down::SetDown;
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
-pub use tree::{Grown, GrowthTally, grow};
+pub use tree::{FlowerPlace, Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;
 pub use wood::{Wood, WoodSpec, make_wood};

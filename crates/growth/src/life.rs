@@ -116,7 +116,7 @@ fn thinner(full: &Skeleton, young: &mut Skeleton, ids: &[Option<JointId>], wood:
 }
 
 /// Which joints lie on a trunk below its lowest limb.
-fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
+pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
     let n = full.len();
     let mut above = vec![1_u32; n];
     for j in (0..n).rev() {

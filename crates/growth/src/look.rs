@@ -40,7 +40,7 @@ pub struct BladeSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BlossomSpec {
-    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers.
+    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers but those that rules set.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub share: f64,
     /// Petals of a flower's whorl, 3 to 12, default 5.
@@ -58,6 +58,12 @@ pub struct BlossomSpec {
     /// Mean length of a flower's stalk over its diameter, 0.02 to 3, default 0.7.
     #[schemars(range(min = 0.02, max = 3.0))]
     pub stalk: f64,
+    /// Width of a petal over that which closes the whorl, 0.1 to 1.5, default 1; of spikelets and plumes less.
+    #[schemars(range(min = 0.1, max = 1.5))]
+    pub petal_width: f64,
+    /// Width of the tuft of stamens over that of the flower, 0 to 1, default 0.3; 0: none is seen.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub tuft: f64,
     /// Colour of petals, default a white.
     pub color: Colour,
     /// Colour towards which single flowers vary; default none.
@@ -74,6 +80,8 @@ impl Default for BlossomSpec {
             open_deg: 76.0,
             diameter_m: 0.035,
             stalk: 0.7,
+            petal_width: 1.0,
+            tuft: 0.3,
             color,
             color_to: None,
         }
@@ -99,6 +107,8 @@ pub enum Bark {
     Ringed,
     /// Smooth and jointed: bamboo.
     Cane,
+    /// Green ribs with rows of spines on them: columnar cacti. See [`Look::ribs`].
+    Ribbed,
 }
 
 /// Colours and bark. All colours are sRGB.
@@ -107,6 +117,12 @@ pub enum Bark {
 pub struct Look {
     /// What the bark is like.
     pub bark: Bark,
+    /// Ribs along thick stems, 0 to 32, default 0: round stems. A saguaro has 12 to 30.
+    #[schemars(range(min = 0, max = 32))]
+    pub ribs: u32,
+    /// Depth of the furrows between ribs over the radius of the stem, 0 to 0.5, default 0.15.
+    #[schemars(range(min = 0.0, max = 0.5))]
+    pub rib_depth: f64,
     /// Mean colour of the bark of trunk and branches.
     pub bark_color: Colour,
     /// Colour of the bark at the foot of the trunk, old and rough, not lighter than `bark_color`; default the same.
@@ -147,6 +163,8 @@ impl Default for Look {
     fn default() -> Self {
         Self {
             bark: Bark::default(),
+            ribs: 0,
+            rib_depth: 0.15,
             bark_color: Colour([0x6e, 0x62, 0x54]),
             foot_color: None,
             foot_height: 0.2,

@@ -4,12 +4,13 @@
 
 use base::{Counted, Draw, Report, Run, Seed, ops};
 use glam::DVec3;
-use plant::{Blade, NodeId, Plant};
+use plant::{Blade, Frame, NodeId, Plant};
 
 use crate::colonize::{colonize_part, grow_frame, plant_roots};
 use crate::competition::compete_each;
 use crate::envelope::crowns;
 use crate::life::{grown_by, younger};
+use crate::props::add_props;
 use crate::variation::Habit;
 use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
 use crate::{
@@ -20,6 +21,9 @@ use crate::{
 
 /// The key under which a seed draws the fates of limbs.
 const FATE: u64 = 0x0066_6174_6573;
+
+/// The key under which a seed draws the flowers that rules set.
+const FLOWERS: u64 = 0x0066_6c6f_7765_7273;
 
 /// The shares of the work that are done, for people who wait, when it is wood, and when it has leaves; meshes are the
 /// rest. As of an oak.
@@ -52,6 +56,21 @@ pub struct Grown {
     pub tally: GrowthTally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
+    /// Where rules set flowers, which are no organs yet: whoever dresses the plant makes them.
+    pub flowers: Vec<FlowerPlace>,
+}
+
+/// Where a flower stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowerPlace {
+    /// What bears it.
+    pub bearer: NodeId,
+    /// The foot of its stalk; it looks along.
+    pub frame: Frame,
+    /// Relative size, 0.01 to 100.
+    pub scale: f64,
+    /// For its random choices.
+    pub key: u64,
 }
 
 /// Grows trees of any method and dresses them with leaves of the given blade ([`crate::FoliageSpec::blade`] if none).
@@ -90,7 +109,14 @@ pub fn grow(
     take_limbs(&spec.variation, &wood_spec, seed, &mut bones);
     age(spec, &wood_spec, &mut bones);
     strip_twigs(&wood_spec, &mut bones);
-    let Bones { skeleton, marks, dead, mut tally } = bones;
+    let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
+    let grown = bones.skeleton.len();
+    add_props(&mut bones.skeleton, &wood_spec, life.min(1.0), seed);
+    let Bones { skeleton, marks, dead: mut leafless, mut tally, .. } = bones;
+    if skeleton.len() > grown {
+        leafless.resize(grown, false);
+        leafless.resize(skeleton.len(), true);
+    }
     if let Some(years) = spec.years.filter(|_| !matches!(spec.method, Method::SelfOrganizing(_))) {
         tally.iterations = spec.age.map_or(years, |age| age.min(years));
     }
@@ -103,22 +129,40 @@ pub fn grow(
         return Err(GrowthError::Nothing { why: why_nothing(spec, &tally) });
     }
     plant.name.clone_from(&spec.name);
+    let flowers = flower_places(&plant, &marks, &wood.node_of_joint, seed);
     let mut leaves = LeafCount::default();
     if !spec.bare {
         let leaf = &spec.leaves;
+        let leaf_marks = marks.iter().filter(|m| !m.flower);
         let places: Vec<(NodeId, LeafMark)> =
-            marks.iter().filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
+            leaf_marks.filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
         let blade = blade.unwrap_or_else(|| leaf.blade());
         // Shoots that are thicker by a factor bear leaves where they are thicker by that.
         let mean = thick.iter().sum::<f64>() / thick.len().max(1) as f64;
         let leaf = FoliageSpec { max_radius_m: (leaf.max_radius_m * mean).min(100.0), ..leaf.clone() };
         leaves = add_leaves(&mut plant, &leaf, blade, &places, &obstacles, seed, run, report)?;
-        let gone = strip_leaves(&mut plant, &wood.node_of_joint, &dead);
+        let gone = strip_leaves(&mut plant, &wood.node_of_joint, &leafless);
         (leaves.kept, leaves.fallen) = (leaves.kept - gone, leaves.fallen + gone);
     }
     run.cancel.reached(LEAFY);
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
-    Ok(Grown { plant, skeleton, tally, leaves })
+    Ok(Grown { plant, skeleton, tally, leaves, flowers })
+}
+
+/// The flowers among the marks that rules set.
+fn flower_places(
+    plant: &Plant,
+    marks: &[LeafMark],
+    node_of_joint: &[Option<NodeId>],
+    seed: Seed,
+) -> Vec<FlowerPlace> {
+    let place = |(i, m): (u64, &LeafMark)| {
+        let bearer = node_of_joint[m.joint.index()].filter(|_| m.flower && m.scale > 0.0)?;
+        let frame = Frame::looking(plant.nodes.position[bearer.index()], m.heading, m.up);
+        let key = seed.child(FLOWERS).child(i).number();
+        Some(FlowerPlace { bearer, frame, scale: m.scale.clamp(0.01, 100.0), key })
+    };
+    (0..).zip(marks).filter_map(place).collect()
 }
 
 /// Makes the trees differ whose methods do not draw up a crown of their own size, and takes the limbs that are lost;
@@ -197,6 +241,7 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
     let Some(age) = spec.age else { return };
     match (&spec.method, spec.years) {
         // Light and rules without years were followed so far and no further.
+        _ if bones.aged => {}
         (Method::SelfOrganizing(_), _) | (Method::Lsystem { .. }, None) => {}
         (_, Some(years)) if age < years => {
             let life = f64::from(age) / f64::from(years);
@@ -230,10 +275,10 @@ fn strip_twigs(wood: &WoodSpec, bones: &mut Bones) {
     bones.keep(|j| !dead[j] || pipes[j] >= 4.0);
 }
 
-/// Takes the leaves of dead limbs; how many.
-fn strip_leaves(plant: &mut Plant, node_of_joint: &[Option<NodeId>], dead: &[bool]) -> usize {
+/// Takes the leaves of dead limbs and of props; how many.
+fn strip_leaves(plant: &mut Plant, node_of_joint: &[Option<NodeId>], leafless: &[bool]) -> usize {
     let mut bare = vec![false; plant.axes.len()];
-    for node in node_of_joint.iter().zip(dead).filter(|(_, d)| **d).filter_map(|(node, _)| *node) {
+    for node in node_of_joint.iter().zip(leafless).filter(|(_, d)| **d).filter_map(|(node, _)| *node) {
         bare[plant.nodes.axis[node.index()].index()] = true;
     }
     if !bare.contains(&true) {
@@ -326,12 +371,14 @@ struct Bones {
     marks: Vec<LeafMark>,
     /// Which joints are of dead limbs; may be empty.
     dead: Vec<bool>,
+    /// Rules have followed its life up to its age.
+    aged: bool,
     tally: GrowthTally,
 }
 
 impl Bones {
     fn new(skeleton: Skeleton, tally: GrowthTally) -> Self {
-        Self { skeleton, marks: Vec::new(), dead: Vec::new(), tally }
+        Self { skeleton, marks: Vec::new(), dead: Vec::new(), aged: false, tally }
     }
 
     /// Keeps the joints for which `stays` holds and what grows on them, with what they bear.
@@ -435,12 +482,18 @@ fn bones(
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles, run)?;
             let mut system = Lsystem::parse(rules)?;
-            // Of a tree with years, all steps make the whole, which is younger later on.
-            let last = spec.age.filter(|_| spec.years.is_none());
+            // Of a tree with years, all steps make the whole, which is younger later on, unless the rules follow growth.
+            let last = match (spec.age, spec.years) {
+                (Some(age), Some(years)) if system.ages_by_steps => {
+                    Some((system.steps * age.min(years)).div_ceil(years.max(1)))
+                }
+                (age, years) => age.filter(|_| years.is_none()),
+            };
             system.steps = last.map_or(system.steps, |age| age.min(system.steps));
             let tally = GrowthTally { iterations: system.steps, cycles: 1, ..GrowthTally::default() };
             let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
-            let mut bones = Bones { marks: tree.leaves, ..Bones::new(tree.skeleton, tally) };
+            let aged = system.ages_by_steps;
+            let mut bones = Bones { marks: tree.leaves, aged, ..Bones::new(tree.skeleton, tally) };
             if !obstacles.is_empty() {
                 bones.cut_off(obstacles);
             }
@@ -520,6 +573,40 @@ mod tests {
             let thinner = young.plant.nodes.radius_m[0] < old.plant.nodes.radius_m[0];
             assert!(thinner || matches!(method, Method::Lsystem { .. }));
         }
+    }
+
+    #[test]
+    fn props_bear_no_leaves() {
+        let props = crate::PropSpec { count: 12, radius_m: 0.002, ..crate::PropSpec::default() };
+        let wood = WoodSpec { props, ..WoodSpec::default() };
+        let got = tree(&TreeSpec { wood, ..TreeSpec::default() });
+        let low = |p: &DVec3| p.y < 1.0 && DVec3::new(p.x, 0.0, p.z).length() > 0.4;
+        assert!(got.plant.nodes.position.iter().filter(|p| low(p)).count() > 24);
+        assert!(!got.plant.organs.iter().any(|o| low(&o.frame.origin)));
+    }
+
+    #[test]
+    fn rules_that_follow_growth_give_ages_by_their_steps() {
+        let of = |ages: &str, age: u32| {
+            let rules = format!("axiom = A\nsteps = 40\n{ages}\nA -> !(0.4) F(0.2) A");
+            let method = Method::Lsystem { rules, most_modules: 1000 };
+            let got = tree(&TreeSpec {
+                years: Some(80),
+                age: Some(age),
+                method,
+                bare: true,
+                wood: WoodSpec { relax: 0, smooth: false, ..WoodSpec::default() },
+                ..TreeSpec::default()
+            });
+            let nodes = &got.plant.nodes;
+            let top = nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
+            (top, nodes.radius_m.last().copied().unwrap_or(0.0))
+        };
+        let (top, tip) = of("ages = steps", 20);
+        assert!((top - 2.0).abs() < 1e-9 && (tip - 0.2).abs() < 1e-9, "{top} {tip}");
+        assert!((of("ages = steps", 200).0 - 8.0).abs() < 1e-9);
+        // Without it a quarter of the life is what the law of growth says.
+        assert!((of("", 20).0 / 8.0 - grown_by(0.25)).abs() < 1e-9);
     }
 
     #[test]

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::beside::{Course, Foot, Room};
 use crate::error::within;
-use crate::{GrowthError, JointId, Obstacles, Skeleton};
+use crate::life::boles;
+use crate::{GrowthError, JointId, Obstacles, PropSpec, Skeleton};
 
 /// How a skeleton becomes wood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,6 +33,12 @@ pub struct WoodSpec {
     /// holds. Default none: as the pipe model has it.
     #[schemars(range(min = 1e-6, max = 100.0), extend("x-unit" = "m"))]
     pub trunk_radius_m: Option<f64>,
+    /// How much thicker the bole is than what its crown asks for, a factor, 1 to 20, default 1: baobabs and bottle trees
+    /// store water there. Limbs are as thick as ever.
+    #[schemars(range(min = 1.0, max = 20.0))]
+    pub swell: f64,
+    /// Roots that arch from the bole to the ground. Default none.
+    pub props: PropSpec,
     /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
     pub smooth: bool,
     /// How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at
@@ -53,6 +60,8 @@ impl Default for WoodSpec {
             tip_radius_m: 0.004,
             internode_share: 0.05,
             trunk_radius_m: None,
+            swell: 1.0,
+            props: PropSpec::default(),
             smooth: true,
             relax: 1,
             thin_out: 0.25,
@@ -135,9 +144,37 @@ pub(crate) fn make_wood_of(
     let skeleton = &relaxed;
     run.cancel.check()?;
     let main = main_children(skeleton, &radius);
+    if spec.swell > 1.0 {
+        swell(&mut radius, skeleton, &main, spec.swell);
+    }
     let wood = axes(skeleton, &main, &radius, spec, obstacles, run)?;
     debug_assert_eq!(wood.plant.validate().next(), None, "wood is sound");
     Ok(wood)
+}
+
+/// Above the bole, the share of its length on which what it is swollen by fades out.
+const SHOULDER: f64 = 0.5;
+
+/// Thickens boles by a factor: most in their lower half, and less and less above their lowest limb.
+fn swell(radius: &mut [f64], skeleton: &Skeleton, main: &[Option<JointId>], factor: f64) {
+    let on_bole = boles(skeleton, main);
+    for root in (0..skeleton.len()).filter(|&j| skeleton.parent[j].is_none()) {
+        let trunk: Vec<usize> =
+            core::iter::successors(Some(root), |&j| main[j].map(JointId::index)).collect();
+        let mut along = vec![0.0];
+        for w in trunk.windows(2) {
+            along.push(along[along.len() - 1] + skeleton.position[w[0]].distance(skeleton.position[w[1]]));
+        }
+        let bole =
+            trunk.iter().zip(&along).filter(|(j, _)| on_bole[**j]).map(|(_, s)| *s).fold(1e-9, f64::max);
+        for (&j, s) in trunk.iter().zip(&along) {
+            let u = s / bole;
+            // A bottle: its shoulder begins at two thirds of the bole.
+            let share = 1.0 - ops::smoothstep(0.65, 1.0 + SHOULDER, u);
+            let belly = 1.0 + 0.1 * ops::sin(ops::PI * u.clamp(0.0, 1.0));
+            radius[j] *= 1.0 + (factor * belly - 1.0) * share;
+        }
+    }
 }
 
 /// Eq 4 from the tips down; a radius that the skeleton brings along holds.
@@ -445,6 +482,23 @@ mod tests {
             turns.iter().sum::<f64>() / turns.len() as f64
         };
         assert!(turn(true) < 0.85 * turn(false), "{} {}", turn(true), turn(false));
+    }
+
+    #[test]
+    fn a_swollen_bole_is_a_bottle_and_limbs_are_as_thick_as_ever() {
+        let s = oak(&Obstacles::none());
+        let made = |swell: f64| {
+            let spec = WoodSpec { swell, thin_out: 0.0, ..WoodSpec::default() };
+            make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant
+        };
+        let (plain, swollen) = (made(1.0), made(4.0));
+        let ratio: Vec<f64> =
+            swollen.nodes.radius_m.iter().zip(&plain.nodes.radius_m).map(|(a, b)| a / b).collect();
+        let trunk = plain.axis(plant::AxisId::new(0)).nodes.clone();
+        let foot = ratio[trunk.start as usize];
+        assert!((3.9..4.5).contains(&foot), "{foot}");
+        assert!((ratio[trunk.end as usize - 1] - 1.0).abs() < 1e-9);
+        assert!(ratio[trunk.end as usize..].iter().all(|r| (r - 1.0).abs() < 1e-9));
     }
 
     #[test]

@@ -39,6 +39,10 @@ pub enum BladeForm {
     Lobed,
     /// Five pointed lobes from one place: maple, plane.
     Palmate,
+    /// Five blunt lobes from one place, deep notches between them: fig.
+    Fingered,
+    /// Three pointed lobes, broad and toothed: Boston ivy, grape.
+    Tricuspid,
     /// A fan on a wedge, with a notch in the middle: ginkgo.
     Fan,
     /// Leaflets in pairs along a midrib: ash, walnut, rowan.
@@ -59,7 +63,7 @@ pub enum BladeForm {
 
 impl BladeForm {
     /// Every form.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::Ovate,
         Self::Elliptic,
         Self::Obovate,
@@ -68,6 +72,8 @@ impl BladeForm {
         Self::Deltoid,
         Self::Lobed,
         Self::Palmate,
+        Self::Fingered,
+        Self::Tricuspid,
         Self::Fan,
         Self::Pinnate,
         Self::Feather,
@@ -94,6 +100,8 @@ impl BladeForm {
             Self::Deltoid => (deltoid(), soft),
             Self::Lobed => (lobed(), soft),
             Self::Palmate => (palmate(), Relief { fold: 0.12, ..soft }),
+            Self::Fingered => (fingered(), Relief { fold: 0.1, ..soft }),
+            Self::Tricuspid => (tricuspid(), Relief { fold: 0.12, ..soft }),
             Self::Fan => (fan(), Relief { fold: 0.15, ..soft }),
             Self::Pinnate => (pinnate(), stiff(0.25, 0.25)),
             Self::Feather => (feather(), stiff(0.15, 0.2)),
@@ -210,6 +218,54 @@ fn palmate() -> Vec<DVec2> {
         (0.18, 0.78),
         (0.18, 0.87),
         (0.09, 0.87),
+    ])
+}
+
+/// Half of five blunt lobes on a heart-shaped foot, widest near their ends (Ficus carica).
+fn fingered() -> Vec<DVec2> {
+    margin(&[
+        (0.1, -0.06),
+        (0.24, -0.1),
+        (0.36, -0.07),
+        (0.42, 0.02),
+        (0.38, 0.09),
+        (0.27, 0.13),
+        (0.38, 0.2),
+        (0.5, 0.33),
+        (0.54, 0.46),
+        (0.48, 0.54),
+        (0.37, 0.52),
+        (0.24, 0.42),
+        (0.14, 0.36),
+        (0.19, 0.5),
+        (0.25, 0.64),
+        (0.26, 0.78),
+        (0.2, 0.9),
+        (0.1, 0.975),
+    ])
+}
+
+/// Half of three pointed lobes with coarse teeth on a heart-shaped foot (Parthenocissus tricuspidata).
+fn tricuspid() -> Vec<DVec2> {
+    margin(&[
+        (0.086, -0.08),
+        (0.206, -0.12),
+        (0.31, -0.08),
+        (0.378, 0.02),
+        (0.404, 0.1),
+        (0.447, 0.19),
+        (0.473, 0.29),
+        (0.516, 0.4),
+        (0.542, 0.55),
+        (0.43, 0.5),
+        (0.396, 0.51),
+        (0.318, 0.47),
+        (0.241, 0.46),
+        (0.241, 0.59),
+        (0.206, 0.66),
+        (0.189, 0.75),
+        (0.12, 0.82),
+        (0.086, 0.9),
     ])
 }
 

@@ -7,7 +7,7 @@ use plant::{AxisId, AxisKind, NodeId, Plant};
 
 use crate::fork::{Bearer, Collar, reach};
 use crate::rings::{drawn, planes, rings};
-use crate::sleeve::{Circle, Sleeve, drop_flat};
+use crate::sleeve::{Circle, Ribs, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec};
 use crate::spine::{Reach, Spine};
 use crate::traced::Traced;
@@ -70,6 +70,9 @@ const YOUNG: f64 = 0.24;
 // A plant whose thickest branch is thinner than this share of its size has no old wood.
 const SLENDER: f64 = 0.02;
 
+// Below this detail ribs are painted alone.
+const COARSE: f64 = 0.3;
+
 // Green axes thicker than this share of the plant's size are bodies, not stems.
 const FLESHY: f64 = 0.035;
 
@@ -95,8 +98,10 @@ pub(crate) fn tubes<'p>(
         .enumerate()
         .map(|(i, s)| s.as_ref().map_or(3, |s| budget.sides(s.r[0], least(i))))
         .collect();
-    // Circles for every number of sides that can occur, 3 to 24.
-    let circles: Vec<Circle> = (0..=24).map(Circle::new).collect();
+    let (ribs, sides, faces) = ribbed(&chains, &spines, spec, thickest, sides);
+    // Circles for every number of sides that can occur: 3 to 24, and up to 64 of what has ribs.
+    let most = if ribs.iter().any(|r| r.count > 0) { 64 } else { 24 };
+    let circles: Vec<Circle> = (0..=most).map(Circle::new).collect();
     let borne_by = |chain: &Chain| {
         let node = chain.bearer?;
         let axis = *plant.nodes.axis.get(node.index())?;
@@ -110,7 +115,7 @@ pub(crate) fn tubes<'p>(
         Some(Bearer {
             spine: spines[host].as_ref()?,
             sample,
-            sides: sides[host],
+            sides: faces[host],
             exit: 0.0,
             top: 0.0,
             planes: &[],
@@ -159,7 +164,7 @@ pub(crate) fn tubes<'p>(
     let tubes = grouped(run, chains.len(), |i| {
         let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
         let bearer = hosts[i].and_then(|(host, sample)| {
-            Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], sides[host]))
+            Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], faces[host]))
         });
         let surface = match chain.surface {
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
@@ -174,7 +179,7 @@ pub(crate) fn tubes<'p>(
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
-        let (mut mesh, fillet) = sleeve(line, bearer.as_ref(), circle, repeats);
+        let (mut mesh, fillet) = sleeve(line, bearer.as_ref(), circle, (repeats, ribs[i]));
         if let Some(wind) = &wind {
             let fillet =
                 fillet.zip(bearer.as_ref()).zip(hosts[i]).map(|((rows, b), (host, _))| (rows, b, host));
@@ -187,6 +192,38 @@ pub(crate) fn tubes<'p>(
         Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
     })?;
     Ok((tubes.into_iter().flatten().collect(), wind))
+}
+
+/// By chain: its ribs, the sides that they take, and those as which its surface counts for what grows out of it, for which a
+/// furrow is as deep as a flat face.
+fn ribbed(
+    chains: &[Chain],
+    spines: &[Option<Spine>],
+    spec: &SkinSpec,
+    thickest: f64,
+    sides: Vec<u32>,
+) -> (Vec<Ribs>, Vec<u32>, Vec<u32>) {
+    let ribs: Vec<Ribs> =
+        chains.iter().zip(spines).map(|(c, s)| ribs(c, s.as_ref(), spec, thickest)).collect();
+    // A rib takes four corners, or two where the whole is coarse.
+    let of_rib = if spec.detail >= 0.8 { 4 } else { 2 };
+    let of = |(sides, r): (u32, &Ribs)| {
+        if r.count > 0 { (of_rib * r.count).min(2 * r.count.max(32)) } else { sides }
+    };
+    let sides: Vec<u32> = sides.into_iter().zip(&ribs).map(of).collect();
+    let faces =
+        sides.iter().zip(&ribs).map(|(sides, r)| r.faces().map_or(*sides, |f| f.min(*sides))).collect();
+    (ribs, sides, faces)
+}
+
+/// The ribs of a chain: of thick stems, where they are asked for and are not too fine to be drawn.
+fn ribs(chain: &Chain, spine: Option<&Spine>, spec: &SkinSpec, thickest: f64) -> Ribs {
+    let bark = spec.bark.unwrap_or_default();
+    let thick = spine.is_some_and(|s| s.stout() > YOUNG * thickest);
+    if bark.ribs < 3 || spec.detail < COARSE || chain.surface != Surface::Bark || !thick {
+        return Ribs::default();
+    }
+    Ribs { count: bark.ribs.min(32), depth: bark.rib_depth.clamp(0.0, 0.5) }
 }
 
 /// What chain `i` grows out of: where it begins while its bearer is still inside the next thicker one, that.
@@ -273,7 +310,7 @@ fn sleeve(
     line: &Line,
     bearer: Option<&Bearer<'_>>,
     circle: &Circle,
-    repeats: u32,
+    (repeats, ribs): (u32, Ribs),
 ) -> (TriMesh, Option<usize>) {
     let Ends { steps, tip, .. } = line.ends;
     let mut rings = rings(&line.line, line.first);
@@ -283,7 +320,7 @@ fn sleeve(
     mesh.normals.reserve(capacity);
     mesh.uvs.reserve(capacity);
     mesh.triangles.reserve(2 * capacity);
-    let mut out = Sleeve::new(&mut mesh, circle, repeats);
+    let mut out = Sleeve::new(&mut mesh, circle, repeats).ribbed(ribs);
     let fillet = line.reach.as_ref().zip(bearer).map(|(reach, bearer)| {
         let collar = Collar::new(reach, &rings[0], bearer, circle, steps);
         collar.write(&mut out, rings[0].radius);

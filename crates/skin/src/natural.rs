@@ -19,13 +19,15 @@ pub enum BarkKind {
     Ringed,
     /// Smooth and jointed: bamboo.
     Cane,
+    /// Ribs with rows of spines, four to a tile: cactus.
+    Ribbed,
     /// Young: fine wrinkles along it and small lenticels.
     Twig,
 }
 
 impl BarkKind {
     /// Every kind.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Furrowed,
         Self::Smooth,
         Self::Plated,
@@ -33,6 +35,7 @@ impl BarkKind {
         Self::Cherry,
         Self::Ringed,
         Self::Cane,
+        Self::Ribbed,
         Self::Twig,
     ];
 
@@ -45,6 +48,7 @@ impl BarkKind {
             Self::Ringed => 0.024,
             Self::Smooth => 0.007,
             Self::Cane => 0.010,
+            Self::Ribbed => 0.008,
             Self::Twig => 0.016,
         }
     }

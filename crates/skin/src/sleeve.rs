@@ -31,10 +31,35 @@ impl Circle {
     }
 }
 
+/// Ribs along a tube, with furrows between that are cut into its circle. The first column lies in a furrow.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Ribs {
+    pub count: u32,
+    /// Depth of a furrow over the radius.
+    pub depth: f64,
+}
+
+impl Ribs {
+    /// The sides of a regular polygon whose faces lie as deep as the furrows; `None` without ribs.
+    pub(crate) fn faces(self) -> Option<u32> {
+        let turn = ops::acos_clamped(1.0 - self.depth).max(1e-3);
+        (self.count > 0).then(|| ops::whole((ops::PI / turn).floor()).max(3))
+    }
+
+    /// By the angle around the tube: the radius over that of the circle, and how far the normal leans forward around it.
+    fn at(self, angle: f64, share: f64) -> (f64, f64) {
+        let depth = self.depth * share;
+        let (sin, cos) = ops::sin_cos(angle * f64::from(self.count));
+        let radius = 1.0 - 0.5 * depth * (1.0 + cos);
+        (radius, -0.5 * depth * f64::from(self.count) * sin / radius)
+    }
+}
+
 /// Writes rows of vertices one after another and joins each to the one before.
 pub(crate) struct Sleeve<'a> {
     pub mesh: &'a mut TriMesh,
     circle: &'a Circle,
+    ribs: Ribs,
     repeats: f64,
     /// Texture coordinate along, at the last row.
     v: f64,
@@ -58,7 +83,26 @@ pub(crate) fn narrow2(u: f64, v: f64) -> [f32; 2] {
 
 impl<'a> Sleeve<'a> {
     pub(crate) fn new(mesh: &'a mut TriMesh, circle: &'a Circle, repeats: u32) -> Self {
-        Self { mesh, circle, repeats: f64::from(repeats.max(1)), v: 0.0, last: None }
+        let ribs = Ribs::default();
+        Self { mesh, circle, ribs, repeats: f64::from(repeats.max(1)), v: 0.0, last: None }
+    }
+
+    /// The same with ribs, four to each repetition of the texture.
+    pub(crate) fn ribbed(self, ribs: Ribs) -> Self {
+        let repeats = if ribs.count > 0 { 0.25 * f64::from(ribs.count) } else { self.repeats };
+        Self { ribs, repeats, ..self }
+    }
+
+    /// By the column of a ring: the radius there over that of the ring, and the normal, given the ray, the normal of the plain
+    /// tube and the share of the depth of the furrows.
+    fn corner(&self, ring: &Ring, column: usize, (ray, normal): (DVec3, DVec3), share: f64) -> (f64, DVec3) {
+        if self.ribs.count == 0 {
+            return (1.0, normal);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "at most 64")]
+        let angle = ops::TAU * column as f64 / self.sides();
+        let (radius, lean) = self.ribs.at(angle, share);
+        (radius, normal + ring.tangent.cross(ray) * lean)
     }
 
     fn vertex(&mut self, p: DVec3, normal: DVec3, u: f64, v: f64) -> u32 {
@@ -114,13 +158,17 @@ impl<'a> Sleeve<'a> {
         // Towards a thin tip the texture would be squeezed without bound: a quarter of the first radius
         // is as far as it follows.
         let floor = rings.first().map_or(0.0, |r| 0.25 * r.radius);
-        for ring in rings {
+        // What leaves a bearer is round there: its first ring is the top of its fillet.
+        let round = if self.last.is_some() { 0 } else { usize::MAX };
+        for (row, ring) in rings.iter().enumerate() {
             self.advance(ring.centre, ring.radius.max(floor));
             let first = self.next();
             let (v, mut u) = (self.v, 0.0);
-            for corner in &circle.0[..circle.sides()] {
+            let share = if row == round { 0.0 } else { 1.0 };
+            for (column, corner) in circle.0[..circle.sides()].iter().enumerate() {
                 let ray = ring.ray(*corner);
-                self.vertex(ring.centre + ray * ring.radius, ring.normal(ray), u, v);
+                let (wide, normal) = self.corner(ring, column, (ray, ring.normal(ray)), share);
+                self.vertex(ring.centre + ray * (ring.radius * wide), normal, u, v);
                 u += du;
             }
             self.seam(first, u, v);
@@ -143,8 +191,10 @@ impl<'a> Sleeve<'a> {
         let circle = self.circle;
         let normal = -ring.tangent;
         let apex = self.vertex(ring.centre, normal, 0.5, 0.5);
-        for &(cos, sin) in &circle.0[..circle.sides()] {
-            let p = ring.centre + ring.ray((cos, sin)) * ring.radius;
+        for (column, &(cos, sin)) in circle.0[..circle.sides()].iter().enumerate() {
+            let ray = ring.ray((cos, sin));
+            let wide = self.corner(ring, column, (ray, normal), 1.0).0;
+            let p = ring.centre + ray * (ring.radius * wide);
             self.vertex(p, normal, 0.5 + 0.5 * cos, 0.5 + 0.5 * sin);
         }
         let n = index(circle.sides());
@@ -173,9 +223,11 @@ impl<'a> Sleeve<'a> {
             self.advance(centre, end.radius);
             let first = self.next();
             let (v, mut u) = (self.v, 0.0);
-            for corner in &circle.0[..circle.sides()] {
+            for (column, corner) in circle.0[..circle.sides()].iter().enumerate() {
                 let ray = end.ray(*corner);
-                self.vertex(centre + ray * (end.radius * cos), ray * cos + end.tangent * sin, u, v);
+                let (wide, normal) = self.corner(end, column, (ray, ray), 1.0);
+                let out = ray * (end.radius * wide * cos);
+                self.vertex(centre + out, normal * cos + end.tangent * sin, u, v);
                 u += du;
             }
             self.seam(first, u, v);
@@ -199,4 +251,27 @@ pub(crate) fn drop_flat(mesh: &mut TriMesh) {
         let (a, b, c) = (p[a as usize], p[b as usize], p[c as usize]);
         a != b && b != c && c != a
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ribs_are_cut_into_the_circle_and_their_normals_stand_on_them() {
+        let ribs = Ribs { count: 12, depth: 0.2 };
+        let r = |angle: f64| ribs.at(angle, 1.0).0;
+        assert!((r(0.0) - 0.8).abs() < 1e-12 && (r(ops::PI / 12.0) - 1.0).abs() < 1e-12);
+        assert_eq!((ribs.at(0.3, 0.0).0, ribs.faces(), Ribs::default().faces()), (1.0, Some(4), None));
+        for k in 0..40 {
+            let angle = 0.05 * f64::from(k);
+            let at = |a: f64| {
+                let (sin, cos) = ops::sin_cos(a);
+                DVec3::new(cos, sin, 0.0)
+            };
+            let along = at(angle + 1e-6) * r(angle + 1e-6) - at(angle - 1e-6) * r(angle - 1e-6);
+            let normal = at(angle) + DVec3::Z.cross(at(angle)) * ribs.at(angle, 1.0).1;
+            assert!(along.normalize().dot(normal.normalize()).abs() < 1e-6, "{angle}");
+        }
+    }
 }

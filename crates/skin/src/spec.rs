@@ -122,7 +122,7 @@ impl SkinSpec {
 }
 
 /// The bark of a tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarkSpec {
     /// What it is like.
     pub kind: BarkKind,
@@ -130,11 +130,21 @@ pub struct BarkSpec {
     pub colour: Colour,
     /// The colour of twigs.
     pub twig: Colour,
+    /// Ribs along thick stems, 0 to 32.
+    pub ribs: u32,
+    /// Depth of the furrows between ribs over the radius, 0 to 0.5.
+    pub rib_depth: f64,
 }
 
 impl Default for BarkSpec {
     fn default() -> Self {
-        Self { kind: BarkKind::Furrowed, colour: Colour([98, 81, 66]), twig: Colour([103, 88, 65]) }
+        Self {
+            kind: BarkKind::Furrowed,
+            colour: Colour([98, 81, 66]),
+            twig: Colour([103, 88, 65]),
+            ribs: 0,
+            rib_depth: 0.0,
+        }
     }
 }
 
@@ -143,8 +153,9 @@ impl BarkSpec {
     pub(crate) const fn of(self, twig: bool) -> (BarkKind, Colour) {
         match (twig, self.kind) {
             (false, kind) => (kind, self.colour),
-            // A bamboo's twigs are canes, too.
+            // A bamboo's twigs are canes, too, and a cactus's arms have ribs.
             (true, BarkKind::Cane) => (BarkKind::Cane, self.twig),
+            (true, BarkKind::Ribbed) => (BarkKind::Ribbed, self.colour),
             (true, _) => (BarkKind::Twig, self.twig),
         }
     }

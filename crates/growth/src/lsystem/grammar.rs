@@ -52,18 +52,21 @@ pub struct Lsystem {
     pub width_m: f64,
     /// Direction and strength of what bends every step; default none.
     pub tropism: (DVec3, f64),
+    /// Whether a younger plant is what fewer steps make, and not the whole grown back; default false.
+    pub ages_by_steps: bool,
 }
 
 impl Lsystem {
     /// Reads an L-system.
     ///
     /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 100, default 5),
-    /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`.
+    /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`,
+    /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth).
     /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same
     /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
     /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
-    /// `^(a)` down and up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf of that
-    /// scale, `[` `]` branch. All others are skipped. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
+    /// `^(a)` down and up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf and
+    /// `*(s)` flower of that scale, `[` `]` branch. All others are skipped. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
     ///
     /// # Errors
     /// [`LsystemError`] with the line.
@@ -76,6 +79,7 @@ impl Lsystem {
             length_m: 0.2,
             width_m: 0.0,
             tropism: (DVec3::NEG_Y, 0.0),
+            ages_by_steps: false,
         };
         let mut constants: Vec<(String, f64)> = Vec::new();
         for (number, line) in text.lines().enumerate() {
@@ -120,6 +124,7 @@ impl Lsystem {
             "angle" => self.angle_deg = number("angle", -360.0, 360.0)?,
             "length" => self.length_m = number("length", 0.0, 1e4)?,
             "width" => self.width_m = number("width", 0.0, 100.0)?,
+            "ages" if value == "steps" => self.ages_by_steps = true,
             "tropism" => {
                 let c: Vec<f64> =
                     value.split_whitespace().map(|w| evaluate(w, constants)).collect::<Result<_, _>>()?;

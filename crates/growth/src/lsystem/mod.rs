@@ -15,7 +15,7 @@ use crate::{GrowthError, JointId, Skeleton};
 
 pub use grammar::Lsystem;
 
-/// A leaf that the turtle set.
+/// A leaf or a flower that the turtle set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafMark {
     /// Where.
@@ -26,6 +26,8 @@ pub struct LeafMark {
     pub up: DVec3,
     /// Relative size.
     pub scale: f64,
+    /// A flower, not a leaf.
+    pub flower: bool,
 }
 
 /// What an L-system made.
@@ -33,7 +35,7 @@ pub struct LeafMark {
 pub struct LsystemTree {
     /// All trees; radii where the rules set diameters.
     pub skeleton: Skeleton,
-    /// Leaves.
+    /// Leaves and flowers.
     pub leaves: Vec<LeafMark>,
     /// Modules of the last step, of all trees.
     pub modules: usize,
@@ -121,6 +123,13 @@ mod tests {
             (tree.leaves.len(), tree.leaves[0].joint, tree.leaves[0].scale),
             (1, JointId::new(2), 0.5)
         );
+    }
+
+    #[test]
+    fn flowers_are_set_where_rules_say() {
+        let tree = grow("axiom = F(1) L F(1) *(0.5)\nsteps = 0", 1).expect("sound");
+        let got: Vec<_> = tree.leaves.iter().map(|m| (m.joint, m.scale, m.flower)).collect();
+        assert_eq!(got, [(JointId::new(1), 1.0, false), (JointId::new(2), 0.5, true)]);
     }
 
     #[test]

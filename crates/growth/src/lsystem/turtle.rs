@@ -1,4 +1,4 @@
-//! Modules -> skeleton and leaves, by a turtle.
+//! Modules -> skeleton, leaves and flowers, by a turtle.
 
 use base::ops::{self, PI};
 use glam::DVec3;
@@ -58,11 +58,12 @@ pub(super) fn draw(
             b'|' => t.turn(t.up, PI),
             b'$' => t.level(),
             b'!' => t.diameter = first.unwrap_or(t.diameter * 0.7).max(0.0),
-            b'L' => leaves.push(LeafMark {
+            b'L' | b'*' => leaves.push(LeafMark {
                 joint: t.joint,
                 heading: t.heading,
                 up: t.up,
                 scale: first.unwrap_or(1.0),
+                flower: symbol == b'*',
             }),
             b'[' => stack.push(*t),
             b']' => turtle = stack.pop().unwrap_or(turtle),

@@ -26,6 +26,7 @@ pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, executor: &dyn Exec
             BarkKind::Cherry => paint(&|u, v| cherry(colour, u, v)),
             BarkKind::Ringed => paint(&|u, v| ringed(colour, u, v)),
             BarkKind::Cane => paint(&|u, v| cane(colour, u, v)),
+            BarkKind::Ribbed => paint(&|u, v| ribbed(colour, u, v)),
             BarkKind::Twig => paint(&|u, v| twig(colour, u, v)),
         }
     })
@@ -280,6 +281,36 @@ fn cane(colour: Paint, u: f64, v: f64) -> Spot {
     let paint = mix(paint, shade(colour, 0.45), edge.max(0.6 * sheath));
     let height = 0.30 + 0.55 * (1.0 - ops::smoothstep(0.008, 0.035, from)) + 0.03 * gloss;
     Spot { height, paint, rough: 0.38 + 0.25 * wax, through: 0.0 }
+}
+
+/// Four ribs, light on their crests, each with a row of grey felt from which spines spread.
+fn ribbed(colour: Paint, u: f64, v: f64) -> Spot {
+    const FELT: Paint = [0.72, 0.67, 0.56];
+    const ROWS: f64 = 8.0;
+    let x = 4.0 * u;
+    let rib = x.floor();
+    // From the crest, in widths of a rib: 0 on it, 0.5 in the furrow.
+    let aside = x - rib - 0.5;
+    // The rows of neighbouring ribs stand at different heights.
+    let y = ROWS * v + 0.37 * rib + 0.10 * noise(u, v, (4, 5), 1);
+    let up = (y - y.floor() - 0.5) / ROWS * 4.0;
+    let away = (aside * aside + up * up).sqrt();
+    let felt = 1.0 - ops::smoothstep(0.06, 0.11, away);
+    // Spines spread from the felt like the spokes of a wheel.
+    let turn = ops::atan2(up, aside) * 11.0 / ops::TAU + 3.0 * noise(u, v, (16, 16), 2);
+    let spoke = 1.0 - ops::smoothstep(0.10, 0.30, (turn - turn.round()).abs());
+    let spines = spoke * (1.0 - ops::smoothstep(0.16, 0.34, away)) * (1.0 - felt);
+    let mottle = rough(u, v, (6, 4), 3, 3);
+    let grain = rough(u, v, (48, 48), 4, 2);
+    let lit = 1.0 - ops::smoothstep(0.05, 0.5, aside.abs());
+    let paint = shade(colour, 0.72 + 0.44 * lit + 0.10 * mottle + 0.06 * grain);
+    let paint = mix(paint, FELT, (0.85 * felt).max(0.75 * spines));
+    Spot {
+        height: 0.4 + 0.2 * lit + 0.3 * felt + 0.1 * spines + 0.05 * grain,
+        paint,
+        rough: 0.62,
+        through: 0.0,
+    }
 }
 
 /// Fine wrinkles along it, lenticels, and thin skin that comes off in places.

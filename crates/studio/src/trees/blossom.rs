@@ -5,8 +5,10 @@
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
-use growth::{BlossomSpec, Obstacles};
-use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
+use growth::{BlossomSpec, FlowerPlace, Obstacles};
+use plant::{
+    Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId,
+};
 
 // The innermost of six whorls opens this far from the flower's axis.
 const CLOSED: f64 = 20.0 * PI / 180.0;
@@ -14,50 +16,76 @@ const CLOSED: f64 = 20.0 * PI / 180.0;
 /// The shapes that the flowers of a tree share.
 struct Shapes {
     petal: ShapeId,
-    disc: ShapeId,
+    disc: Option<ShapeId>,
     stalk: ShapeId,
 }
 
-/// Turns leaves into flowers. Which ones follows from their keys, so that a larger share keeps those of a smaller.
-/// A flower that would enter an obstacle stays a leaf.
-pub(super) fn add_blossom(spec: &BlossomSpec, plant: &mut Plant, obstacles: &Obstacles, seed: Seed) {
+/// Turns leaves into flowers, and adds those that rules set. Which leaves follows from their keys, so that a larger share
+/// keeps those of a smaller. A leaf whose flower would enter an obstacle stays a leaf.
+pub(super) fn add_blossom(
+    spec: &BlossomSpec,
+    plant: &mut Plant,
+    set: &[FlowerPlace],
+    obstacles: &Obstacles,
+    seed: Seed,
+) {
     let blooms = |o: &Organ| {
         o.kind == OrganKind::Leaf && seed.child(o.key).stream(Draw::Template).uniform() < spec.share
     };
-    if spec.share <= 0.0 || !plant.organs.iter().any(blooms) {
+    if set.is_empty() && (spec.share <= 0.0 || !plant.organs.iter().any(blooms)) {
         return;
     }
     let (places, kept): (Vec<Organ>, Vec<Organ>) =
         std::mem::take(&mut plant.organs).into_iter().partition(blooms);
     plant.organs = kept;
     let shapes = Shapes {
-        petal: push(plant, Shape::Blade(petal(0.5 * spec.diameter_m, spec.petals))),
-        disc: push(plant, Shape::Blade(disc(0.15 * spec.diameter_m))),
+        petal: push(plant, Shape::Blade(petal(0.5 * spec.diameter_m, spec))),
+        disc: (spec.tuft > 0.0).then(|| push(plant, Shape::Blade(disc(0.5 * spec.tuft * spec.diameter_m)))),
         stalk: push(plant, stalk(spec.stalk * spec.diameter_m)),
     };
     let both = |s: &Shape| [1.0, plant::DRAWN_WIDER].into_iter().flat_map(|w| s.corners(w)).collect();
     let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(both).collect();
-    for place in &places {
+    // Flowers of leaves look where they please, those that rules set along the stalk that was drawn for them.
+    let of_leaf = |o: Organ| {
+        let place = Place { bearer: o.bearer, frame: o.frame, scale: 1.0, key: o.key, stray: [0.5, 0.7] };
+        (place, Some(o))
+    };
+    let of_rule = |f: &FlowerPlace| {
+        let (bearer, stray) = (Some(f.bearer), [0.0, 0.3]);
+        (Place { bearer, frame: f.frame, scale: f.scale, key: f.key, stray }, None)
+    };
+    for (place, leaf) in places.into_iter().map(of_leaf).chain(set.iter().map(of_rule)) {
         let (organs, flowers) = (plant.organs.len(), plant.flowers.len());
-        add_flower(spec, plant, place, &shapes, seed);
+        add_flower(spec, plant, &place, &shapes, seed);
         let free = |o: &Organ| obstacles.admit(&o.frame, o.scale, &corners[o.shape.index()]);
         if !obstacles.is_empty() && !plant.organs[organs..].iter().all(free) {
             plant.organs.truncate(organs);
             plant.flowers.truncate(flowers);
-            plant.organs.push(place.clone());
+            plant.organs.extend(leaf);
         }
     }
 }
 
-fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Shapes, seed: Seed) {
+/// Where a flower is made.
+struct Place {
+    bearer: Option<NodeId>,
+    frame: Frame,
+    scale: f64,
+    key: u64,
+    /// How far it turns to the upper side of its place, and where it pleases.
+    stray: [f64; 2],
+}
+
+fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Place, shapes: &Shapes, seed: Seed) {
     let key = seed.child(place.key).child(Draw::Template as u64);
     let mut draw = key.stream(Draw::Template);
     // Flowers look outwards, to the light and a little where they please.
     let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
-    let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
-    let longer = 0.7 + 0.6 * draw.uniform();
+    let [upper, astray] = place.stray;
+    let axis = (place.frame.along + upper * place.frame.normal + astray * stray).normalize_or(DVec3::Y);
+    let longer = (0.7 + 0.6 * draw.uniform()) * place.scale;
     let centre = place.frame.origin + place.frame.along * (spec.stalk * spec.diameter_m * longer);
-    let scale = 0.85 + 0.3 * draw.uniform();
+    let scale = (0.85 + 0.3 * draw.uniform()) * place.scale;
     let share = draw.uniform();
     let (from, to) = (spec.color.linear(), spec.color_to.unwrap_or(spec.color).linear());
     let id = FlowerId::new(plant.flowers.len());
@@ -101,16 +129,12 @@ fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Sha
             ));
         }
     }
-    let frame =
-        Frame { origin: centre + axis * (0.06 * spec.diameter_m), right: across, along: up, normal: axis };
-    plant.organs.push(organ(
-        OrganKind::Disc,
-        shapes.disc,
-        frame,
-        scale,
-        Paint::default(),
-        key.child(u64::MAX),
-    ));
+    if let Some(disc) = shapes.disc {
+        let origin = centre + axis * (0.06 * spec.diameter_m * place.scale);
+        let frame = Frame { origin, right: across, along: up, normal: axis };
+        let key = key.child(u64::MAX);
+        plant.organs.push(organ(OrganKind::Disc, disc, frame, scale, Paint::default(), key));
+    }
     let key = key.child(u64::MAX - 1);
     plant.organs.push(organ(OrganKind::Pedicel, shapes.stalk, place.frame, longer, Paint::default(), key));
 }
@@ -120,9 +144,9 @@ fn push(plant: &mut Plant, shape: Shape) -> ShapeId {
     ShapeId::new(plant.shapes.len() - 1)
 }
 
-/// A round petal with a notch at its end, as wide as it must be for `count` to close the whorl.
-fn petal(length_m: f64, count: u32) -> Blade {
-    let half = (1.08 * ops::sin(PI / f64::from(count.max(3)))).min(0.62);
+/// A round petal with a notch at its end, as wide as it must be to close the whorl, or narrower.
+fn petal(length_m: f64, spec: &BlossomSpec) -> Blade {
+    let half = (1.08 * ops::sin(PI / f64::from(spec.petals.max(3)))).min(0.62) * spec.petal_width;
     // Few corners: a tree in blossom has tens of thousands of these.
     let right = [(0.95, 0.6), (0.62, 1.02)];
     let right = right.map(|(x, y)| DVec2::new(x * half, y) * length_m);

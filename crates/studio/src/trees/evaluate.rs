@@ -196,7 +196,7 @@ impl TreeEvaluator {
         let mut grown = raw.grown.clone();
         // They come before leaves, in the places of some. Nothing flowers in autumn, or before spring.
         if (EARLIEST_FLOWERS..=0.0).contains(&spec.look.leaf_season()) {
-            add_blossom(&spec.blossom, &mut grown.plant, obstacles, seed);
+            add_blossom(&spec.blossom, &mut grown.plant, &raw.grown.flowers, obstacles, seed);
         }
         let away = tint(&spec.look, &mut grown.plant, pictured, seed);
         (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - away, grown.leaves.fallen + away);

@@ -144,9 +144,12 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
         Bark::Cherry => BarkKind::Cherry,
         Bark::Ringed => BarkKind::Ringed,
         Bark::Cane => BarkKind::Cane,
+        Bark::Ribbed => BarkKind::Ribbed,
     };
     let venation = match form {
-        BladeForm::Palmate | BladeForm::Fan => VeinPattern::Palmate,
+        BladeForm::Palmate | BladeForm::Fingered | BladeForm::Tricuspid | BladeForm::Fan => {
+            VeinPattern::Palmate
+        }
         BladeForm::Pinnate | BladeForm::Feather => VeinPattern::Compound,
         BladeForm::Leaflet => VeinPattern::Parallel,
         // What has canes is a grass.
@@ -154,7 +157,8 @@ pub(super) fn dressed(skin: SkinSpec, look: &Look, form: BladeForm) -> SkinSpec 
         BladeForm::Needle | BladeForm::Tuft | BladeForm::Spray | BladeForm::Brush => VeinPattern::Needle,
         _ => VeinPattern::Pinnate,
     };
-    let bark = BarkSpec { kind, colour: look.bark_color, twig: look.twig_color };
+    let (ribs, rib_depth) = (look.ribs.min(32), look.rib_depth);
+    let bark = BarkSpec { kind, colour: look.bark_color, twig: look.twig_color, ribs, rib_depth };
     SkinSpec { bark: Some(bark), venation: Some(venation), ..skin }
 }
 

@@ -69,6 +69,15 @@ presets![
     "tree-fern",
     "banana",
     "maize",
+    "saguaro",
+    "wheat",
+    "lavender",
+    "reed",
+    "baobab",
+    "agave",
+    "fig",
+    "mangrove",
+    "boston-ivy",
 ];
 
 impl Preset {
