@@ -95,9 +95,9 @@ fn main() -> ExitCode {
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
         Some("test-web") => {
-            web::setup().and_then(|tools| web::test(&tools, false).and_then(|()| studio::test(&tools, false)))
+            web::setup().and_then(|tools| web::test(&tools, false).and_then(|()| test_studio(&tools)))
         }
-        Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools, false)),
+        Some("test-studio") => web::setup().and_then(|tools| test_studio(&tools)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
         Some("archive") => archive::run(),
         Some("npm") => web::setup().and_then(|tools| npm::pack(&tools)),
@@ -169,6 +169,11 @@ fn types() -> Outcome {
     Ok(())
 }
 
+fn test_studio(tools: &web::Tools) -> Outcome {
+    studio::test(tools, false)?;
+    studio::kills()
+}
+
 /// Everything that must be green.
 fn test() -> Outcome {
     let tools = web::setup()?;
@@ -179,6 +184,10 @@ fn test() -> Outcome {
     cargo(&[&["run", "--quiet", "--package", "burgeon"][..], &stand].concat())?;
     web::test(&tools, true)?;
     npm::test(&tools)?;
-    python::test(true)?;
-    studio::test(&tools, true)
+    studio::test(&tools, true)?;
+    std::thread::scope(|scope| {
+        let kills = scope.spawn(studio::kills);
+        python::test(true)?;
+        kills.join().map_err(|_panic| "the kill test panicked")?
+    })
 }

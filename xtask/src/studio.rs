@@ -85,13 +85,19 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     let mut c = prepare("node", &["e2e/run.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
     finish(c)?;
-    say("$ node e2e/kills.mjs");
-    let mut c = prepare("node", &["e2e/kills.mjs"]);
-    c.current_dir(folder()).arg(&browser).arg(burgeon("debug"));
-    finish(c)?;
     say("$ node e2e/morph.mjs");
     let mut c = prepare("node", &["e2e/morph.mjs"]);
     c.current_dir(folder()).arg(browser).arg(burgeon("debug")).arg(target_dir().join("morph-test"));
+    finish(c)
+}
+
+/// Kills pages at any moment and asks for their strokes, once [`test`] has built what that takes. Pages wait much: other
+/// work can be done meanwhile.
+pub(crate) fn kills() -> Outcome {
+    let Some(browser) = browser() else { return Ok(()) };
+    say("$ node e2e/kills.mjs");
+    let mut c = prepare("node", &["e2e/kills.mjs"]);
+    c.current_dir(folder()).arg(&browser).arg(burgeon("debug"));
     finish(c)
 }
 
