@@ -97,6 +97,7 @@ describe('the sheet of keys', () => {
       'H',
       'G · R · S',
       'X · Z',
+      'Ctrl+G · Ctrl+Shift+G',
       'W · K',
       'I',
       'Shift+S',

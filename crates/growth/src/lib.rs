@@ -65,14 +65,13 @@ pub use look::{Bark, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
-pub use props::PropSpec;
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use set_down::SetDown;
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tree::{FlowerPlace, Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;
-pub use wood::{Wood, WoodSpec, make_wood};
+pub use wood::{PropSpec, Wood, WoodSpec, make_wood};
 
 /// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and
 /// meshes. As of an oak.

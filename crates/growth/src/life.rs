@@ -10,7 +10,7 @@
 use base::ops;
 use glam::DVec3;
 
-use crate::wood::{main_children, pipes, radii};
+use crate::wood::{boles, main_children, pipes, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
 /// Rate and shape of growth (Richards 1959): half of the height is there at two fifths of the life that is looked at.
@@ -113,34 +113,6 @@ fn thinner(full: &Skeleton, young: &mut Skeleton, ids: &[Option<JointId>], wood:
             young.radius_m[id.index()] = r.min(full.radius_m[j]);
         }
     }
-}
-
-/// Which joints lie on a trunk below its lowest limb.
-pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
-    let n = full.len();
-    let mut above = vec![1_u32; n];
-    for j in (0..n).rev() {
-        if let Some(p) = full.parent[j] {
-            above[p.index()] += above[j];
-        }
-    }
-    let mut on_bole = vec![false; n];
-    // By joint: what leaves it to the side.
-    let mut aside = vec![0_u32; n];
-    for (j, wood) in above.iter().enumerate() {
-        if let Some(p) = full.parent[j].map(JointId::index).filter(|&p| main[p] != Some(JointId::new(j))) {
-            aside[p] += wood;
-        }
-    }
-    for (root, whole) in (0..n).filter(|&j| full.parent[j].is_none()).map(|j| (j, above[j])) {
-        let limb = (whole / 200).max(2);
-        let mut at = Some(root);
-        while let Some(j) = at {
-            on_bole[j] = true;
-            at = main[j].filter(|_| aside[j] < limb).map(JointId::index);
-        }
-    }
-    on_bole
 }
 
 #[cfg(test)]

@@ -5,11 +5,9 @@
 use base::ops::{self, FRAC_PI_2, PI};
 use base::{Draw, Seed};
 use glam::DVec3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use crate::life::{boles, grown_by};
-use crate::wood::{main_children, radii};
+use crate::life::grown_by;
+use crate::wood::{PropSpec, boles, main_children, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
 /// The key under which a seed draws props.
@@ -20,35 +18,6 @@ const STEPS: u32 = 9;
 const FOOT: f64 = 0.4;
 /// How deep props reach into the ground, in their radii.
 const SUNK: f64 = 2.0;
-
-/// Roots that arch from the stem to the ground and carry it: mangroves, screw pines.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct PropSpec {
-    /// How many leave the stem, 0 to 200, default 0.
-    #[schemars(range(min = 0, max = 200))]
-    pub count: u32,
-    /// The height up to which they leave it when the tree is whole, metres, 0.01 to 50, default 1.5.
-    #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
-    pub rise_m: f64,
-    /// How far from the stem the highest come down, metres, 0.01 to 50, default 1.5; each by half more or less.
-    #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
-    pub reach_m: f64,
-    /// Mean radius, metres, 0.001 to 5, default 0.025.
-    #[schemars(range(min = 0.001, max = 5.0), extend("x-unit" = "m"))]
-    pub radius_m: f64,
-    /// The chance that a further arch leaves one half-way down, 0 to 1, default 0.5.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub fork: f64,
-}
-
-spec::schemas!(PropSpec => crate::TreeSpec, "/$defs/PropSpec");
-
-impl Default for PropSpec {
-    fn default() -> Self {
-        Self { count: 0, rise_m: 1.5, reach_m: 1.5, radius_m: 0.025, fork: 0.5 }
-    }
-}
 
 /// Adds the props of each tree at a share of its life. They know nothing of obstacles.
 pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, life: f64, seed: Seed) {

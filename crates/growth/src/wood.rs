@@ -11,8 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::beside::{Course, Foot, Room};
 use crate::error::within;
-use crate::life::boles;
-use crate::{GrowthError, JointId, Obstacles, PropSpec, Skeleton};
+use crate::{GrowthError, JointId, Obstacles, Skeleton};
 
 /// How a skeleton becomes wood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,6 +65,35 @@ impl Default for WoodSpec {
             relax: 1,
             thin_out: 0.25,
         }
+    }
+}
+
+/// Roots that arch from the stem to the ground and carry it: mangroves, screw pines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PropSpec {
+    /// How many leave the stem, 0 to 200, default 0.
+    #[schemars(range(min = 0, max = 200))]
+    pub count: u32,
+    /// The height up to which they leave it when the tree is whole, metres, 0.01 to 50, default 1.5.
+    #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
+    pub rise_m: f64,
+    /// How far from the stem the highest come down, metres, 0.01 to 50, default 1.5; each by half more or less.
+    #[schemars(range(min = 0.01, max = 50.0), extend("x-unit" = "m"))]
+    pub reach_m: f64,
+    /// Mean radius, metres, 0.001 to 5, default 0.025.
+    #[schemars(range(min = 0.001, max = 5.0), extend("x-unit" = "m"))]
+    pub radius_m: f64,
+    /// The chance that a further arch leaves one half-way down, 0 to 1, default 0.5.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub fork: f64,
+}
+
+spec::schemas!(PropSpec => crate::TreeSpec, "/$defs/PropSpec");
+
+impl Default for PropSpec {
+    fn default() -> Self {
+        Self { count: 0, rise_m: 1.5, reach_m: 1.5, radius_m: 0.025, fork: 0.5 }
     }
 }
 
@@ -154,6 +182,34 @@ pub(crate) fn make_wood_of(
 
 /// Above the bole, the share of its length on which what it is swollen by fades out.
 const SHOULDER: f64 = 0.5;
+
+/// Which joints lie on a trunk below its lowest limb.
+pub(crate) fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
+    let n = full.len();
+    let mut above = vec![1_u32; n];
+    for j in (0..n).rev() {
+        if let Some(p) = full.parent[j] {
+            above[p.index()] += above[j];
+        }
+    }
+    let mut on_bole = vec![false; n];
+    // By joint: what leaves it to the side.
+    let mut aside = vec![0_u32; n];
+    for (j, wood) in above.iter().enumerate() {
+        if let Some(p) = full.parent[j].map(JointId::index).filter(|&p| main[p] != Some(JointId::new(j))) {
+            aside[p] += wood;
+        }
+    }
+    for (root, whole) in (0..n).filter(|&j| full.parent[j].is_none()).map(|j| (j, above[j])) {
+        let limb = (whole / 200).max(2);
+        let mut at = Some(root);
+        while let Some(j) = at {
+            on_bole[j] = true;
+            at = main[j].filter(|_| aside[j] < limb).map(JointId::index);
+        }
+    }
+    on_bole
+}
 
 /// Thickens boles by a factor: most in their lower half, and less and less above their lowest limb.
 fn swell(radius: &mut [f64], skeleton: &Skeleton, main: &[Option<JointId>], factor: f64) {

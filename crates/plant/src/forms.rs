@@ -246,6 +246,7 @@ fn fingered() -> Vec<DVec2> {
 }
 
 /// Half of three pointed lobes with coarse teeth on a heart-shaped foot (Parthenocissus tricuspidata).
+#[expect(clippy::approx_constant, reason = "a place on a margin")]
 fn tricuspid() -> Vec<DVec2> {
     margin(&[
         (0.086, -0.08),

@@ -166,13 +166,7 @@ pub(crate) fn tubes<'p>(
         let bearer = hosts[i].and_then(|(host, sample)| {
             Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], faces[host]))
         });
-        let surface = match chain.surface {
-            Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
-                Surface::YoungBark
-            }
-            Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
-            surface => surface,
-        };
+        let surface = surface(chain, spine, thickest, budget);
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
         let repeats = match surface {
             Surface::Bark => base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
@@ -192,6 +186,15 @@ pub(crate) fn tubes<'p>(
         Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
     })?;
     Ok((tubes.into_iter().flatten().collect(), wind))
+}
+
+/// What a chain is made of, as thick as it is beside the thickest and the whole plant.
+fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
+    match chain.surface {
+        Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => Surface::YoungBark,
+        Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
+        surface => surface,
+    }
 }
 
 /// By chain: its ribs, the sides that they take, and those as which its surface counts for what grows out of it, for which a
