@@ -91,7 +91,7 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     finish(c)
 }
 
-/// Kills pages at any moment and asks for their strokes, once [`test`] has built what that takes. Pages wait much: other
+/// Kills pages at any moment and asks for their strokes, once [`test()`] has built what that takes. Pages wait much: other
 /// work can be done meanwhile.
 pub(crate) fn kills() -> Outcome {
     let Some(browser) = browser() else { return Ok(()) };
