@@ -2,15 +2,7 @@
 import * as THREE from 'three';
 import type { Sent } from '../protocol';
 import type { MirrorPlane } from './mirror';
-import type {
-  CarriedPose,
-  Carry,
-  Mirror,
-  PlantState,
-  SceneView,
-  ShapePointer,
-  ShapeReach,
-} from '../wire';
+import type { CarriedPose, Carry, Mirror, PlantState, SceneView, ShapePointer, ShapeReach } from '../wire';
 import type { HeldRows } from './carry';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
