@@ -322,9 +322,10 @@ async function panel({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   assert.equal(await length.inputValue(), was);
   await page.locator('.f-search input').fill('light');
-  await page.locator('.f-row:visible', { hasText: /light/i }).first().waitFor();
-  const found = await page.locator('.form .f-row:visible').allTextContents();
-  assert.ok(found.length > 0 && found.every((row) => /light/i.test(row)), found.join(' | '));
+  await page.waitForFunction(() => {
+    const found = [...document.querySelectorAll('.form .f-row')].filter((row) => row.checkVisibility());
+    return found.length > 0 && found.every((row) => /light/i.test(row.textContent));
+  });
   await shot('grove-search');
   await page.locator('.f-search input').fill('');
   await page.waitForFunction(() => document.querySelectorAll('.form details').length > 2);
