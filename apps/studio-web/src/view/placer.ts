@@ -85,11 +85,12 @@ export class Placer {
     this.handles ??= new Handles(this.camera, this.canvas, this.scene, this.events);
   }
 
-  /** Puts the handles to plants, amid them if they are several; none takes the handles away. */
-  show(places: readonly THREE.Object3D[]): void {
+  /** Puts the handles to a plant, or amid those that go together; none takes the handles away. */
+  show(places: readonly THREE.Object3D[], together: boolean): void {
     this.pivot.removeFromParent();
     this.hanging = [];
-    if (places.length > 1) {
+    const amid = together && places.length > 0;
+    if (amid) {
       this.hanging = places.map((place) => ({
         place,
         position: place.position.clone(),
@@ -103,7 +104,7 @@ export class Placer {
       this.pivot.scale.setScalar(1);
       places[0]!.parent?.add(this.pivot);
     }
-    this.handles?.show(places.length > 1 ? this.pivot : places[0], this.gizmo);
+    this.handles?.show(amid ? this.pivot : places[0], this.gizmo);
   }
 
   /** Takes the plants along that hang together, and says how they were carried. */

@@ -349,11 +349,12 @@ export class PlantView {
     const fixed = this.selection.some((id) => this.plants.stateOf(id)?.fixed);
     const places = this.selection.flatMap((id) => this.plants.named.get(id)?.place ?? []);
     const away = this.isFront || this.plants.guest !== undefined || fixed;
-    this.placer.show(away ? [] : places.filter((place) => place.visible));
+    // Those that are hidden go with the others.
+    const seen = places.some((place) => place.visible);
+    const together = this.selection.length > 1;
+    this.placer.show(away || !seen ? [] : places, together);
     // One that is chosen alone has its panel open.
-    this.rings.show(
-      this.selection.length > 1 ? this.selection.flatMap((id) => this.plants.named.get(id) ?? []) : [],
-    );
+    this.rings.show(together ? this.selection.flatMap((id) => this.plants.named.get(id) ?? []) : []);
   }
 
   private moved(): void {
