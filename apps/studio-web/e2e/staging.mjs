@@ -5,28 +5,38 @@ import { join } from 'node:path';
 import { inflateRawSync } from 'node:zlib';
 import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
 
-/** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
-async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
-  return page.evaluate(
+/** The pixels of a part of a picture file, four bytes each, and the size of the whole; shares of its width and height. */
+async function pixels(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
+  const { rgba, ...sizes } = await page.evaluate(
     async ([base64, a, b, c, d]) => {
       const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
       const image = await createImageBitmap(new Blob([raw]));
       const canvas = new OffscreenCanvas(image.width, image.height);
       const context = canvas.getContext('2d');
       context.drawImage(image, 0, 0);
-      const [w, h] = [image.width, image.height];
-      const box = [a * w, b * h, Math.max(1, (c - a) * w), Math.max(1, (d - b) * h)].map(Math.floor);
-      const { data: p } = context.getImageData(...box);
-      const sum = [0, 0, 0];
-      let alpha = 255;
-      for (let i = 0; i < p.length; i += 4) {
-        for (let k = 0; k < 3; k += 1) sum[k] += p[i + k];
-        alpha = Math.min(alpha, p[i + 3]);
-      }
-      return { rgb: sum.map((s) => (4 * s) / p.length), alpha, width: w, height: h };
+      const [width, height] = [image.width, image.height];
+      const box = [a * width, b * height, Math.max(1, (c - a) * width), Math.max(1, (d - b) * height)];
+      const part = context.getImageData(...box.map(Math.floor));
+      let text = '';
+      for (let i = 0; i < part.data.length; i += 4096)
+        text += String.fromCharCode(...part.data.subarray(i, i + 4096));
+      return { rgba: btoa(text), across: part.width, width, height };
     },
     [bytes.toString('base64'), x0, y0, x1, y1],
   );
+  return { p: Buffer.from(rgba, 'base64'), ...sizes };
+}
+
+/** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file, and its size. */
+async function mean(page, bytes, part) {
+  const { p, width, height } = await pixels(page, bytes, part);
+  const sum = [0, 0, 0];
+  let alpha = 255;
+  for (let i = 0; i < p.length; i += 4) {
+    for (let k = 0; k < 3; k += 1) sum[k] += p[i + k];
+    alpha = Math.min(alpha, p[i + 3]);
+  }
+  return { rgb: sum.map((s) => (4 * s) / p.length), alpha, width, height };
 }
 
 /** What is to be seen, when nothing more is coming. */
@@ -39,26 +49,13 @@ const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** How much neighbouring pixels of a part of the view differ, 0 to 255. */
-async function edges(page, [x0, y0, x1, y1]) {
+async function edges(page, part) {
   await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
-  const bytes = await page.locator('.view canvas').screenshot();
-  return page.evaluate(
-    async ([base64, a, b, c, d]) => {
-      const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
-      const image = await createImageBitmap(new Blob([raw]));
-      const canvas = new OffscreenCanvas(image.width, image.height);
-      const context = canvas.getContext('2d');
-      context.drawImage(image, 0, 0);
-      const [w, h] = [image.width, image.height];
-      const box = [a * w, b * h, (c - a) * w, (d - b) * h].map(Math.floor);
-      const { data: p, width } = context.getImageData(...box);
-      let sum = 0;
-      for (let i = 0; i + 4 * width < p.length; i += 4)
-        sum += Math.abs(p[i] - p[i + 4]) + Math.abs(p[i] - p[i + 4 * width]);
-      return (2 * sum) / p.length;
-    },
-    [bytes.toString('base64'), x0, y0, x1, y1],
-  );
+  const { p, across } = await pixels(page, await page.locator('.view canvas').screenshot(), part);
+  let sum = 0;
+  for (let i = 0; i + 4 * across < p.length; i += 4)
+    sum += Math.abs(p[i] - p[i + 4]) + Math.abs(p[i] - p[i + 4 * across]);
+  return (2 * sum) / p.length;
 }
 
 /** Far ground fades into fog, and what is out of focus has no edges. */
@@ -552,25 +549,11 @@ async function sways(page, part) {
   const a = await page.locator('.view canvas').screenshot();
   await page.waitForTimeout(1300);
   const b = await page.locator('.view canvas').screenshot();
-  return page.evaluate(
-    async ([first, second, [x0, y0, x1, y1]]) => {
-      const pixels = async (base64) => {
-        const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
-        const image = await createImageBitmap(new Blob([raw]));
-        const canvas = new OffscreenCanvas(image.width, image.height);
-        const context = canvas.getContext('2d');
-        context.drawImage(image, 0, 0);
-        const [w, h] = [image.width, image.height];
-        return context.getImageData(...[x0 * w, y0 * h, (x1 - x0) * w, (y1 - y0) * h].map(Math.floor)).data;
-      };
-      const [p, q] = [await pixels(first), await pixels(second)];
-      let differ = 0;
-      for (let i = 0; i < p.length; i += 4)
-        if (Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) > 40) differ += 1;
-      return differ;
-    },
-    [a.toString('base64'), b.toString('base64'), part],
-  );
+  const [{ p }, { p: q }] = [await pixels(page, a, part), await pixels(page, b, part)];
+  let differ = 0;
+  for (let i = 0; i < p.length; i += 4)
+    if (Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) > 40) differ += 1;
+  return differ;
 }
 
 async function preview({ page, url, shot }) {
