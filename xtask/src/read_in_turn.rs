@@ -10,7 +10,7 @@ use std::path::Path;
 
 use base::{Draw, Report, Run, Seed};
 use glam::DVec2;
-use ink::{Drawing, InkSample, Stroke, StrokeClass};
+use ink::{Drawing, StrokeClass};
 use reading::{Kind, Reading};
 use serde_json::Value;
 
@@ -120,14 +120,9 @@ fn one_line_more(tally: &mut Lines, drawing: &Drawing) {
     let (low, high) = points().fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
     for [x0, y0, x1, y1] in ACROSS {
         let at = |x: f64, y: f64| low + DVec2::new(x, y) * (high - low);
-        let ends = (at(x0, y0), at(x1, y1));
-        let samples = (0..=20).map(|k| InkSample {
-            at: ends.0.lerp(ends.1, f64::from(k) / 20.0),
-            time_ms: None,
-            pressure: None,
-        });
+        let line = (0..=20).map(|k| at(x0, y0).lerp(at(x1, y1), f64::from(k) / 20.0)).collect();
         let mut more = drawing.clone();
-        more.strokes.push(Stroke { samples: samples.collect(), ..Stroke::default() });
+        more.strokes.extend(Drawing::from_polylines("line", &[line]).strokes);
         let other = |shown| Kind::of(&read(&more, shown)) != Kind::of(&whole);
         tally.of += 1;
         tally.afresh += u32::from(other(&nothing));

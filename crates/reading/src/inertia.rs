@@ -49,8 +49,9 @@ pub(crate) fn is_clear(
     };
     if !kind.is_like(shown) {
         let (new, old) = (score(scores, kind), score(scores, shown));
-        if new <= SURE || new <= BETTER * old || ink.strokes.len() == 1 {
-            return new > SURE && new > BETTER * old;
+        let clear = new > SURE && new > BETTER * old;
+        if !clear || ink.strokes.len() == 1 {
+            return clear;
         }
         let before = before();
         return new * score(&before, kind) > BETTER * old * score(&before, shown);

@@ -70,6 +70,9 @@ const YOUNG: f64 = 0.24;
 // A plant whose thickest branch is thinner than this share of its size has no old wood.
 const SLENDER: f64 = 0.02;
 
+// Sides of a tube with ribs: two for each of as many as there can be.
+const MOST_SIDES: u32 = 64;
+
 // Below this detail ribs are painted alone.
 const COARSE: f64 = 0.3;
 
@@ -99,8 +102,8 @@ pub(crate) fn tubes<'p>(
         .map(|(i, s)| s.as_ref().map_or(3, |s| budget.sides(s.r[0], least(i))))
         .collect();
     let (ribs, sides, faces) = ribbed(&chains, &spines, spec, thickest, sides);
-    // Circles for every number of sides that can occur: 3 to 24, and up to 64 of what has ribs.
-    let most = if ribs.iter().any(|r| r.count > 0) { 64 } else { 24 };
+    // Circles for every number of sides that can occur: 3 to 24, and more of what has ribs.
+    let most = if ribs.iter().any(|r| r.count > 0) { MOST_SIDES } else { 24 };
     let circles: Vec<Circle> = (0..=most).map(Circle::new).collect();
     let borne_by = |chain: &Chain| {
         let node = chain.bearer?;
@@ -210,9 +213,7 @@ fn ribbed(
         chains.iter().zip(spines).map(|(c, s)| ribs(c, s.as_ref(), spec, thickest)).collect();
     // A rib takes four corners, or two where the whole is coarse.
     let of_rib = if spec.detail >= 0.8 { 4 } else { 2 };
-    let of = |(sides, r): (u32, &Ribs)| {
-        if r.count > 0 { (of_rib * r.count).min(2 * r.count.max(32)) } else { sides }
-    };
+    let of = |(sides, r): (u32, &Ribs)| if r.count > 0 { (of_rib * r.count).min(MOST_SIDES) } else { sides };
     let sides: Vec<u32> = sides.into_iter().zip(&ribs).map(of).collect();
     let faces =
         sides.iter().zip(&ribs).map(|(sides, r)| r.faces().map_or(*sides, |f| f.min(*sides))).collect();

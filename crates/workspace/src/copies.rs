@@ -17,9 +17,8 @@ impl Workspace {
         self.let_go();
         let document = self.editor.document();
         let plant = document.plant(wanted.plant).ok_or(WorkspaceError::PlantGone)?;
-        let Placement { position, scale, .. } = plant.settings().placement;
-        let seed = plant.settings().seed;
         let own = plant.settings();
+        let (Placement { position, scale, .. }, seed) = (own.placement, own.seed);
         // Copies are one with the plant they are of.
         let group = if own.group.is_empty() { own.name.clone() } else { own.group.clone() };
         let taken: Vec<DVec2> = document
@@ -38,12 +37,9 @@ impl Workspace {
             return Err(WorkspaceError::NowhereToStand);
         }
         self.editor.begin_gesture("scatter")?;
-        match self.editor.run(PlantCommand::Group(group).of(wanted.plant)) {
-            Ok(()) | Err(CommandError::Nothing(_)) => {}
-            Err(e) => {
-                self.editor.cancel_gesture();
-                return Err(e.into());
-            }
+        if let Err(e) = self.set(PlantCommand::Group(group), wanted.plant) {
+            self.editor.cancel_gesture();
+            return Err(e.into());
         }
         for (k, at) in places.into_iter().enumerate() {
             let place = turned(at, position.y, scale, vary, &mut stream);
@@ -72,12 +68,14 @@ impl Workspace {
     ) -> Result<(), CommandError> {
         self.editor.run(SceneCommand::Duplicate(plant, DVec3::ZERO))?;
         let Some(copy) = self.editor.document().plants().last().map(DocumentPlant::id) else { return Ok(()) };
-        for command in [Some(PlantCommand::Place(place)), seed].into_iter().flatten().map(|c| c.of(copy)) {
-            match self.editor.run(command) {
-                Ok(()) | Err(CommandError::Nothing(_)) => {}
-                Err(e) => return Err(e),
-            }
+        [Some(PlantCommand::Place(place)), seed].into_iter().flatten().try_for_each(|c| self.set(c, copy))
+    }
+
+    /// Asks a plant for what it may have already.
+    fn set(&mut self, command: PlantCommand, plant: PlantId) -> Result<(), CommandError> {
+        match self.editor.run(command.of(plant)) {
+            Err(CommandError::Nothing(_)) => Ok(()),
+            done => done,
         }
-        Ok(())
     }
 }

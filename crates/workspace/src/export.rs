@@ -139,8 +139,8 @@ impl ExportRequest {
 
     /// Whether each level is written as one model of the whole scene.
     fn joined(&self) -> bool {
-        let several = self.levels > 1 || self.impostor;
-        self.sways() || (self.format == ExportFormat::Glb && (self.impostor || (self.one_file && several)))
+        let one = self.format == ExportFormat::Glb && self.one_file && self.levels > 1;
+        self.sways() || self.ends_far() || one
     }
 
     pub(crate) fn spec(&self) -> ExportSpec {
@@ -237,7 +237,7 @@ fn joined(
     wanted: &ExportRequest,
     run: &Run<'_>,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
-    if wanted.impostor
+    if wanted.ends_far()
         && let Some(finest) = models.first()
         && let Some(far) = far(finest, run)?
     {
