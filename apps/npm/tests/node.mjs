@@ -374,7 +374,7 @@ test('a plant is made beside the program: timers go on, and a signal stops it', 
   const tree = await grow('oak', { seed: 2, detail: 1 });
   const took = performance.now() - started;
   clearInterval(timer);
-  assert.ok(tree.report && took > 100 && ticks > took / 100, `${ticks} ticks in ${took} ms`);
+  assert.ok(tree.report && ticks > Math.max(2, took / 100), `${ticks} ticks in ${took} ms`);
   // One that takes much longer than it is given; the one that waits goes to another thread.
   const long = { seed: 2, detail: 8, fields: { age: 60 } };
   const stopped = new AbortController();

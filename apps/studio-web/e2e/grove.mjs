@@ -11,7 +11,14 @@ async function bush(page, url) {
   await begin(page, url);
   await drop(page, 'bush.toml', BUSH);
   await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  await page.waitForTimeout(900);
+  await settled(page);
+  await still(page);
+}
+
+/** Until the view shows what there is, and its camera stands still. */
+async function still(page) {
+  await page.waitForTimeout(600);
+  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
 }
 
 const field = (page, key) => page.locator(`[data-key=${key}]`).inputValue().then(Number);
@@ -78,6 +85,7 @@ async function gizmos({ page, url, shot }) {
     await page.mouse.move(px + 60, py, { steps: 4 });
     await page.mouse.up();
     await page.waitForTimeout(60);
+    await settled(page);
     moved = (await field(page, 'nx')) !== 0 || (await field(page, 'nz')) !== 0;
   }
   assert.ok(moved, 'the handle moves the plant');
@@ -105,13 +113,22 @@ async function groups({ page, url, shot }) {
     await until(page, 'plants', ['is', k], 'a copy');
     await rows.first().click();
   }
+  await settled(page);
+  const choose = async (row) => {
+    await rows.nth(row).click();
+    await page.waitForFunction(
+      (k) => document.querySelectorAll('.plant[data-plant=tree]')[k].getAttribute('aria-pressed') === 'true',
+      row,
+    );
+    await settled(page);
+  };
   // The copies stand in one place: the second one goes on.
-  await rows.nth(2).click();
+  await choose(2);
   await page.fill('[data-key=nz]', '-1');
   await page.locator('[data-key=nz]').blur();
   await page.waitForFunction(() => document.querySelector('[data-key=nz]').value === '-1');
   const place = async (row) => {
-    await rows.nth(row).click();
+    await choose(row);
     return [await field(page, 'nx'), await field(page, 'nz')];
   };
   const before = [await place(1), await place(2)];
@@ -130,17 +147,19 @@ async function groups({ page, url, shot }) {
   const { x, y, box } = await middle(page);
   const undone = () => page.locator('#b-undo').getAttribute('title');
   for (let k = 0; k < 120 && !/place/.test(await undone()); k += 1) {
-    const [px, py] = [x - 40 + 10 * (k % 20), y + box.height * (0.02 + 0.05 * Math.floor(k / 20))];
+    const row = [0, 1, -1, 2, -2, -3][Math.floor(k / 20)];
+    const [px, py] = [x - 40 + 10 * (k % 20), y + box.height * (0.17 + 0.05 * row)];
     await page.mouse.move(px, py);
     await page.mouse.down();
     await page.mouse.move(px + 60, py, { steps: 4 });
     await page.mouse.up();
     await page.waitForTimeout(60);
+    // A second drag would be a second step.
+    await settled(page);
   }
   assert.match(await undone(), /place/, 'the handle moves them');
   await page.keyboard.press('Escape');
-  await page.waitForTimeout(600);
-  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
+  await still(page);
   await shot('grove-group');
   const after = [await place(1), await place(2)];
   const by = after.map((at, row) => at.map((v, k) => v - before[row][k]));
@@ -154,7 +173,8 @@ async function groups({ page, url, shot }) {
   assert.deepEqual([await place(1), await place(2)], before, 'one step of undo takes both back');
   // Hidden, copied, parted, deleted as one.
   await page.click('[data-key="geGroup 1"]');
-  assert.equal(await page.locator('li.is-hidden').count(), 3, 'the group and its plants');
+  // The group and its plants.
+  await page.waitForFunction(() => document.querySelectorAll('li.is-hidden').length === 3);
   await page.keyboard.press('Control+z');
   await page.locator('li.is-hidden').first().waitFor({ state: 'detached' });
   await page.click('[data-key="gmGroup 1"]');
@@ -558,6 +578,12 @@ export const grove = [
   ['grove: panels for people', panel, WIDE],
   ['grove: settings of a drawing', settings, WIDE],
   ['grove: anybody can use it', anybody, WIDE],
+  [
+    'grove: anybody can use it in the dark, in Chinese',
+    anybody,
+    { ...WIDE, colorScheme: 'dark', locale: 'zh-CN' },
+  ],
+  ['grove: anybody can use it on a phone', anybody, { ...PHONE, colorScheme: 'dark' }],
   ['grove: fingers on a phone', fingers, PHONE],
   ['grove: fingers on a tablet', fingers, TABLET],
 ];
