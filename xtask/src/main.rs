@@ -35,7 +35,7 @@ mod workshop;
 
 use std::process::ExitCode;
 
-use shell::{Outcome, cargo, repository, say};
+use shell::{Outcome, beside, cargo, repository, say};
 
 const HELP: &str = "\
 cargo xtask COMMAND
@@ -161,33 +161,39 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
 
 /// The tests that compare schemas and TypeScript types write them, too.
 fn types() -> Outcome {
-    for (package, test) in [("burgeon", "schemas"), ("burgeon-workspace", "wire"), ("burgeon-npm", "types")] {
-        let mut c = shell::prepare(shell::cargo_path(), &["test", "--package", package, "--test", test]);
-        c.env("BURGEON_WRITE_TYPES", "1");
-        shell::finish(c)?;
-    }
-    Ok(())
+    let mut c = shell::prepare(
+        shell::cargo_path(),
+        &["test", "--test", "schemas", "--test", "wire", "--test", "types"],
+    );
+    c.env("BURGEON_WRITE_TYPES", "1");
+    shell::finish(c)
 }
 
 fn test_studio(tools: &web::Tools) -> Outcome {
-    studio::test(tools, false)?;
+    studio::check(tools)?;
+    studio::journeys(false)?;
     studio::kills()
 }
 
-/// Everything that must be green.
+/// Everything that must be green. What waits much runs beside what computes.
 fn test() -> Outcome {
     let tools = web::setup()?;
-    cargo(&["test", "--workspace", "--no-fail-fast"])?;
-    // Built with the tests; the library as programs of their own use it.
-    cargo(&["run", "--quiet", "--package", "burgeon", "--example", "inventory"])?;
-    let stand = ["--example", "stand", "--", "hazel", "--seeds", "2", "--ages", "5,10"];
-    cargo(&[&["run", "--quiet", "--package", "burgeon"][..], &stand].concat())?;
+    cargo(&["test", "--workspace", "--no-run", "--quiet"])?;
+    beside(test_native, || web::compile(&tools))?;
     web::test(&tools, true)?;
     npm::test(&tools)?;
-    studio::test(&tools, true)?;
-    std::thread::scope(|scope| {
-        let kills = scope.spawn(studio::kills);
-        python::test(true)?;
-        kills.join().map_err(|_panic| "the kill test panicked")?
-    })
+    studio::check(&tools)?;
+    let pages = || studio::journeys(true).and_then(|()| studio::kills());
+    beside(|| python::test(true), pages)?;
+    Ok(())
+}
+
+fn test_native() -> Outcome {
+    cargo(&["test", "--workspace", "--no-fail-fast"])?;
+    // The library as programs of their own use it: built with the tests.
+    for (example, args) in [("inventory", &[][..]), ("stand", &["hazel", "--seeds", "2", "--ages", "5,10"])] {
+        say(&format!("$ {example} {}", args.join(" ")));
+        shell::command(shell::example(example), args)?;
+    }
+    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, burgeon, finish, prepare, repository, say};
+use crate::shell::{Outcome, beside, burgeon, finish, prepare, repository, say};
 use crate::toolchain::shown;
 
 /// The report of all drawings and the digests of leaves, flowers and trees, by the native program alone.
@@ -109,14 +109,35 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let mut c = prepare(&burgeon, &["bloom", "fit", "--quiet", "-o"]);
     c.arg(&law).arg(out.join("stages.toml"));
     finish(c)?;
-    let presets = presets_in("crates/studio/presets")?;
-    let mut all = Vec::new();
-    for threads in ["1", "4"] {
+    let made = Organs { burgeon, files, law, out };
+    let [digests, others] = beside(|| made.digests("1"), || made.digests("4"))?;
+    if digests != others {
+        return Err("digests of leaves, flowers or trees differ between 1 and 4 threads".into());
+    }
+    say(&format!("{} digests of leaves, flowers and trees are the same on 1 and 4 threads", digests.len()));
+    let path = out.join("organs.json");
+    let text = serde_json::Value::Object(digests).to_string();
+    std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
+    Ok((path, made.files))
+}
+
+/// What organs are made of, and with.
+struct Organs<'a> {
+    burgeon: PathBuf,
+    files: Vec<PathBuf>,
+    law: PathBuf,
+    out: &'a Path,
+}
+
+impl Organs<'_> {
+    /// What is made of each on so many threads.
+    fn digests(&self, threads: &str) -> Outcome<serde_json::Map<String, serde_json::Value>> {
+        let Self { burgeon, files, law, out } = self;
         let mut digests = serde_json::Map::new();
-        let report = out.join("organ.json");
+        let report = out.join(format!("organ-{threads}.json"));
         let mut digest_of = |name: String, c: &mut std::process::Command| -> Outcome {
             c.args(["--quiet", "--threads", threads, "--report"]).arg(&report);
-            let status = c.status().map_err(|e| format!("{}: {e}", shown(&burgeon)))?;
+            let status = c.status().map_err(|e| format!("{}: {e}", shown(burgeon)))?;
             let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
             let json: serde_json::Value =
                 serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
@@ -131,41 +152,32 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
             Ok(())
         };
         let opening = ["bloom", "run", "--frames", FRAMES, "-o"];
-        let glb = out.join("flower.glb");
-        for path in &files {
+        let glb = out.join(format!("organ-{threads}.glb"));
+        for path in files {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
             let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
             match extension {
-                "svg" => digest_of(name, prepare(&burgeon, &opening).arg(&glb).arg(path))?,
+                "svg" => digest_of(name, prepare(burgeon, &opening).arg(&glb).arg(path))?,
                 "xyz" if name.starts_with("stage") => {}
-                "xyz" => digest_of(name, prepare(&burgeon, &["leaf", "--scan", "--unit", "mm"]).arg(path))?,
-                _ => digest_of(name, prepare(&burgeon, &["leaf"]).arg(path))?,
+                "xyz" => digest_of(name, prepare(burgeon, &["leaf", "--scan", "--unit", "mm"]).arg(path))?,
+                _ => digest_of(name, prepare(burgeon, &["leaf"]).arg(path))?,
             }
         }
         for species in presets_in("crates/bloom/presets")? {
-            digest_of(species.clone(), prepare(&burgeon, &opening).arg(&glb).arg(species))?;
+            digest_of(species.clone(), prepare(burgeon, &opening).arg(&glb).arg(species))?;
         }
-        let mut c = prepare(&burgeon, &opening);
-        digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
-        for preset in &presets {
+        let mut c = prepare(burgeon, &opening);
+        digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(law))?;
+        for preset in &presets_in("crates/studio/presets")? {
             // Needles are painted on cards where there are textures: the counts are those of what is drawn without.
-            let mut c = prepare(&burgeon, &["grow", preset, "--detail", DETAIL, "--no-textures", "-o"]);
+            let mut c = prepare(burgeon, &["grow", preset, "--detail", DETAIL, "--no-textures", "-o"]);
             c.arg(&glb);
             digest_of(format!("tree {preset}"), &mut c)?;
         }
-        all.push(digests);
+        Ok(digests)
     }
-    if all[0] != all[1] {
-        return Err("digests of leaves, flowers or trees differ between 1 and 4 threads".into());
-    }
-    say(&format!("{} digests of leaves, flowers and trees are the same on 1 and 4 threads", all[0].len()));
-    let path = out.join("organs.json");
-    let text = serde_json::Value::Object(all.swap_remove(0)).to_string();
-    std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
-    Ok((path, files))
 }
 
-/// The keys of the presets of `burgeon grow`.
 /// The keys of the presets in a folder.
 fn presets_in(folder: &str) -> Outcome<Vec<String>> {
     let folder = repository().join(folder);

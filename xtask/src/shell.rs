@@ -29,16 +29,38 @@ pub(crate) fn burgeon(profile: &str) -> PathBuf {
     target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
 }
 
+/// An example as the tests of the workspace left it.
+pub(crate) fn example(name: &str) -> PathBuf {
+    target_dir().join("debug/examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+}
+
 /// Makes sure that there is a development build of the command line. The tests of the workspace leave one, if they have
-/// just run: built by itself, what it stands on would be compiled again with other features.
+/// just run. Named as a program and not as a package it stands on what the tests have compiled.
 pub(crate) fn debug_burgeon(tested: bool) -> Outcome {
-    if tested && burgeon("debug").exists() { Ok(()) } else { cargo(&["build", "--package", "burgeon-cli"]) }
+    if tested && burgeon("debug").exists() { Ok(()) } else { cargo(&["build", "--bin", "burgeon"]) }
 }
 
 /// Builds the command line for release and says where it is.
 pub(crate) fn built_burgeon() -> Outcome<PathBuf> {
     cargo(&["build", "--release", "--package", "burgeon-cli"])?;
     Ok(burgeon("release"))
+}
+
+/// Two things at once: what waits much beside what computes. Both come to their end, whatever becomes of the other.
+pub(crate) fn beside<T: Send>(
+    one: impl FnOnce() -> Outcome<T>,
+    other: impl FnOnce() -> Outcome<T> + Send,
+) -> Outcome<[T; 2]> {
+    std::thread::scope(|scope| {
+        let other = scope.spawn(other);
+        let one = one();
+        let other = other.join().map_err(|_panic| "a step beside another one panicked")?;
+        match (one, other) {
+            (Ok(one), Ok(other)) => Ok([one, other]),
+            (Err(one), Err(other)) => Err(format!("{one}\n{other}")),
+            (Err(e), _) | (_, Err(e)) => Err(e),
+        }
+    })
 }
 
 /// Where tools that several checkouts share are kept.

@@ -68,13 +68,16 @@ pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     finish(c)
 }
 
-/// Types, style, texts and geometry in Node, then the main journeys in a browser. `tested`: the tests of the workspace have
-/// just run.
-pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
+/// The page: types, style, texts and geometry in Node.
+pub(crate) fn check(tools: &Tools) -> Outcome {
     build(tools, false)?;
     npm(&["run", "--silent", "check"])?;
     npm(&["run", "--silent", "lint"])?;
-    npm(&["run", "--silent", "test"])?;
+    npm(&["run", "--silent", "test"])
+}
+
+/// The main journeys in a browser, once [`check()`] has built the page. `tested`: the tests of the workspace have just run.
+pub(crate) fn journeys(tested: bool) -> Outcome {
     let Some(browser) = browser() else {
         say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");
         return Ok(());
@@ -91,8 +94,7 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     finish(c)
 }
 
-/// Kills pages at any moment and asks for their strokes, once [`test()`] has built what that takes. Pages wait much: other
-/// work can be done meanwhile.
+/// Kills pages at any moment and asks for their strokes, once [`check()`] has built the page.
 pub(crate) fn kills() -> Outcome {
     let Some(browser) = browser() else { return Ok(()) };
     say("$ node e2e/kills.mjs");

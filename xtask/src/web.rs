@@ -112,6 +112,14 @@ pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
     finish(c)
 }
 
+/// Compiles all cores that tests need: each is made into a package where it is tested.
+pub(crate) fn compile(tools: &Tools) -> Outcome {
+    for core in [Core::Checked, Core::Npm { makers: true }, Core::Npm { makers: false }] {
+        build_core(tools, core, false)?;
+    }
+    Ok(())
+}
+
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
     build_core(tools, if release { Core::Studio } else { Core::Checked }, release)
