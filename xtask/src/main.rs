@@ -183,8 +183,7 @@ fn test() -> Outcome {
     web::test(&tools, true)?;
     npm::test(&tools)?;
     studio::check(&tools)?;
-    let pages = || studio::journeys(true).and_then(|()| studio::kills());
-    beside(|| python::test(true), pages)?;
+    beside(|| python::test(true).and_then(|()| studio::kills()), || studio::journeys(true))?;
     Ok(())
 }
 
