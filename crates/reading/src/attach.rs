@@ -14,7 +14,7 @@ use crate::kept::{alike, same_bits};
 use crate::near::Near;
 use crate::rules::STAMENS;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
-use crate::veins::{Veins, choose_midrib};
+use crate::veins::{VeinLine, Veins, choose_midrib};
 use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord};
 
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
@@ -240,40 +240,48 @@ fn over_petals(draft: &mut Draft<'_>, flowers: &[FlowerDraft], veins: &mut Veins
         for &i in &flower.petals {
             let blade = &draft.blades[i];
             let axis = blade.middle - flower.centre;
-            for line in &veins[i] {
+            for VeinLine { points: line, .. } in &veins[i] {
                 let (a, b) = (line[0] - flower.centre, line[line.len() - 1] - flower.centre);
                 let far = if a.length() < b.length() { b } else { a };
                 lines += 1;
                 aside += (ops::atan2(axis.perp_dot(far), axis.dot(far)).abs() / room).min(1.0);
             }
         }
-        let burst = draft.lines.iter().filter(|l| bursts(draft, flower, l)).count() + lines as usize;
+        let burst = bursting_lines(draft, flower) + lines as usize;
         let out = burst > 1 + lines as usize && burst >= FEWEST_STAMENS as usize;
         let all = out || (lines >= FEWEST_STAMENS && aside > ASIDE * f64::from(lines));
         for &i in &flower.petals {
             let (over, own): (Vec<_>, Vec<_>) = std::mem::take(&mut veins[i])
                 .into_iter()
-                .map(|points| (draft.ink.strokes.iter().position(|s| s.points.contains(&points[0])), points))
-                .partition(|(k, _)| all || k.is_some_and(|k| draft.rule[k] == Some(STAMENS)));
-            veins[i] = own.into_iter().map(|(_, points)| points).collect();
-            for (k, points) in over {
-                draft.lines.push(Line { points, source: k.map(|k| draft.ink.strokes[k].index) });
+                .partition(|v| all || draft.rule[v.stroke] == Some(STAMENS));
+            veins[i] = own;
+            for VeinLine { points, stroke } in over {
+                draft.lines.push(Line { points, source: Some(draft.ink.strokes[stroke].index) });
             }
         }
     }
 }
 
-/// A line begins where the petals do, leads the way of one, and ends not far beyond it.
-fn bursts(draft: &Draft<'_>, flower: &FlowerDraft, line: &Line) -> bool {
-    let (a, b) = (line.points[0] - flower.centre, line.points[line.points.len() - 1] - flower.centre);
-    let (foot, top) = if a.length() < b.length() { (a, b) } else { (b, a) };
-    flower.petals.iter().any(|&i| {
-        let blade = &draft.blades[i];
+/// Whether a line begins where the petals do, leads the way of one, and ends not far beyond it.
+fn bursting<'a>(draft: &'a Draft<'_>, flower: &'a FlowerDraft) -> impl Fn(&Line) -> bool + 'a {
+    let widest = flower.petals.iter().map(|&i| draft.blades[i].size).fold(0.0, f64::max);
+    move |line| {
+        let (a, b) = (line.points[0] - flower.centre, line.points[line.points.len() - 1] - flower.centre);
+        let (foot, top) = if a.length_squared() < b.length_squared() { (a, b) } else { (b, a) };
+        let near = |size: f64| foot.length() < BURST_FOOT * size && top.length() < BURST_LONG * size;
         // Most lines of a drawing are far away.
-        let near = foot.length() < BURST_FOOT * blade.size && top.length() < BURST_LONG * blade.size;
-        let axis = blade.middle - flower.centre;
-        near && axis.dot(top) > BURST_WAY * axis.length() * top.length()
-    })
+        near(widest)
+            && flower.petals.iter().any(|&i| {
+                let blade = &draft.blades[i];
+                let axis = blade.middle - flower.centre;
+                near(blade.size) && axis.dot(top) > BURST_WAY * axis.length() * top.length()
+            })
+    }
+}
+
+fn bursting_lines(draft: &Draft<'_>, flower: &FlowerDraft) -> usize {
+    let bursts = bursting(draft, flower);
+    draft.lines.iter().filter(|l| bursts(l)).count()
 }
 
 /// Short lines from a flower's centre outwards are its stamens.
@@ -306,13 +314,13 @@ pub(crate) fn stamens(
     let alone = draft.lines.len() == 1;
     let bundle = |f: &FlowerDraft| {
         let petals = f.disc.is_none() && f.petals.len() >= FEWEST_PETALS;
-        petals && draft.lines.iter().filter(|l| bursts(draft, f, l)).count() >= FEWEST_STAMENS as usize
+        petals && bursting_lines(draft, f) >= FEWEST_STAMENS as usize
     };
     let bundles: Vec<bool> = flowers.iter().map(bundle).collect();
     for line in std::mem::take(&mut draft.lines) {
         let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
         let length = polyline_length(&line.points);
-        let burst = (0..flowers.len()).find(|&f| bundles[f] && bursts(draft, &flowers[f], &line));
+        let burst = (0..flowers.len()).find(|&f| bundles[f] && bursting(draft, &flowers[f])(&line));
         let found = index.nearest(a.midpoint(b), farthest, |f| {
             let centre = flowers[f].centre;
             let disc = flowers[f].disc.map_or(0.0, |d| 1.35 * d.radius);
@@ -396,6 +404,7 @@ pub(crate) fn organs(
     soil: &Near,
 ) -> (Vec<FlowerReading>, Vec<BladeReading>) {
     veins.resize(draft.blades.len(), Vec::new());
+    let mut lines_of = |i: usize| std::mem::take(&mut veins[i]).into_iter().map(|v| v.points).collect();
     let mut is_petal = vec![false; draft.blades.len()];
     let mut read = Vec::new();
     for flower in flowers {
@@ -406,7 +415,7 @@ pub(crate) fn organs(
         for &i in &flower.petals {
             is_petal[i] = true;
             draft.organ[draft.blades[i].stroke] = OrganWord::Petal;
-            petals.push(blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i])));
+            petals.push(blade_reading(draft, i, roots[i], lines_of(i)));
         }
         let rings = whorls(draft, &flower, &petals);
         petals.iter_mut().zip(rings).for_each(|(petal, whorl)| petal.whorl = whorl);
@@ -429,7 +438,7 @@ pub(crate) fn organs(
     let mut leaves = Vec::new();
     for i in 0..draft.blades.len() {
         if !is_petal[i] {
-            let mut leaf = blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i]));
+            let mut leaf = blade_reading(draft, i, roots[i], lines_of(i));
             leaf.bearer = leaf_bearer(draft, &leaf, draft.blades[i].size, soil);
             leaves.push(leaf);
         }

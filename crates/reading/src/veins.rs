@@ -5,6 +5,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use crate::OrganWord;
+use crate::blade::Sheetlet;
 use crate::branches::Line;
 use crate::draft::Draft;
 use crate::near::Boxes;
@@ -13,8 +14,16 @@ use crate::rules::{VEINS_IN_BLADES, unsure};
 /// Samples of a line that are tested.
 const SAMPLES: usize = 24;
 
-/// The veins of each blade: line and stroke.
-pub(crate) type Veins = Vec<Vec<Vec<DVec2>>>;
+/// A line within a blade.
+#[derive(Clone, Debug)]
+pub(crate) struct VeinLine {
+    pub points: Vec<DVec2>,
+    /// The row of the stroke that it is, or is a part of.
+    pub stroke: usize,
+}
+
+/// The veins of each blade.
+pub(crate) type Veins = Vec<Vec<VeinLine>>;
 
 /// What is surely a vein lies in its blade at least by this share of its length, and what is surely a stem by that.
 const VEIN_INSIDE: f64 = 0.25;
@@ -35,7 +44,8 @@ const RIB_START: f64 = 0.4;
 pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
     use StrokeClass::{Axis, Vein};
     let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
-    let mut veins: Veins = draft.blades.iter_mut().map(|b| b.rib.take().into_iter().collect()).collect();
+    let rib = |b: &mut Sheetlet| b.rib.take().map(|points| VeinLine { points, stroke: b.stroke });
+    let mut veins: Veins = draft.blades.iter_mut().map(|b| rib(b).into_iter().collect()).collect();
     for (class, strokes) in [Vein, Axis].map(|class| (class, draft.of_class(class))) {
         for k in strokes {
             let ink = draft.ink;
@@ -64,7 +74,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
                             draft.lines.push(Line { points: stalk, source });
                         }
                     }
-                    veins[blade].push(inner);
+                    veins[blade].push(VeinLine { points: inner, stroke: k });
                 }
                 None => draft.line_of(k, OrganWord::Branch),
             }
