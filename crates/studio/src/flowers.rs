@@ -6,6 +6,7 @@ use document::PlantEdit;
 use skin::{SkinSpec, SurfacePictures};
 
 use crate::made::MadePlant;
+use crate::report::ItemReport;
 use crate::shaping::shaped;
 
 /// What is asked of a flower beside its species and day.
@@ -31,6 +32,19 @@ pub fn make_flower(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<MadePlant, Stopped> {
+    let made = untold_flower(name, spec, (day, law), options, seed, run)?.told();
+    Ok(MadePlant { item: ItemReport { plant: Some(made.plant.measure()), ..made.item }, ..made })
+}
+
+/// [`make_flower`] without what takes as long as the meshes and is not seen: digest and measures of the plant.
+pub(crate) fn untold_flower(
+    name: &str,
+    spec: &FlowerSpec,
+    (day, law): (f64, &GrowthLaw),
+    options: &FlowerOptions,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<MadePlant, Stopped> {
     spec.check(&run.budget)?;
     let mut report = Report::default();
     let mut plant = report.stage("structure", run.clock, |_| spec.at(day, law, seed));
@@ -44,14 +58,51 @@ pub fn make_flower(
     let model = report.stage("mesh", run.clock, |_| {
         skin::skin_laid_out(&plant, &skin, SurfacePictures::default(), None, run)
     });
-    let mut made = MadePlant::new(plant, (model?, skin), (edits, &options.edits), &report);
-    made.item.plant = Some(made.plant.measure());
-    Ok(made)
+    Ok(MadePlant::untold(plant, (model?, skin), (edits, &options.edits), &report))
 }
 
 #[cfg(test)]
 mod tests {
+    use document::{Editor, FlowerCommand, FlowerMaker, Maker, NewPlant, SceneCommand, Settings};
+    use glam::DVec3;
+
     use super::*;
+
+    /// What is left for later is what would have been told at once, and copies go on sharing it.
+    #[test]
+    fn a_flower_is_seen_before_its_digest_is_told() {
+        let mut editor = Editor::default();
+        let settings =
+            Settings { maker: Maker::Flower(Box::<FlowerMaker>::default()), ..Settings::default() };
+        editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).expect("sound");
+        let first = editor.document().plants().last().expect("added").id();
+        editor.run(SceneCommand::Duplicate(first, DVec3::X)).expect("sound");
+        let copy = editor.document().plants().last().expect("copied").id();
+        let (mut scene, mut whole) = (crate::SceneEvaluator::default(), crate::SceneEvaluator::default());
+        scene.set_measuring_later(true);
+        let run = Run::plain();
+        for day in [1.0, 2.5] {
+            editor.run(FlowerCommand::SetDay(day).of(first)).expect("sound");
+            editor.run(FlowerCommand::SetDay(day).of(copy)).expect("sound");
+            for id in [first, copy] {
+                scene.update(id, editor.document(), &run).expect("sound");
+                whole.update(id, editor.document(), &run).expect("sound");
+                let seen = scene.get(id).expect("made").report();
+                assert!(seen.digest.is_empty() && seen.plant.is_none(), "not yet");
+            }
+            assert!(scene.measure(first, &run).expect("not cancelled"), "something was left");
+            for id in [first, copy] {
+                assert!(!scene.measure(id, &run).expect("not cancelled"), "told for both");
+                scene.update(id, editor.document(), &run).expect("sound");
+                let (told, at_once) = (scene.get(id).expect("made"), whole.get(id).expect("made"));
+                assert!(told.stages.is_empty(), "nothing is made again");
+                assert_eq!(told.report().digest, at_once.report().digest);
+                assert_eq!(told.report().plant, at_once.report().plant);
+            }
+            let number = |id| scene.get(id).expect("made").revision;
+            assert_eq!(number(first), number(copy), "they share one model");
+        }
+    }
 
     #[test]
     fn a_flower_has_the_same_triangles_at_every_day() {

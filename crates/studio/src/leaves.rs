@@ -176,7 +176,7 @@ pub(crate) fn finish(
             "{count} rings lie inside their neighbours' balls and were drawn to a point"
         );
     }
-    Ok((MadePlant::new(plant, (model, spec), (edits, &options.edits), report), mesh))
+    Ok((MadePlant::untold(plant, (model, spec), (edits, &options.edits), report).told(), mesh))
 }
 
 pub(crate) fn leaf_texture(

@@ -48,15 +48,14 @@ impl MadePlant {
         coarse(&self.plant, &self.skin, &self.model, level, run)
     }
 
-    /// With an entry that tells counts, times, digest, warnings, and what became of the edits that were asked for.
-    pub(crate) fn new(
+    /// With an entry that tells counts, times, warnings, and what became of the edits that were asked for; [`Self::told`]
+    /// tells the digest.
+    pub(crate) fn untold(
         plant: Plant,
         ((model, layout), skin): ((Model, Layout), SkinSpec),
         (edits, asked): (Vec<EditReport>, &[PlantEdit]),
         report: &Report,
     ) -> Self {
-        let mut digest = Digest::new();
-        digest.add(&model);
         let mut warnings = report.warnings.clone();
         warnings.extend(edits.iter().filter_map(|e| e.warning(asked)));
         let item = ItemReport {
@@ -67,13 +66,25 @@ impl MadePlant {
                 ..Counts::of_plant(&plant)
             },
             timings_ms: TimingsMs::from_report(report),
-            digest: digest.hex(),
             edits,
             ..ItemReport::default()
         }
         .warning(warnings);
         Self { plant, model, layout, skin, item }
     }
+
+    /// With the digest of the meshes.
+    pub(crate) fn told(mut self) -> Self {
+        self.item.digest = digest(&self.model);
+        self
+    }
+}
+
+/// The digest of a plant's meshes.
+pub(crate) fn digest(model: &Model) -> String {
+    let mut digest = Digest::new();
+    digest.add(model);
+    digest.hex()
 }
 
 /// A plant with a half of the triangles for each level, with the materials of `fine`.

@@ -23,9 +23,9 @@ use skin::{Layout, SkinSpec, Worn};
 
 pub use self::error::SceneError;
 use crate::evaluate::{Evaluator, FrontView};
-use crate::flowers::{FlowerOptions, make_flower};
+use crate::flowers::{FlowerOptions, make_flower, untold_flower};
 use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
-use crate::made::{MadePlant, coarse};
+use crate::made::{MadePlant, coarse, digest};
 use crate::make::{SketchOptions, worn};
 use crate::opening::OpeningPlant;
 use crate::report::ItemReport;
@@ -197,6 +197,8 @@ struct Made {
     skin: SkinSpec,
     lent: Option<LeafTemplate>,
     revision: u64,
+    /// See [`SceneEvaluator::set_measuring_later`].
+    later: bool,
 }
 
 impl Kept {
@@ -211,7 +213,7 @@ impl Kept {
             *made = Made { maker: word, ..Made::default() };
         }
         (made.sketch.previewing, made.tree.previewing) = (previewing, previewing);
-        made.sketch.later = later;
+        (made.later, made.sketch.later) = (later, later);
         let before = made.from.take();
         (made, before.is_none())
     }
@@ -229,8 +231,8 @@ impl SceneEvaluator {
         self.previewing = previewing;
     }
 
-    /// Whether how true a plant is to a drawing of very many strokes is left out of reports until [`Self::measure`] is asked,
-    /// because it takes as long as the plant. Default: no.
+    /// Whether reports are left without what takes as long as the plant until [`Self::measure`] is asked: how true a plant is to
+    /// a drawing of very many strokes, and the digest and the measures of a flower. Default: no.
     pub fn set_measuring_later(&mut self, later: bool) {
         self.later = later;
     }
@@ -240,15 +242,38 @@ impl SceneEvaluator {
     /// # Errors
     /// [`Cancelled`]; it is still left for later then.
     pub fn measure(&mut self, id: PlantId, run: &Run<'_>) -> Result<bool, Cancelled> {
-        let Some(kept) = self.plants.get_mut(&id).filter(|k| k.made.sketch.is_unmeasured()) else {
+        let Some(kept) = self.plants.get(&id) else { return Ok(false) };
+        if kept.made.is_untold() {
+            let untold = Arc::clone(&kept.made);
+            self.tell(untold);
+            return Ok(true);
+        }
+        if !kept.made.sketch.is_unmeasured() {
             return Ok(false);
-        };
+        }
+        let Some(kept) = self.plants.get_mut(&id) else { return Ok(false) };
         let made = Arc::make_mut(&mut kept.made);
         let found = made.sketch.measure(run)?;
         if let Some(fidelity) = found {
             made.item.fidelity = fidelity;
         }
         Ok(found.is_some())
+    }
+
+    /// Completes the report of a flower, for all copies that share it: they go on sharing it.
+    fn tell(&mut self, untold: Arc<Made>) {
+        let copies: Vec<PlantId> =
+            self.plants.iter().filter(|(_, k)| Arc::ptr_eq(&k.made, &untold)).map(|(id, _)| *id).collect();
+        for id in &copies {
+            self.plants.entry(*id).or_default().made = Arc::default();
+        }
+        let mut told = untold;
+        let made = Arc::make_mut(&mut told);
+        made.item.digest = made.model.as_ref().map_or_else(String::new, digest);
+        made.item.plant = made.plant.as_ref().map(Plant::measure);
+        for id in copies {
+            self.plants.entry(id).or_default().made = Arc::clone(&told);
+        }
     }
 
     /// Brings one plant up to date; those whose leaf it bears too.
@@ -302,8 +327,10 @@ impl SceneEvaluator {
         };
         let previewing = self.previewing;
         let from = MadeFrom::of(plant, leaf, self.wind);
-        let is_it =
-            |k: &Kept| k.made.from.as_ref() == Some(&from) && (previewing || !k.made.item.digest.is_empty());
+        let is_it = |k: &Kept| {
+            let whole = previewing || !k.made.item.digest.is_empty() || k.made.is_untold();
+            k.made.from.as_ref() == Some(&from) && whole
+        };
         let own = self.plants.get(&id).is_some_and(is_it);
         let same = if own { None } else { self.plants.values().find(|k| is_it(k)) };
         let same = same.map(|k| Arc::clone(&k.made));
@@ -466,6 +493,12 @@ impl SceneEvaluator {
 }
 
 impl Made {
+    /// A flower whose report is not complete.
+    fn is_untold(&self) -> bool {
+        let flower = matches!(self.from.as_ref().map(|f| &f.maker), Some(Maker::Flower(_)));
+        self.later && flower && self.item.digest.is_empty()
+    }
+
     fn bytes(&self) -> usize {
         // As grown, dressed, and twice on the way through the edits by hand.
         const STAGES: usize = 4;
@@ -578,7 +611,8 @@ impl Made {
         let law = flower.law.as_ref().map_or_else(|| flower.spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
         (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
-        let made = make_flower(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;
+        let make = if self.later { untold_flower } else { make_flower };
+        let made = make(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;
         Ok(self.take(made))
     }
 

@@ -98,7 +98,7 @@ pub fn make_tree_from_scan(
     let form = options.leaves.as_ref().map_or_else(BladeForm::default, |s| s.blade.form);
     let from = (dressed(options.skin.clone(), &look, form), look, None);
     let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
-    let mut made = MadePlant::new(plant, (model, from.0), (vec![], &[]), &report);
+    let mut made = MadePlant::untold(plant, (model, from.0), (vec![], &[]), &report).told();
     made.item.plant = Some(made.plant.measure());
     Ok((made, found))
 }
