@@ -63,6 +63,22 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     Some(mesh)
 }
 
+/// A margin of `most` corners that has more and keeps its form but for teeth; none where it has no more, or would cross
+/// itself.
+pub(crate) fn fewer_corners(blade: &Blade, most: usize) -> Option<Vec<DVec2>> {
+    let outline = &blade.outline;
+    if outline.len() <= most || outline.len() > MOST_CORNERS || outline.iter().any(|p| !p.is_finite()) {
+        return None;
+    }
+    let tip = nearest(outline, *blade.midrib.last()?)?;
+    let (kept, _) = corners(outline, tip, most);
+    let fewer: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
+    (geom::signed_area(&fewer) > 0.0 && geom::self_crossings(&fewer) == 0).then_some(fewer)
+}
+
+/// Of more corners it would take too long to find those that matter least.
+const MOST_CORNERS: usize = 2000;
+
 fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
     let far = |i: &usize| points[*i].distance_squared(to);
     (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))

@@ -1,5 +1,6 @@
 //! Organs -> meshes: each shape is triangulated once, its organs are moved and tinted copies.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use base::{Cancelled, Counted, Draw, Run, Stopped, map_indexed};
@@ -12,7 +13,7 @@ use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, rod, strand};
 use crate::layout::Piece;
 use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
-use crate::lean::{COPIED_WIDER, lean_mesh};
+use crate::lean::{COPIED_WIDER, fewer_corners, lean_mesh};
 use crate::margin::from_margin;
 use crate::material::{Pattern, Wearer};
 use crate::parts::{Coat, Slot};
@@ -206,6 +207,15 @@ fn lean(blade: &plant::Blade, wish: f64, widest: f64) -> Option<TriMesh> {
     (wish <= 60.0).then(|| lean_mesh(blade, wish, widest)).flatten()
 }
 
+/// A blade whose margin has few enough corners for so many triangles.
+fn plain(blade: &plant::Blade, triangles: f64) -> Cow<'_, plant::Blade> {
+    let most = base::ops::whole(0.5 * triangles).clamp(8, 4096) as usize;
+    match fewer_corners(blade, most) {
+        Some(outline) => Cow::Owned(plant::Blade { outline, ..blade.clone() }),
+        None => Cow::Borrowed(blade),
+    }
+}
+
 fn sound(organ: &Organ) -> bool {
     let f = &organ.frame;
     let axes = f.right.is_finite() && f.along.is_finite() && f.normal.is_finite();
@@ -275,6 +285,8 @@ enum Wish {
     /// A card, in this part of an atlas.
     Card([f64; 4]),
     Sheet(f64),
+    /// Of a coarser copy: without teeth that alone would be more triangles.
+    Plain(f64),
     Dome(f64),
     /// With at least so many sides.
     Revolution(f64, u32),
@@ -296,7 +308,9 @@ impl Wish {
         let near = |a: f64, b: f64| (a - b).abs() < 0.1 * a.max(b);
         match (self, other) {
             (Self::Lean(a, m), Self::Lean(b, n)) => m == n && near(a, b),
-            (Self::Sheet(a), Self::Sheet(b)) | (Self::Dome(a), Self::Dome(b)) => near(a, b),
+            (Self::Sheet(a), Self::Sheet(b))
+            | (Self::Plain(a), Self::Plain(b))
+            | (Self::Dome(a), Self::Dome(b)) => near(a, b),
             (Self::Revolution(a, m), Self::Revolution(b, n)) => m == n && near(a, b),
             _ => self == other,
         }
@@ -311,6 +325,7 @@ impl Wish {
             }
             (Self::Card(part), Shape::Blade(blade)) => card_mesh(blade, part),
             (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
+            (Self::Plain(n), Shape::Blade(blade)) => blade_mesh(&plain(blade, n), n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
             (Self::Revolution(n, sides), Shape::Revolution { profile }) => revolution(profile, n, sides),
             (Self::Strand { fine }, Shape::Strand { path, radius_m, knob_m }) => {
@@ -377,6 +392,9 @@ impl KeptShapes {
     }
 }
 
+/// More leaves are a crowd.
+const FEW_LEAVES: usize = 1500;
+
 /// What the plant as a whole decides for its organs.
 struct Ground<'a> {
     /// Says which leaves are cards.
@@ -389,6 +407,8 @@ struct Ground<'a> {
     steady: bool,
     /// Of a coarser copy.
     copy: bool,
+    /// So few leaves, of a plant of many flowers, that each is looked at: it bends.
+    few_leaves: bool,
 }
 
 impl<'a> Ground<'a> {
@@ -405,6 +425,8 @@ impl<'a> Ground<'a> {
             leaf: spec.leaf,
             steady: spec.steady_m.is_some(),
             copy: spec.crowd.is_some(),
+            few_leaves: spec.crowd.is_none()
+                && plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).count() <= FEW_LEAVES,
         }
     }
 
@@ -437,7 +459,7 @@ impl<'a> Ground<'a> {
                 // A toothed or lobed margin (perimeter^2 / area of 30 to 300, 12 for a plain leaf) needs edges.
                 let around = crate::blade::closed_length(&blade.outline);
                 let least = (4.0 * around / area.max(f64::MIN_POSITIVE).sqrt()).clamp(14.0, 40.0);
-                if budget.crown() {
+                if budget.crown() && !(used.leaf && self.few_leaves) {
                     return Wish::Lean(
                         budget.lean_triangles(least),
                         if self.copy { COPIED_WIDER } else { plant::DRAWN_WIDER },
@@ -448,7 +470,7 @@ impl<'a> Ground<'a> {
                 if self.copy && wanted <= 60.0 {
                     return Wish::Lean(wanted, COPIED_WIDER);
                 }
-                Wish::Sheet(wanted)
+                if self.copy { Wish::Plain(wanted) } else { Wish::Sheet(wanted) }
             }
             // A dome is smooth: two fifths of what a blade of its size has.
             Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {
@@ -464,7 +486,7 @@ impl<'a> Ground<'a> {
                 }
             }
             Shape::Strand { knob_m: 0.0, .. } if self.steady => Wish::Rod,
-            Shape::Strand { knob_m: 0.0, .. } if budget.crown() => Wish::Prism,
+            Shape::Strand { knob_m: 0.0, .. } if budget.crown() || self.copy => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
             Shape::Spline(_) => Wish::Spline(self.leaf.at(budget.detail)),
             Shape::Sheet(_) => Wish::Grid(self.leaf.at(budget.detail), budget.detail),

@@ -13,6 +13,8 @@ const FEW_LEAVES: usize = 300;
 /// Leaves of a coarser copy are no longer than this share of the plant's size: a few large ones would be spikes.
 const LONGEST: f64 = 0.07;
 const FEW_FLOWERS: usize = 120;
+/// A flower keeps all of its petals in the first level, half of so many in the second, and half of those in each further one.
+const FEW_PETALS: usize = 5;
 
 /// How often so many things can be halved, `level` times at most, before fewer are left than can be seen singly: `few` in
 /// the first level.
@@ -72,7 +74,7 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
 ///
 /// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
-/// are many for the size at which it is seen. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
+/// are many for the size at which it is seen; flowers that are few have fewer petals from the second level on. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
 /// become fewer. With [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
 /// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
@@ -127,6 +129,12 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         }
     }
     let fewer_flowers = (plant.flowers.len() as f64 / copy.flowers.len().max(1) as f64).sqrt();
+    // Flowers that are too few to be fewer have fewer petals.
+    let petals = plant.organs.iter().filter(|o| o.kind == OrganKind::Petal).count();
+    let of_each = petals / plant.flowers.len().max(1);
+    let petal_halvings =
+        if level > 1 { halvings(of_each, FEW_PETALS, level).min(level - flower_halvings) } else { 0 };
+    let mut petals = vec![0_usize; plant.flowers.len()];
     let whole_shoots = shoots.as_ref().filter(|_| level > 1);
     let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, level) };
     let larger = larger(plant, leaf_halvings);
@@ -135,6 +143,12 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         let leaf = organ.kind == OrganKind::Leaf;
         if flower == Some(None) || (leaf && !stays(organ.key, leaf_halvings)) {
             continue;
+        }
+        if let (OrganKind::Petal, Some(row)) = (organ.kind, organ.flower) {
+            let nth = petals.get_mut(row.index()).map_or(0, |n| std::mem::replace(n, *n + 1));
+            if !nth.is_multiple_of(1 << petal_halvings) {
+                continue;
+            }
         }
         // A stalk stays as it is: it leads to the middle of its flower.
         let larger = match organ.kind {
