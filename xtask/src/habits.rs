@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use crate::bare_numbers;
-use crate::shell::{Outcome, beside, cargo, finish, installed, output, prepare, say};
+use crate::shell::{Outcome, cargo, finish, installed, output, prepare, say};
 
 /// A program that checks one of them.
 struct Checker {
@@ -20,8 +20,7 @@ const TYPOS: Checker = Checker { package: "typos-cli", version: "1.52.0", progra
 /// Runs them all.
 pub(crate) fn check() -> Outcome {
     bare_numbers::check()?;
-    let [deny, typos] = beside(|| Ok(DENY.found()), || Ok(TYPOS.found()))?;
-    if let Some(deny) = deny {
+    if let Some(deny) = DENY.found() {
         say("$ cargo deny check licenses bans sources (deny.toml)");
         finish(prepare(&deny, &["--log-level", "error", "check", "licenses", "bans", "sources"]))?;
         // The list of advisories lies elsewhere: it cannot be had everywhere.
@@ -31,7 +30,7 @@ pub(crate) fn check() -> Outcome {
             Err(e) => say(&format!("skipped: security advisories cannot be fetched here ({e})")),
         }
     }
-    if let Some(typos) = typos {
+    if let Some(typos) = TYPOS.found() {
         say("$ typos (typos.toml)");
         finish(prepare(&typos, &["--format", "brief"]))?;
     }

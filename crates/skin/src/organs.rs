@@ -209,7 +209,7 @@ fn lean(blade: &plant::Blade, wish: f64, widest: f64) -> Option<TriMesh> {
 
 /// A blade whose margin has few enough corners for so many triangles.
 fn plain(blade: &plant::Blade, triangles: f64) -> Cow<'_, plant::Blade> {
-    let most = base::ops::whole(0.5 * triangles).clamp(8, 4096) as usize;
+    let most = base::ops::whole(0.5 * triangles).max(8) as usize;
     match fewer_corners(blade, most) {
         Some(outline) => Cow::Owned(plant::Blade { outline, ..blade.clone() }),
         None => Cow::Borrowed(blade),
