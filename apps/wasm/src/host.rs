@@ -40,28 +40,33 @@ pub(crate) fn tell_of_panics() {
 /// Computes with the browser's clock, within its budget, until the page wants something else.
 pub(crate) fn page_run<T>(compute: impl FnOnce(&Run<'_>) -> T) -> T {
     let cancel = CancelToken::new();
-    compute(&Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host, budget: BUDGET })
+    let attentive = Attentive(&cancel);
+    compute(&Run { cancel: &cancel, executor: &attentive, clock: &attentive, budget: BUDGET })
 }
 
-/// The browser's clock.
-struct Host;
+/// A word to the page and a look at its wish before each job, and whenever a stage looks at the clock: the only thread
+/// there is cannot be interrupted from outside.
+struct Attentive<'a>(&'a CancelToken);
 
-impl Clock for Host {
+impl Attentive<'_> {
+    fn look(&self) {
+        if burgeon_stop(self.0.share().unwrap_or(-1.0)) {
+            self.0.cancel();
+        }
+    }
+}
+
+impl Clock for Attentive<'_> {
     fn now_ms(&self) -> f64 {
+        self.look();
         now()
     }
 }
 
-/// One job after another, with a word to the page and a look at its wish before each: the only thread there is cannot be
-/// interrupted from outside.
-struct Attentive<'a>(&'a CancelToken);
-
 impl Executor for Attentive<'_> {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
         for i in 0..n {
-            if burgeon_stop(self.0.share().unwrap_or(-1.0)) {
-                self.0.cancel();
-            }
+            self.look();
             job(i);
         }
     }
