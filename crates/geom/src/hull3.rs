@@ -13,6 +13,8 @@ use glam::DVec3;
 ///     (0..8_u8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
 /// let hull = geom::convex_hull3(&corners).ok_or("flat")?;
 /// assert!((hull.volume() - 1.0).abs() < 1e-12 && (hull.area() - 6.0).abs() < 1e-12);
+/// let inside = |p: DVec3| hull.planes().iter().all(|(normal, distance)| normal.dot(p) <= *distance);
+/// assert!(inside(DVec3::splat(0.5)) && !inside(DVec3::new(0.5, 0.5, 1.1)));
 /// # Ok::<(), &str>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +35,16 @@ impl Hull3 {
         // Measured from a corner, so that a hull far from the origin loses no digits.
         let o = self.points.first().copied().unwrap_or_default();
         self.corners().map(|[a, b, c]| (a - o).dot((b - o).cross(c - o))).sum::<f64>() / 6.0
+    }
+
+    /// The planes of its faces as unit normals that point outwards and distances from the origin along them: a point is
+    /// inside where `normal.dot(point) <= distance` for all. Faces without area are left out.
+    pub fn planes(&self) -> Vec<(DVec3, f64)> {
+        let plane = |[a, b, c]: [DVec3; 3]| {
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            (normal != DVec3::ZERO).then(|| (normal, normal.dot((a + b + c) / 3.0)))
+        };
+        self.corners().filter_map(plane).collect()
     }
 
     /// The area of the surface.

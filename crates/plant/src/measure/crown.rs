@@ -32,14 +32,9 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let margins: Vec<Vec<DVec3>> = plant.shapes.iter().map(margin).collect();
     for organ in &plant.organs {
         let places = margins[organ.shape.index()].iter().map(|&p| organ.frame.place(p, organ.scale));
-        let from = points.len();
-        points.extend(places);
-        height_m = points[from..].iter().fold(height_m, |h, p| h.max(p.y));
-        // Flowers and fruits reach higher, but are no crown.
-        if organ.kind != OrganKind::Leaf {
-            points.truncate(from);
-        }
+        height_m = places.fold(height_m, |h, p| h.max(p.y));
     }
+    leaves_outside(plant, &margins, &mut points);
     let hull = geom::convex_hull3(&points);
     // The shadow of a body is that of its corners, which are few beside the points of all leaves.
     let corners = hull.as_ref().map_or(&points[..], |h| &h.points);
@@ -47,6 +42,27 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let projection_m2 = geom::signed_area(&geom::convex_hull(&flat)).abs();
     let volume_m3 = hull.map_or(0.0, |h| h.volume());
     Crown { height_m, base_m, volume_m3, projection_m2 }
+}
+
+/// Adds to `points` those of the leaves that the hull of all of them may need: most leaves lie deep inside a crown.
+pub(super) fn leaves_outside(plant: &Plant, margins: &[Vec<DVec3>], points: &mut Vec<DVec3>) {
+    // Flowers and fruits reach higher, but are no crown.
+    let leaves = || {
+        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+        leaves.filter_map(|o| margins[o.shape.index()].split_first().map(|(first, _)| (o, *first)))
+    };
+    // One point of each leaf; the rest is no farther from it than `reach`.
+    points.extend(leaves().map(|(o, first)| o.frame.place(first, o.scale)));
+    let core = geom::convex_hull3(points).map(|hull| hull.planes()).unwrap_or_default();
+    let reach_of = |m: &Vec<DVec3>| m.iter().fold(0.0_f64, |r, p| r.max(p.distance(m[0])));
+    let reaches: Vec<f64> = margins.iter().map(reach_of).collect();
+    for (leaf, first) in leaves() {
+        let (at, reach) = (leaf.frame.place(first, leaf.scale), reaches[leaf.shape.index()] * leaf.scale);
+        let inside = core.iter().all(|(normal, offset)| normal.dot(at) + reach < *offset);
+        if core.is_empty() || !inside {
+            points.extend(margins[leaf.shape.index()].iter().map(|&p| leaf.frame.place(p, leaf.scale)));
+        }
+    }
 }
 
 /// Which axes bear leaves, themselves or through others; all of them on a plant without leaves.
@@ -80,7 +96,7 @@ fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
 }
 
 /// Local points whose convex hull is that of the shape, nearly: a bent blade bulges between its margin and midrib.
-fn margin(shape: &Shape) -> Vec<DVec3> {
+pub(super) fn margin(shape: &Shape) -> Vec<DVec3> {
     match shape {
         Shape::Blade(b) => {
             let surface = b.surface();

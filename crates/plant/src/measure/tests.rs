@@ -296,6 +296,20 @@ fn numbers(m: &Measures) -> (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>) {
 
 proptest! {
     #[test]
+    fn leaves_deep_inside_a_crown_are_in_its_hull_already(seed in 0..1000_u64, axes in 20..400_usize) {
+        let plant = wild(seed, axes);
+        let margins: Vec<Vec<DVec3>> = plant.shapes.iter().map(super::crown::margin).collect();
+        let (mut some, mut all) = (plant.nodes.position.clone(), plant.nodes.position.clone());
+        super::crown::leaves_outside(&plant, &margins, &mut some);
+        for o in &plant.organs {
+            all.extend(margins[o.shape.index()].iter().map(|&p| o.frame.place(p, o.scale)));
+        }
+        let volume = |points: &[DVec3]| geom::convex_hull3(points).map_or(0.0, |hull| hull.volume());
+        prop_assert!((volume(&some) - volume(&all)).abs() <= 1e-8 * volume(&all));
+        prop_assert!(axes < 200 || some.len() < all.len() * 9 / 10, "{} of {}", some.len(), all.len());
+    }
+
+    #[test]
     fn measures_scale_as_their_units_do(seed in 0..1000_u64, axes in 1..40_usize) {
         let small = wild(seed, axes);
         prop_assert_eq!(small.validate().next(), None);
