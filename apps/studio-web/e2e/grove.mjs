@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
+import { frameOf, pixels } from './staging.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const WIDE = { viewport: { width: 1360, height: 760 } };
@@ -26,6 +27,30 @@ const middle = async (page) => {
   const box = await page.locator('.view').boundingBox();
   return { x: box.x + box.width / 2, y: box.y + box.height / 2, box };
 };
+
+/** A tree that takes long tells how far it is. */
+async function progress({ page, url }) {
+  await begin(page, url);
+  await page.evaluate(() => {
+    const told = [];
+    const read = () => {
+      const percent = /(\d+)\s*%/.exec(document.querySelector('.busy')?.textContent ?? '')?.[1];
+      if (percent !== undefined && told.at(-1) !== Number(percent)) told.push(Number(percent));
+    };
+    new MutationObserver(read).observe(document.body, {
+      subtree: true,
+      childList: true,
+      characterData: true,
+    });
+    globalThis.told = told;
+  });
+  await add(page, 'tree', 'birch');
+  await until(page, 'triangles', ['above', 1000], 'it has grown');
+  await settled(page);
+  const told = await page.evaluate(() => globalThis.told);
+  assert.ok(told.length > 3, `told: ${told}`);
+  assert.ok(Math.max(...told) > 60 && Math.min(...told) < 60, `from early to late: ${told}`);
+}
 
 /** A copy shares its meshes and is written once. */
 async function copies({ page, url, shot }) {
@@ -97,6 +122,56 @@ async function gizmos({ page, url, shot }) {
     assert.ok(Math.abs(at / 0.25 - Math.round(at / 0.25)) < 1e-6, `${key} is ${at}`);
   }
   assert.match(await page.locator('#b-undo').getAttribute('title'), /place/);
+}
+
+/** A plant that is dragged goes as far as the pointer does on the ground, and its shadow with it. */
+async function dragged({ page, url, shot }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  await page.keyboard.press('g');
+  await page.keyboard.press('x');
+  await page.waitForTimeout(900);
+  const { x, y, box } = await middle(page);
+  const pose = JSON.parse(await page.locator('.view').getAttribute('data-eye'));
+  const frame = frameOf(pose, box.height);
+  // The middle of what the panel leaves free.
+  const panel = await page.locator('.scene').boundingBox();
+  const free = (panel.x + panel.width - box.x) / 2;
+  /** How much darker the ground is where a plant there throws its shadow than beside it. */
+  const shade = async (at) => {
+    await still(page);
+    const [px, py] = frame.to(at);
+    const luma = async (dx) => {
+      const [u, v] = [0.5 + (px + free + dx) / box.width, 0.5 + py / box.height];
+      const bytes = await page.locator('.view canvas').screenshot();
+      const { p } = await pixels(page, bytes, [u - 0.15, v - 0.12, u - 0.03, v - 0.02]);
+      let sum = 0;
+      for (let i = 0; i < p.length; i += 4) sum += (p[i] + p[i + 1] + p[i + 2]) / 3;
+      return (4 * sum) / p.length;
+    };
+    return (await luma(-box.width * 0.25)) - (await luma(0));
+  };
+  const first = await shade([0, 0, 0]);
+  assert.ok(first > 8, `it throws a shadow: ${first}`);
+  const [foot, right] = [frame.to([0, 0, 0]), frame.to([1, 0, 0])];
+  const axis = [right[0] - foot[0], right[1] - foot[1]].map((d, _, of) => d / Math.hypot(...of));
+  const hot = (d) => [x + free + foot[0] + d * axis[0], y + foot[1] + d * axis[1]];
+  const way = 82;
+  await page.mouse.move(...hot(52));
+  await page.waitForTimeout(200);
+  await page.mouse.down();
+  await page.mouse.move(...hot(52 + way), { steps: 6 });
+  await page.mouse.up();
+  await page.waitForTimeout(100);
+  await settled(page);
+  const to = await field(page, 'nx');
+  assert.ok(to > 0, 'the handle moves the plant');
+  const [u, v] = frame.to([to * pose.metre, 0, 0]);
+  const went = Math.hypot(u - foot[0], v - foot[1]);
+  assert.ok(Math.abs(went - way) < 0.1 * way, `${went} pixels, the pointer ${way}`);
+  const there = await shade([to * pose.metre, 0, 0]);
+  assert.ok(there > 0.6 * first, `its shadow went along: ${there}, ${first} before`);
+  await shot('grove-dragged');
 }
 
 /** Plants that are chosen together are a group, and go as one. */
@@ -240,6 +315,19 @@ async function scatter({ page, url, shot }) {
   await until(page, 'plants', ['above', 2], 'copies fill the area');
   await page.waitForTimeout(2500);
   await shot('grove-area');
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 1], 'they are gone');
+  // The brush sets copies about its way, one step for the whole way.
+  await page.click('[data-scatter=brush]');
+  await page.mouse.move(x - 200, floor);
+  await page.mouse.down();
+  await page.mouse.move(x + 200, floor - 30, { steps: 14 });
+  await page.mouse.up();
+  await until(page, 'plants', ['above', 2], 'copies stand where the brush was');
+  await page.waitForTimeout(1500);
+  await shot('grove-brush');
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 1], 'one step takes them back');
 }
 
 /** Files that come together, and a model that is only looked at. */
@@ -569,8 +657,10 @@ async function seasons({ page, url, shot }) {
 export const grove = [
   ['grove: seasons', seasons, WIDE],
   ['grove: a large tree is seen before it is whole', seen, WIDE],
+  ['grove: how far it is', progress, WIDE],
   ['grove: copies share one plant', copies, WIDE],
   ['grove: gizmos by keys', gizmos, WIDE],
+  ['grove: a plant goes where it is dragged, with its shadow', dragged, WIDE],
   ['grove: chosen together, a group', groups, WIDE],
   ['grove: copies along a line and in an area', scatter, WIDE],
   ['grove: several files, and a model that is closed', files, WIDE],

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { Buffer } from 'node:buffer';
 import {
+  add,
   begin,
   blade,
   changed,
@@ -111,6 +112,27 @@ async function flowers({ page, url, shot }) {
   await sheds(page, 'petal-speckled-1');
 }
 
+/** The leaves of a species in a colour of the library, and in the file. */
+async function tree({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  const plain = await settled(page);
+  await page.keyboard.press('Control+k');
+  await page.keyboard.type('materials');
+  await page.keyboard.press('Enter');
+  await page.selectOption('#b-material-of', 'leaf');
+  await page.click('[data-material=hosta]');
+  await wears(page, 'leaf-variegated-1');
+  assert.equal(await settled(page), plain, 'the tree is the same');
+  await page.keyboard.press('Escape');
+  await shot('materials-tree');
+  const { materials, textures, images } = gltfOf(await exported(page, 'glb'));
+  const leaf = materials.find((m) => m.name === 'leaf-variegated-1');
+  assert.ok(images[textures[leaf.pbrMetallicRoughness.baseColorTexture.index].source], 'with its picture');
+  await page.keyboard.press('Control+z');
+  await sheds(page, 'leaf-variegated-1');
+}
+
 async function pen({ page, url, shot }) {
   await begin(page, url);
   await page.click('#b-pen');
@@ -203,6 +225,7 @@ async function layers({ page, url, shot }) {
 export const materialJourneys = [
   ['materials of organs', materials],
   ['materials of a flower', flowers],
+  ['materials of a tree', tree],
   ['the width of the pen', pen],
   ['layers of a drawing', layers],
 ];

@@ -6,7 +6,7 @@ import { inflateRawSync } from 'node:zlib';
 import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
 
 /** The pixels of a part of a picture file, four bytes each, and the size of the whole; shares of its width and height. */
-async function pixels(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
+export async function pixels(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
   const { rgba, ...sizes } = await page.evaluate(
     async ([base64, a, b, c, d]) => {
       const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
@@ -194,7 +194,7 @@ async function stage({ page, url, shot }) {
 }
 
 /** Where a point of the world is on the screen, pixels from the middle, for the camera as the page tells it. */
-function frameOf({ position, target, lens }, height) {
+export function frameOf({ position, target, lens }, height) {
   const sub = (a, b) => a.map((x, i) => x - b[i]);
   const dot = (a, b) => a.reduce((s, x, i) => s + x * b[i], 0);
   const unit = (a) => a.map((x) => x / Math.hypot(...a));

@@ -771,7 +771,7 @@ export class PlantView {
     } else {
       this.renderer.render(this.stage.scene, camera);
     }
-    this.element.dataset['eye'] = JSON.stringify(this.rig.pose);
+    this.element.dataset['eye'] = JSON.stringify({ ...this.rig.pose, metre: this.framing.scale });
     this.events.drawn();
   }
 
