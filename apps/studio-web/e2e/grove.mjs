@@ -174,6 +174,55 @@ async function dragged({ page, url, shot }) {
   await shot('grove-dragged');
 }
 
+/** What is being typed stays while the panel is filled anew; what was taken is shown as it was taken. */
+async function typing({ page, url }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  const old = await page.locator('[data-key=nx]').elementHandle();
+  const age = page.locator('#b-maker input[data-path="age"]');
+  const grown = async (share) => {
+    const digest = await settled(page);
+    await age.evaluate((e, to) => {
+      e.value = String(Number(e.min) + to * (Number(e.max) - Number(e.min)));
+      e.dispatchEvent(new Event('input', { bubbles: true }));
+      e.dispatchEvent(new Event('change', { bubbles: true }));
+    }, share);
+    await changed(page, digest, 'another age');
+    await page.waitForTimeout(300);
+  };
+  const undo = () => page.locator('#b-undo').getAttribute('title');
+  await page.locator('[data-key=nx]').selectText();
+  await page.keyboard.type('1.2');
+  // Something else changes the plant meanwhile.
+  await grown(0.6);
+  assert.ok(!(await old.evaluate((e) => e.isConnected)), 'the panel was filled anew');
+  assert.doesNotMatch(await undo(), /place/, 'nothing was taken yet');
+  await page.keyboard.type('5');
+  assert.equal(await page.locator('[data-key=nx]').inputValue(), '1.25');
+  await page.keyboard.press('Enter');
+  await page.locator('#b-undo[title*="place"]').waitFor();
+  assert.equal(await field(page, 'nx'), 1.25);
+  // Taken by Enter, or by leaving it, also where nothing is typed any more.
+  for (const [text, leave] of [
+    ['0.5', 'Enter'],
+    ['0.75', 'Tab'],
+  ]) {
+    await page.locator('[data-key=nx]').selectText();
+    await page.keyboard.type(text);
+    await grown(text === '0.5' ? 0.8 : 0.5);
+    assert.doesNotMatch(await undo(), /place/);
+    await page.keyboard.press(leave);
+    await page.locator('#b-undo[title*="place"]').waitFor();
+    assert.equal(await field(page, 'nx'), Number(text));
+  }
+  // A size beyond what there may be is shown as it was taken, not as it was typed.
+  await page.locator('[data-key=nscale]').selectText();
+  await page.keyboard.type('0');
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(600);
+  assert.ok((await field(page, 'nscale')) > 0, 'no plant has no size');
+}
+
 /** Plants that are chosen together are a group, and go as one. */
 async function groups({ page, url, shot }) {
   await bush(page, url);
@@ -661,6 +710,7 @@ export const grove = [
   ['grove: copies share one plant', copies, WIDE],
   ['grove: gizmos by keys', gizmos, WIDE],
   ['grove: a plant goes where it is dragged, with its shadow', dragged, WIDE],
+  ['grove: what is being typed stays', typing, WIDE],
   ['grove: chosen together, a group', groups, WIDE],
   ['grove: copies along a line and in an area', scatter, WIDE],
   ['grove: several files, and a model that is closed', files, WIDE],

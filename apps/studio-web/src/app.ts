@@ -178,6 +178,9 @@ export class App implements Page {
       refused: (request, why) => {
         if (request.kind === 'stroke') this.sheet.dropPending();
         this.view?.putBack();
+        // Fields show what there is again, not what was asked for.
+        this.panels.renew();
+        this.show.document();
         if (why !== 'restarted') note(t('note.refused', { why }), 'bad');
       },
       coarse: (fresh) => {

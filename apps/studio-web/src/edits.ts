@@ -1,7 +1,7 @@
 /** The list of what was done to a plant by hand: what came of each edit, left out, taken back. */
 import { number, t, tOf } from './text';
 import { iconOfEdit } from './tools';
-import { button, el, icon } from './ui';
+import { attention, button, el, icon } from './ui';
 import type { EditReport, PlantState, PlantView as Seen, ShapeCommand } from './wire';
 
 export class EditList {
@@ -25,9 +25,7 @@ export class EditList {
       this.element.replaceChildren();
       return;
     }
-    const focused = this.element.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-key')
-      : null;
+    const back = attention(this.element, 'data-key');
     const rows = edits.map(({ op, off }, row) => {
       const report = reports.get(row);
       const bad = !off && report?.done === false;
@@ -92,10 +90,7 @@ export class EditList {
       el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
       ...(folded ? [] : [el('ol', {}, ...rows)]),
     );
-    if (focused)
-      this.element
-        .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
-        ?.focus({ preventScroll: true });
+    back();
   }
 }
 

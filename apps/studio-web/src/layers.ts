@@ -1,7 +1,7 @@
 /** The pen that strokes are drawn with, and the layers that they lie on. */
 import type { Session } from './session';
 import { t } from './text';
-import { askName, button, el } from './ui';
+import { askName, attention, button, el } from './ui';
 import { bytes, type Held, hex } from './pen';
 import type { Layer } from './wire';
 
@@ -92,9 +92,7 @@ export class LayersPanel {
   show(): void {
     const { session, held, chosen, changed } = this.events;
     const layers = session.drawn?.layers ?? [];
-    const focused = this.element.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-key')
-      : null;
+    const back = attention(this.element, 'data-key');
     const take = (name: string | null): void => {
       held.layer = name;
       changed();
@@ -153,7 +151,7 @@ export class LayersPanel {
       el('ul', { class: 'layer-rows' }, ...rows.reverse(), row(null, t('layer.sheet'))),
       el('div', { class: 'chips' }, add, put),
     );
-    if (focused) this.element.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+    back();
   }
 
   private freshName(layers: readonly Layer[]): string {

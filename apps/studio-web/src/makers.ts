@@ -18,7 +18,7 @@ import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
 import { ownPresets } from './own';
 import { ownChips } from './ownchips';
-import { button, el, icon } from './ui';
+import { attention, button, el, icon } from './ui';
 
 export interface Catalogue {
   /** Of a drawing, with its surface. */
@@ -186,16 +186,11 @@ export class MakerPanel {
     // What is being typed stays.
     if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement))
       return;
-    const focused = this.head.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-path')
-      : null;
+    const back = attention(this.head, 'data-path');
     if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
     if (plant.leaf) this.head.replaceChildren(...this.leaf(plant, plant.leaf));
     if (plant.flower) this.head.replaceChildren(...this.flower(plant, plant.flower, catalogue));
-    if (focused)
-      this.head
-        .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
-        ?.focus({ preventScroll: true });
+    back();
     const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.spec ?? {};
     const main = plant.leaf?.text === '' ? LEAF_FORM : (MAIN[plant.maker] ?? []);
     this.form?.show(values, main, plant.maker === 'tree' ? TREE_ORDER : []);

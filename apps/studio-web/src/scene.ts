@@ -1,7 +1,7 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantCommand, PlantState, SceneView } from './wire';
 import { t, tell, type TextKey } from './text';
-import { askName, button, closePopover, el, icon, popover, relabel } from './ui';
+import { askName, attention, button, closePopover, el, icon, popover, relabel } from './ui';
 
 export type Gizmo = 'translate' | 'rotate' | 'scale';
 
@@ -150,9 +150,7 @@ export class SceneList {
   }
 
   show(state: DocumentState, view: SceneView | undefined): void {
-    const focused = this.element.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-key')
-      : null;
+    const back = attention(this.element, 'data-key');
     this.element.setAttribute('aria-label', t('scene.title'));
     this.plants = state.plants;
     this.current = state.plants.find((p) => p.id === state.current);
@@ -186,10 +184,7 @@ export class SceneList {
     }
     while (this.head.nextSibling) this.head.nextSibling.remove();
     this.element.append(...content);
-    if (focused)
-      this.element
-        .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
-        ?.focus({ preventScroll: true });
+    back();
   }
 
   /** Only its head is shown. */
