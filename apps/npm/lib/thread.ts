@@ -5,7 +5,8 @@ import type { Beside } from './engine.js';
 
 /** A thread that keeps the program alive only while it is asked something. */
 export function thread(address: URL): Beside {
-  const own = new Worker(address);
+  // What Node was told of the program's own script, such as `--input-type`, is not for a file of the package.
+  const own = new Worker(address, { execArgv: [] });
   const made: Beside = {
     onmessage: null,
     onerror: null,

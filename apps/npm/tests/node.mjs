@@ -387,6 +387,14 @@ test('a plant is made beside the program: timers go on, and a signal stops it', 
   assert.ok(expected['tree hazel'].startsWith((await second).digest));
 });
 
+test('a program that is one line of a command line has its plants, too', () => {
+  const line = `const { grow } = await import('burgeon'); const tree = await grow('hazel', { seed: 1, detail: 0.1 });
+    console.log(tree.report.counts.triangles); process.exit(0);`;
+  const options = { cwd: withThree, encoding: 'utf8' };
+  const said = execFileSync(process.execPath, ['--input-type=module', '-e', line], options);
+  assert.ok(Number(said) > 100, said);
+});
+
 test('in this thread it makes the same plants', async () => {
   for (const place of ['in-thread.js', 'growth/in-thread.js']) {
     const here = await import(file(place));
