@@ -78,6 +78,11 @@ async function copies({ page, url, shot }) {
   await page.keyboard.press('Control+z');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
   await until(page, 'meshes', ['is', 1], 'shared again');
+  // By the keys that duplicate strokes where some are chosen.
+  await page.keyboard.press('Control+d');
+  await until(page, 'plants', ['is', 5], 'one more');
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 4], 'and gone');
 }
 
 /** Move, turn and size by keys, with steps and along an axis. */

@@ -286,7 +286,13 @@ const TABLE = [
     when: () => false,
     run: (p) => void p.clipboard.pasteText(''),
   },
-  { id: 'duplicate', label: 'act.duplicate', keys: 'Ctrl+D', run: (p) => p.clipboard.duplicate() },
+  {
+    id: 'duplicate',
+    label: 'act.duplicate',
+    keys: 'Ctrl+D',
+    // Strokes if some are chosen, else plants.
+    run: (p) => (hasSelection(p) ? p.clipboard : p.list).duplicate(),
+  },
   {
     id: 'smooth',
     label: 'act.smooth',

@@ -332,15 +332,16 @@ export class SceneList {
   }
 
   /** Beside them, so that crowns touch. */
-  private duplicate(plants: readonly PlantState[]): void {
+  duplicate(plants: readonly PlantState[] = this.chosen): void {
     const [one] = plants;
+    if (!one) return;
     const places = plants.map((p) => p.position[0]);
     const wide = Math.max(...plants.map((p) => this.events.width(p.id))) || ASIDE;
     const aside = Math.round((Math.max(...places) - Math.min(...places) + wide) * 100) / 100;
     const ids = plants.map((p) => p.id);
     this.events.run({
       scene:
-        plants.length === 1 && one
+        plants.length === 1
           ? { duplicate: [one.id, [aside, 0, 0]] }
           : { 'duplicate-all': [ids, [aside, 0, 0]] },
     });
