@@ -266,6 +266,16 @@ fn packed_files_are_small_and_come_back_as_they_were() {
             }
             assert_eq!(a.mesh.triangles.len(), b.mesh.triangles.len());
         }
+        // Without loss where there are holes.
+        assert!(back.materials[0].maps.through == m.materials[0].maps.through, "to the pixel");
+        let webp = packing == Packing::Compressed && cfg!(feature = "webp");
+        let length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
+        let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).expect("JSON");
+        let kinds: Vec<&str> =
+            json["images"].as_array().expect("there").iter().filter_map(|i| i["mimeType"].as_str()).collect();
+        assert_eq!((kinds.contains(&"image/webp"), kinds.contains(&"image/png")), (webp, !webp));
+        let needed = json["extensionsRequired"].as_array().expect("there");
+        assert_eq!(needed.iter().filter(|e| *e == "EXT_texture_webp").count(), usize::from(webp));
         let cut = &glb[..glb.len() - glb.len() / 3];
         let spec = formats::ExportSpec::default();
         let read = formats::read_model(

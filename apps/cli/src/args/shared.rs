@@ -208,7 +208,8 @@ impl From<UnitWord> for Unit {
 pub(crate) enum PackWord {
     /// Numbers in few bits (`KHR_mesh_quantization`): most programs read it, Blender among them
     Quantized,
-    /// The same, compressed (`EXT_meshopt_compression`): for three.js, Babylon, Godot and others that have the decoder
+    /// The same, compressed (`EXT_meshopt_compression`, `EXT_texture_webp`): for three.js, Babylon, Godot and others that have
+    /// the decoder
     Meshopt,
 }
 

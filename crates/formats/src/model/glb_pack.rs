@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::glb_write::{Encoded, Level, Writer, check_levels, row};
 use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
 use super::meshopt::{encode_attributes, encode_triangles};
+use super::picture::{WEBP_TYPE, webp};
 use super::{PngCache, share, unit};
 use crate::error::WriteError;
 
@@ -26,8 +27,9 @@ pub enum Packing {
     /// Columns in few bits (`KHR_mesh_quantization`): positions to a 65,535th of the model's size, normals to a degree,
     /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
     Quantized,
-    /// Those, compressed (`EXT_meshopt_compression`), which a reader must know: three.js with its decoder, Babylon,
-    /// Godot, and Burgeon do; Blender does not.
+    /// Those, compressed (`EXT_meshopt_compression`), and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
+    /// without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
+    /// Blender does not.
     Compressed,
 }
 
@@ -58,12 +60,12 @@ pub(super) fn write_packed(
     check_levels(levels)?;
     let room = |m: &Model| 16 * m.vertex_count() + 6 * m.triangle_count() + 1024;
     let mut w = Writer::new(levels.iter().map(|l| room(l.model)).sum());
-    w.encode = jpeg;
-    let mut packer = Packer { w, packing, fallback: 0 };
-    packer.needs(QUANTIZATION);
+    w.encode = if packing == Packing::Compressed { jpeg_or_webp } else { jpeg_or_png };
+    w.needs(QUANTIZATION);
     if packing == Packing::Compressed {
-        packer.needs(COMPRESSION);
+        w.needs(COMPRESSION);
     }
+    let mut packer = Packer { w, packing, fallback: 0 };
     for (level, number) in levels.iter().zip(0..) {
         let under = packer.w.level(&levels[0].model.name, number)?;
         packer.level(level, under, cache)?;
@@ -72,18 +74,31 @@ pub(super) fn write_packed(
 }
 
 /// A texture as JPEG; one with holes, which JPEG cannot have, and one whose alpha is its matter, as PNG.
-fn jpeg(texture: &Arc<mesh::Texture>, cache: &mut PngCache) -> Result<Encoded, WriteError> {
-    let png = |cache: &mut PngCache| Ok((cache.png(texture)?, "image/png"));
+fn jpeg_or_png(texture: &Arc<mesh::Texture>, cache: &mut PngCache) -> Result<Encoded, WriteError> {
+    if let Some(jpeg) = jpeg(texture)? { Ok(jpeg) } else { Ok((cache.png(texture)?, "image/png")) }
+}
+
+/// As [`jpeg_or_png`], but as WebP, without loss, in the place of PNG.
+fn jpeg_or_webp(texture: &Arc<mesh::Texture>, cache: &mut PngCache) -> Result<Encoded, WriteError> {
+    if let Some(jpeg) = jpeg(texture)? {
+        return Ok(jpeg);
+    }
+    let webp = webp(texture).map(|bytes| (bytes.into(), WEBP_TYPE));
+    webp.map_or_else(|| Ok((cache.png(texture)?, "image/png")), Ok)
+}
+
+/// `None` of what has holes, or is too large for it.
+fn jpeg(texture: &mesh::Texture) -> Result<Option<Encoded>, WriteError> {
     let sides = (u16::try_from(texture.width), u16::try_from(texture.height));
-    let (Ok(width), Ok(height)) = sides else { return png(cache) };
+    let (Ok(width), Ok(height)) = sides else { return Ok(None) };
     if texture.pixels.chunks_exact(4).any(|p| p[3] != 255) {
-        return png(cache);
+        return Ok(None);
     }
     let mut bytes = Vec::new();
     let encoder = jpeg_encoder::Encoder::new(&mut bytes, QUALITY);
     let written = encoder.encode(&texture.pixels, width, height, jpeg_encoder::ColorType::Rgba);
     written.map_err(|e| WriteError::Io(std::io::Error::other(e)))?;
-    Ok((bytes.into(), "image/jpeg"))
+    Ok(Some((bytes.into(), "image/jpeg")))
 }
 
 /// The part of the texture plane in which a material's coordinates lie.
@@ -167,19 +182,13 @@ struct Layout {
 }
 
 impl Packer {
-    fn needs(&mut self, extension: &str) {
-        self.w.uses(extension);
-        self.w.root.extensions_required.push(extension.to_owned());
-    }
-
     /// Materials and meshes of a level, below a node.
     fn level(&mut self, level: &Level<'_>, under: u32, cache: &mut PngCache) -> Result<(), WriteError> {
         let model = level.model;
         let frames: Vec<Frame> = (0..model.materials.len()).map(|m| Frame::of(level, m)).collect();
         self.w.placed = frames.iter().map(Frame::transform).collect();
-        let placed = self.w.placed.iter().any(Option::is_some);
-        if placed && !self.w.root.extensions_required.iter().any(|e| e == TRANSFORM) {
-            self.needs(TRANSFORM);
+        if self.w.placed.iter().any(Option::is_some) {
+            self.w.needs(TRANSFORM);
         }
         let first = self.w.materials(model, cache)?;
         let cube = |bounds: mesh::Bounds| {

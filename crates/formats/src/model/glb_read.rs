@@ -7,7 +7,7 @@ use mesh::{MaterialId, Model, Part, TriMesh};
 use super::glb_write::INSTANCES;
 use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
 use super::gltf_bytes::{Bytes, MeshFault, broken, chunks, item, unsupported};
-use super::gltf_look::Pictures;
+use super::gltf_look::{Pictures, WEBP};
 use super::{MAX_ROWS, Names, Resolver, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
@@ -20,9 +20,10 @@ const MAX_OBJECTS: usize = 2_000_000;
 const MAX_DEPTH: usize = 1_000;
 
 /// Extensions that may be required and still leave the shape readable.
-const HARMLESS: [&str; 7] = [
+const HARMLESS: [&str; 8] = [
     INSTANCES,
     "EXT_meshopt_compression",
+    WEBP,
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_lights_punctual",

@@ -392,6 +392,14 @@ impl Writer {
         }
     }
 
+    /// Names an extension that a reader must know, once.
+    pub(super) fn needs(&mut self, extension: &str) {
+        self.uses(extension);
+        if !self.root.extensions_required.iter().any(|e| e == extension) {
+            self.root.extensions_required.push(extension.to_owned());
+        }
+    }
+
     /// What a key adds to positions, normals and, if `colored`, to vertex colours.
     fn target(&mut self, mesh: &TriMesh, key: &TriMesh, colored: bool) -> Result<Attributes, WriteError> {
         let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -480,10 +488,7 @@ impl Writer {
             "SCALE": self.rows("VEC3", &scales, None)?,
             "_COLOR_0": self.rows("VEC3", &colors, None)?,
         });
-        self.uses(INSTANCES);
-        if !self.root.extensions_required.iter().any(|e| e == INSTANCES) {
-            self.root.extensions_required.push(INSTANCES.to_owned());
-        }
+        self.needs(INSTANCES);
         if let Some(node) = self.root.nodes.last_mut() {
             node.extensions = Some(json!({ INSTANCES: { "attributes": attributes } }));
         }

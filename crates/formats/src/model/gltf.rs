@@ -207,6 +207,8 @@ schema! {
         sampler: Option<u32>,
         #[serde(skip_serializing_if = "Option::is_none")]
         source: Option<u32>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        extensions: Option<Value>,
     }
     struct Sampler {
         #[serde(skip_serializing_if = "Option::is_none")]

@@ -8,11 +8,14 @@ use serde_json::{Value, json};
 use super::glb_write::{Writer, row};
 use super::gltf::{Image, Material, Pbr, Root, Texture, TextureInfo};
 use super::gltf_bytes::{Bytes, load_uri};
+use super::picture::{WEBP_TYPE, read_webp};
 use super::{Names, PngCache, Resolver, kind_of, read_picture, share};
 use crate::error::{Place, WriteError};
 
 /// Light that comes through a thin blade, as viewers know it that have the extension; to others it is opaque.
 const TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
+/// Textures whose image is WebP.
+pub(super) const WEBP: &str = "EXT_texture_webp";
 /// Pixels of all textures together, in bytes.
 const MAX_TEXTURES: usize = 1 << 30;
 
@@ -96,10 +99,26 @@ impl Writer {
             mime_type: Some(kind.into()),
             uri: None,
         });
-        self.root.textures.push(Texture { sampler: Some(0), source: Some(row(self.root.images.len() - 1)?) });
+        let image = row(self.root.images.len() - 1)?;
+        // A reader that knows no WebP finds no picture; what it cannot show it is told.
+        let webp = kind == WEBP_TYPE;
+        if webp {
+            self.needs(WEBP);
+        }
+        self.root.textures.push(Texture {
+            sampler: Some(0),
+            source: (!webp).then_some(image),
+            extensions: webp.then(|| json!({ WEBP: { "source": image } })),
+        });
         self.images.push(Arc::clone(texture));
         Ok(Some(TextureInfo { index: row(self.images.len() - 1)?, ..TextureInfo::default() }))
     }
+}
+
+/// The row of a texture's image: the one that is WebP, if there is one.
+fn source(texture: &Texture) -> Option<usize> {
+    let webp = || usize::try_from(texture.extensions.as_ref()?.get(WEBP)?.get("source")?.as_u64()?).ok();
+    webp().or_else(|| Some(texture.source? as usize))
 }
 
 /// What glTF has no place for.
@@ -136,7 +155,7 @@ impl<'a> Pictures<'a> {
 
     /// The picture that is named; none where nothing is, or where it cannot be read.
     fn get(&mut self, info: Option<&TextureInfo>) -> Option<Arc<mesh::Texture>> {
-        let source = self.root.textures.get(info?.index as usize)?.source? as usize;
+        let source = source(self.root.textures.get(info?.index as usize)?)?;
         let image = self.root.images.get(source)?;
         if let Some(known) = self.read.get(source)? {
             return known.clone();
@@ -146,7 +165,9 @@ impl<'a> Pictures<'a> {
             (None, Some(uri)) => load_uri(uri, self.resolve, &Place::File).ok(),
             (None, None) => None,
         };
-        let picture = bytes.filter(|_| self.pixels < MAX_TEXTURES).and_then(|b| read_picture(&b));
+        let picture = bytes
+            .filter(|_| self.pixels < MAX_TEXTURES)
+            .and_then(|b| read_picture(&b).or_else(|| read_webp(&b)));
         self.pixels = self.pixels.saturating_add(picture.as_ref().map_or(0, |p| p.pixels.len()));
         let picture = picture.map(Arc::new);
         self.read[source] = Some(picture.clone());

@@ -93,6 +93,50 @@ fn read_jpeg(bytes: &[u8]) -> Option<Texture> {
     })
 }
 
+/// What an image of [`webp`] is in a file.
+pub(super) const WEBP_TYPE: &str = "image/webp";
+
+/// The texture as WebP without loss; `None` of one that is larger than it can be, or not sound.
+#[cfg(feature = "webp")]
+pub(super) fn webp(texture: &Texture) -> Option<Vec<u8>> {
+    let Texture { width, height, pixels } = texture;
+    // The format has no more; and its encoder panics at pixels that do not fit the size.
+    let most = (1..=16_384).contains(width) && (1..=16_384).contains(height);
+    if !most || pixels.len() as u64 != 4 * u64::from(*width) * u64::from(*height) {
+        return None;
+    }
+    let mut bytes = Vec::new();
+    image_webp::WebPEncoder::new(&mut bytes)
+        .encode(pixels, *width, *height, image_webp::ColorType::Rgba8)
+        .ok()?;
+    Some(bytes)
+}
+
+#[cfg(not(feature = "webp"))]
+pub(super) fn webp(_texture: &Texture) -> Option<Vec<u8>> {
+    None
+}
+
+/// Reads a WebP that stands still, within bounds. `None` if it is none, broken, or too large, and without the feature `webp`.
+#[cfg(feature = "webp")]
+pub(super) fn read_webp(bytes: &[u8]) -> Option<Texture> {
+    let mut decoder = image_webp::WebPDecoder::new(Cursor::new(bytes)).ok()?;
+    decoder.set_memory_limit(MAX_PICTURE_BYTES);
+    let (width, height) = decoder.dimensions();
+    if width.max(height) > MAX_SIDE || decoder.is_animated() {
+        return None;
+    }
+    let mut read = vec![0; decoder.output_buffer_size().filter(|&size| size <= MAX_PICTURE_BYTES)?];
+    decoder.read_image(&mut read).ok()?;
+    let pixels = if decoder.has_alpha() { read } else { opaque(&read) };
+    Some(Texture { width, height, pixels })
+}
+
+#[cfg(not(feature = "webp"))]
+pub(super) fn read_webp(_bytes: &[u8]) -> Option<Texture> {
+    None
+}
+
 /// RGB as RGBA.
 fn opaque(rgb: &[u8]) -> Vec<u8> {
     rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect()
@@ -172,6 +216,27 @@ mod tests {
         let indexed = png(ColorType::Indexed, One, Some(&[1, 2, 3, 4, 5, 6]), &[0b0100_0000]);
         assert_eq!((indexed.width, indexed.height), (2, 1));
         assert_eq!(indexed.pixels, [1, 2, 3, 255, 4, 5, 6, 255]);
+    }
+
+    #[cfg(feature = "webp")]
+    #[test]
+    fn webp_comes_back_as_it_was_and_broken_ones_are_none() {
+        let pixels: Vec<u8> = (0..40 * 23 * 4_u32).map(|i| (i * i / 7 % 251) as u8).collect();
+        let texture = Texture { width: 40, height: 23, pixels };
+        let bytes = webp(&texture).expect("it fits");
+        assert_eq!(bytes, webp(&texture).expect("it fits"), "the same bytes");
+        assert_eq!(read_webp(&bytes), Some(texture.clone()));
+        for end in 0..bytes.len() {
+            assert!(read_webp(&bytes[..end]).is_none_or(|p| p.pixels.len() == 4 * 40 * 23));
+        }
+        for (at, bit) in (0..bytes.len()).zip([1, 16, 128].into_iter().cycle()) {
+            let mut odd = bytes.clone();
+            odd[at] ^= bit;
+            assert!(read_webp(&odd).is_none_or(|p| p.pixels.len() == 4 * (p.width * p.height) as usize));
+        }
+        assert_eq!(webp(&Texture { width: 0, height: 0, pixels: Vec::new() }), None);
+        assert_eq!(webp(&Texture { width: 2, height: 2, pixels: vec![0; 15] }), None, "not sound");
+        assert_eq!(webp(&Texture { width: 20_000, height: 1, pixels: vec![0; 80_000] }), None, "too wide");
     }
 
     #[test]
