@@ -131,6 +131,7 @@ pub(crate) fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
 
 /// The wheel that maturin builds with these options.
 pub(crate) fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
+    crate::studio::alone(&package().join("burgeon/_alone.js.gz"))?;
     let out = target_dir().join("wheels");
     let _ = std::fs::remove_dir_all(&out);
     say(&format!("$ maturin build {} (in apps/python)", options.join(" ")));

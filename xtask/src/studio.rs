@@ -45,6 +45,14 @@ pub(crate) fn build(tools: &Tools, release: bool) -> Outcome {
     if release { renew_program() } else { Ok(()) }
 }
 
+/// The stage alone as one packed script, which the Python package holds: puts it where it is wanted.
+pub(crate) fn alone(to: &std::path::Path) -> Outcome {
+    packages()?;
+    npm(&["run", "--silent", "build", "--", "--config", "vite.alone.config.ts", "--logLevel", "warn"])?;
+    let from = folder().join("dist-alone/alone.js.gz");
+    std::fs::copy(&from, to).map(drop).map_err(|e| format!("{} to {}: {e}", from.display(), to.display()))
+}
+
 /// Has cargo look for the page when it builds the program next: it cannot watch a folder that was not there.
 fn renew_program() -> Outcome {
     let script = repository().join("apps/cli/build.rs");

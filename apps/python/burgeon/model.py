@@ -390,7 +390,10 @@ class Model:
         return bytes(_burgeon.png(width, height, pixels.tobytes()))
 
     def to_html(self, height: int = 480) -> str:
-        """A 3-D view as HTML that needs nothing else: drag to turn, wheel or pinch to come nearer."""
+        """A 3-D view as HTML that needs nothing else, on the Studio's stage: drag to turn, wheel or pinch to come nearer.
+
+        ``RuntimeError`` in a copy that was not installed from a wheel, which holds the stage.
+        """
         from ._view import page
 
         return page(self, height)
@@ -398,8 +401,10 @@ class Model:
     def _repr_png_(self) -> bytes:
         return self.to_png((640, 480))
 
-    def _repr_html_(self) -> str:
-        return self.to_html()
+    def _repr_html_(self) -> "Optional[str]":
+        from ._view import can_show
+
+        return self.to_html() if can_show() else None
 
     def __repr__(self) -> str:
         return f"<burgeon.Model {self.name!r}: {len(self.parts)} parts, {self.triangle_count:,} triangles>"

@@ -466,8 +466,10 @@ class Plant:
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()
 
-    def _repr_html_(self) -> str:
-        return self.to_html()
+    def _repr_html_(self) -> "Optional[str]":
+        from ._view import can_show
+
+        return self.to_html() if can_show() else None
 
     def to_html(self, height: int = 480) -> str:
         """A 3-D view as HTML that needs nothing else: see ``Model.to_html``; of a large plant with coarser meshes."""
