@@ -99,9 +99,8 @@ def packed(model: "Model") -> bytes:
     to = _Bytes()
     textures = _Textures(to)
     contents = {
-        "low": (np.min([c[0] for c in corners], axis=0) if corners else np.zeros(3)).tolist(),
-        "high": (np.max([c[1] for c in corners], axis=0) if corners else np.ones(3)).tolist(),
-        "stage": "studio",
+        "min": (np.min([c[0] for c in corners], axis=0) if corners else np.zeros(3)).tolist(),
+        "max": (np.max([c[1] for c in corners], axis=0) if corners else np.ones(3)).tolist(),
         "materials": [_material(p, textures) for p in shown],
         "parts": [_part(p, row, to) for row, p in enumerate(shown)],
         "textures": textures.list,

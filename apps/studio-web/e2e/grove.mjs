@@ -1,8 +1,20 @@
 // Many plants in one scene: copies, gizmos by keys, what is drawn on the ground, and what anybody can use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
-import { frameOf, pixels } from './staging.mjs';
+import {
+  add,
+  begin,
+  changed,
+  count,
+  data,
+  drop,
+  exported,
+  sample,
+  settled,
+  slide,
+  until,
+} from './journeys.mjs';
+import { frameOf, mean } from './staging.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const WIDE = { viewport: { width: 1360, height: 760 } };
@@ -149,10 +161,8 @@ async function dragged({ page, url, shot }) {
     const luma = async (dx) => {
       const [u, v] = [0.5 + (px + free + dx) / box.width, 0.5 + py / box.height];
       const bytes = await page.locator('.view canvas').screenshot();
-      const { p } = await pixels(page, bytes, [u - 0.15, v - 0.12, u - 0.03, v - 0.02]);
-      let sum = 0;
-      for (let i = 0; i < p.length; i += 4) sum += (p[i] + p[i + 1] + p[i + 2]) / 3;
-      return (4 * sum) / p.length;
+      const { rgb } = await mean(page, bytes, [u - 0.15, v - 0.12, u - 0.03, v - 0.02]);
+      return (rgb[0] + rgb[1] + rgb[2]) / 3;
     };
     return (await luma(-box.width * 0.25)) - (await luma(0));
   };
@@ -184,14 +194,9 @@ async function typing({ page, url }) {
   await bush(page, url);
   await page.click('.scene .fold');
   const old = await page.locator('[data-key=nx]').elementHandle();
-  const age = page.locator('#b-maker input[data-path="age"]');
   const grown = async (share) => {
     const digest = await settled(page);
-    await age.evaluate((e, to) => {
-      e.value = String(Number(e.min) + to * (Number(e.max) - Number(e.min)));
-      e.dispatchEvent(new Event('input', { bubbles: true }));
-      e.dispatchEvent(new Event('change', { bubbles: true }));
-    }, share);
+    await slide(page, 'age', share);
     await changed(page, digest, 'another age');
     await page.waitForTimeout(300);
   };

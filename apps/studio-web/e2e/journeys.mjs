@@ -584,7 +584,7 @@ export async function changed(page, before, what) {
 }
 
 /** Drags a slider to a share of its way: one step of undo. */
-async function slide(page, path, share) {
+export async function slide(page, path, share) {
   const slider = page.locator(`input[data-path="${path}"]`);
   await slider.evaluate((e, to) => {
     const [low, high] = [Number(e.min || 0), Number(e.max || 100)];

@@ -94,17 +94,22 @@ async function materials({ page, url, shot }) {
   }
 }
 
+/** Opens the materials by their name and gives one to all organs of a kind. */
+async function clothe(page, organ, material) {
+  await page.keyboard.press('Control+k');
+  await page.keyboard.type('materials');
+  await page.keyboard.press('Enter');
+  await page.selectOption('#b-material-of', organ);
+  await page.click(`[data-material=${material}]`);
+}
+
 async function flowers({ page, url, shot }) {
   await begin(page, url);
   await page.click('#b-add');
   await page.click('[data-add=flower]');
   await until(page, 'plants', ['is', 1], 'a flower in place of the empty sheet');
   await settled(page);
-  await page.keyboard.press('Control+k');
-  await page.keyboard.type('materials');
-  await page.keyboard.press('Enter');
-  await page.selectOption('#b-material-of', 'petal');
-  await page.click('[data-material=tiger-lily]');
+  await clothe(page, 'petal', 'tiger-lily');
   await wears(page, 'petal-speckled-1');
   await settled(page);
   await shot('materials-flower');
@@ -117,11 +122,7 @@ async function tree({ page, url, shot }) {
   await begin(page, url);
   await add(page, 'tree', 'hazel');
   const plain = await settled(page);
-  await page.keyboard.press('Control+k');
-  await page.keyboard.type('materials');
-  await page.keyboard.press('Enter');
-  await page.selectOption('#b-material-of', 'leaf');
-  await page.click('[data-material=hosta]');
+  await clothe(page, 'leaf', 'hosta');
   await wears(page, 'leaf-variegated-1');
   assert.equal(await settled(page), plain, 'the tree is the same');
   await page.keyboard.press('Escape');

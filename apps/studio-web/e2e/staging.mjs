@@ -28,7 +28,7 @@ export async function pixels(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
 }
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file, and its size. */
-async function mean(page, bytes, part) {
+export async function mean(page, bytes, part) {
   const { p, width, height } = await pixels(page, bytes, part);
   const sum = [0, 0, 0];
   let alpha = 255;

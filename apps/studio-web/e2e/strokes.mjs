@@ -1,6 +1,7 @@
 // Strokes that were drawn are changed: bent, scaled, turned, cut, joined, rubbed out, smoothed, coloured.
 import assert from 'node:assert/strict';
 import { begin, blade, changed, count, draw, drawFlower, line, settled, until } from './journeys.mjs';
+import { pixels } from './staging.mjs';
 
 /** The middle of the knob over the frame round some points, and its lower right corner. */
 function handles(points) {
@@ -171,25 +172,17 @@ async function doubtful({ page, url, shot }) {
   const dark = async (points) => {
     await page.mouse.move(5, 300);
     await page.waitForTimeout(500);
-    const sheet = page.locator('.sheet');
-    const bytes = await sheet.screenshot();
-    return page.evaluate(
-      async ([png, at]) => {
-        const raw = Uint8Array.from(atob(png), (c) => c.charCodeAt(0));
-        const image = await createImageBitmap(new Blob([raw]));
-        const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
-        context.drawImage(image, 0, 0);
-        const least = at.map(([x, y]) => {
-          const { data } = context.getImageData(Math.round(x) - 3, Math.round(y) - 3, 7, 7);
-          let low = 255;
-          for (let i = 0; i < data.length; i += 4)
-            low = Math.min(low, (data[i] + data[i + 1] + data[i + 2]) / 3);
-          return low;
-        });
-        return least.reduce((sum, l) => sum + l, 0) / least.length;
-      },
-      [bytes.toString('base64'), points],
-    );
+    const { p, across, width, height } = await pixels(page, await page.locator('.sheet').screenshot());
+    const least = points.map(([x, y]) => {
+      let low = 255;
+      for (let v = Math.max(0, Math.round(y) - 3); v <= Math.min(height - 1, Math.round(y) + 3); v += 1)
+        for (let u = Math.max(0, Math.round(x) - 3); u <= Math.min(width - 1, Math.round(x) + 3); u += 1) {
+          const [r, g, b] = p.subarray(4 * (v * across + u));
+          low = Math.min(low, (r + g + b) / 3);
+        }
+      return low;
+    });
+    return least.reduce((sum, l) => sum + l, 0) / least.length;
   };
   const box = await page.locator('.sheet').boundingBox();
   const some = spiral.slice(12, 28);

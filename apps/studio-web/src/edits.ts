@@ -1,7 +1,7 @@
 /** The list of what was done to a plant by hand: what came of each edit, left out, taken back. */
 import { number, t, tOf } from './text';
 import { iconOfEdit } from './tools';
-import { attention, button, el, icon } from './ui';
+import { button, el, icon, refill } from './ui';
 import type { EditReport, PlantState, PlantView as Seen, ShapeCommand } from './wire';
 
 export class EditList {
@@ -25,7 +25,6 @@ export class EditList {
       this.element.replaceChildren();
       return;
     }
-    const back = attention(this.element, 'data-key');
     const rows = edits.map(({ op, off }, row) => {
       const report = reports.get(row);
       const bad = !off && report?.done === false;
@@ -86,11 +85,12 @@ export class EditList {
         : []),
     );
     this.element.classList.toggle('folded', folded);
-    this.element.replaceChildren(
-      el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
-      ...(folded ? [] : [el('ol', {}, ...rows)]),
+    refill(this.element, 'data-key', () =>
+      this.element.replaceChildren(
+        el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
+        ...(folded ? [] : [el('ol', {}, ...rows)]),
+      ),
     );
-    back();
   }
 }
 

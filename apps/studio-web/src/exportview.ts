@@ -3,7 +3,7 @@ import { nameOf, LEVELS, levelRows, optionsOf, type Target, WIND } from './expor
 import type { SentExport } from './protocol';
 import type { Session } from './session';
 import { number, t, type TextKey, tOf } from './text';
-import { attention, button, el } from './ui';
+import { button, el, refill } from './ui';
 import { Exported } from './view/exported';
 import type { PlantView } from './view/view';
 import type { ExportFormat, ExportRequest, ExportView } from './wire';
@@ -179,9 +179,9 @@ export class ExportPreview {
       document.querySelector<HTMLElement>(`#b-maker [data-path="${path}"]`),
     );
     if (own.includes(null)) return;
-    const back = attention(this.lent, 'data-path');
-    this.lent.replaceChildren(...own.map((slider) => slider!.closest('label')!));
-    back();
+    refill(this.lent, 'data-path', () =>
+      this.lent.replaceChildren(...own.map((slider) => slider!.closest('label')!)),
+    );
   }
 
   /** The plants were made again. */

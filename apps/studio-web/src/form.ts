@@ -6,7 +6,7 @@ import type { Json } from './wire';
 import type { Schema } from './schema';
 import { hexOfLinear, linearOf } from './colours';
 import { fieldName, helpOf, t, unitOf, wordOf } from './text';
-import { attention, el } from './ui';
+import { el, refill } from './ui';
 
 export type Fields = { [key: string]: Json };
 
@@ -110,9 +110,7 @@ export class Form {
   /** Shows these values; what has the focus keeps it. `main`: rows that come before the others, which are folded. */
   show(values: Fields, main: readonly string[] = [], rest: readonly string[] = []): void {
     [this.values, this.order] = [values, { main, rest }];
-    const back = attention(this.rows, 'data-path');
-    this.rows.replaceChildren(...this.shown());
-    back();
+    refill(this.rows, 'data-path', () => this.rows.replaceChildren(...this.shown()));
     if (this.rows.querySelectorAll('.f-row').length > FEW && !this.search.isConnected)
       this.element.prepend(this.search);
   }

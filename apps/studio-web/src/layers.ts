@@ -1,7 +1,7 @@
 /** The pen that strokes are drawn with, and the layers that they lie on. */
 import type { Session } from './session';
 import { t } from './text';
-import { askName, attention, button, el } from './ui';
+import { askName, button, el, refill } from './ui';
 import { bytes, type Held, hex } from './pen';
 import type { Layer } from './wire';
 
@@ -92,7 +92,6 @@ export class LayersPanel {
   show(): void {
     const { session, held, chosen, changed } = this.events;
     const layers = session.drawn?.layers ?? [];
-    const back = attention(this.element, 'data-key');
     const take = (name: string | null): void => {
       held.layer = name;
       changed();
@@ -147,11 +146,12 @@ export class LayersPanel {
       t('layer.put', { name: held.layer ?? t('layer.sheet') }),
     );
     put.hidden = chosen().length === 0;
-    this.element.replaceChildren(
-      el('ul', { class: 'layer-rows' }, ...rows.reverse(), row(null, t('layer.sheet'))),
-      el('div', { class: 'chips' }, add, put),
+    refill(this.element, 'data-key', () =>
+      this.element.replaceChildren(
+        el('ul', { class: 'layer-rows' }, ...rows.reverse(), row(null, t('layer.sheet'))),
+        el('div', { class: 'chips' }, add, put),
+      ),
     );
-    back();
   }
 
   private freshName(layers: readonly Layer[]): string {

@@ -18,7 +18,7 @@ import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
 import { ownPresets } from './own';
 import { ownChips } from './ownchips';
-import { attention, button, el, icon } from './ui';
+import { button, el, icon, refill } from './ui';
 
 export interface Catalogue {
   /** Of a drawing, with its surface. */
@@ -186,11 +186,11 @@ export class MakerPanel {
     // What is being typed stays.
     if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement))
       return;
-    const back = attention(this.head, 'data-path');
-    if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
-    if (plant.leaf) this.head.replaceChildren(...this.leaf(plant, plant.leaf));
-    if (plant.flower) this.head.replaceChildren(...this.flower(plant, plant.flower, catalogue));
-    back();
+    refill(this.head, 'data-path', () => {
+      if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
+      if (plant.leaf) this.head.replaceChildren(...this.leaf(plant, plant.leaf));
+      if (plant.flower) this.head.replaceChildren(...this.flower(plant, plant.flower, catalogue));
+    });
     const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.spec ?? {};
     const main = plant.leaf?.text === '' ? LEAF_FORM : (MAIN[plant.maker] ?? []);
     this.form?.show(values, main, plant.maker === 'tree' ? TREE_ORDER : []);

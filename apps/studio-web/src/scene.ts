@@ -1,7 +1,7 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantCommand, PlantState, SceneView } from './wire';
 import { t, tell, type TextKey } from './text';
-import { askName, attention, button, closePopover, el, icon, popover, relabel } from './ui';
+import { askName, button, closePopover, el, icon, popover, refill, relabel } from './ui';
 
 export type Gizmo = 'translate' | 'rotate' | 'scale';
 
@@ -150,7 +150,6 @@ export class SceneList {
   }
 
   show(state: DocumentState, view: SceneView | undefined): void {
-    const back = attention(this.element, 'data-key');
     this.element.setAttribute('aria-label', t('scene.title'));
     this.plants = state.plants;
     this.current = state.plants.find((p) => p.id === state.current);
@@ -182,9 +181,10 @@ export class SceneList {
       else if (current && (state.plants.length > 1 || current.maker !== 'sketch'))
         content.push(this.placing(current));
     }
-    while (this.head.nextSibling) this.head.nextSibling.remove();
-    this.element.append(...content);
-    back();
+    refill(this.element, 'data-key', () => {
+      while (this.head.nextSibling) this.head.nextSibling.remove();
+      this.element.append(...content);
+    });
   }
 
   /** Only its head is shown. */

@@ -24,11 +24,8 @@ const untaken = new WeakSet<EventTarget>();
 /** A panel is being filled anew: what a browser tells of a field that goes is no wish of a person. */
 let renewing = false;
 
-/**
- * Before `host` is filled anew: which of its elements has the focus, by an attribute, and what is being typed there. Call
- * the answer afterwards, and the element that has taken its place has both.
- */
-export function attention(host: HTMLElement, attribute: 'data-key' | 'data-path'): () => void {
+/** Fills `host` anew. The element that had the focus, by an attribute, has it again, and what was being typed there stays. */
+export function refill(host: HTMLElement, attribute: 'data-key' | 'data-path', fill: () => void): void {
   if (!watched.has(host)) {
     watched.add(host);
     host.addEventListener('input', (e) => e.target && untaken.add(e.target), { capture: true });
@@ -40,25 +37,26 @@ export function attention(host: HTMLElement, attribute: 'data-key' | 'data-path'
   }
   const had = host.contains(document.activeElement) ? document.activeElement : null;
   const name = had?.getAttribute(attribute);
-  if (!had || !name) return () => undefined;
-  renewing = true;
   const typed = had instanceof HTMLInputElement && untaken.has(had) ? had.value : undefined;
-  return () => {
+  renewing = true;
+  try {
+    fill();
+  } finally {
     renewing = false;
-    const has = host.querySelector<HTMLElement>(`[${attribute}="${CSS.escape(name)}"]`);
-    has?.focus({ preventScroll: true });
-    if (typed === undefined || !(has instanceof HTMLInputElement) || has === had) return;
-    has.value = typed;
-    untaken.add(has);
-    // A browser tells of a change only what was typed into this very element.
-    const take = (): void => {
-      if (!renewing && untaken.has(has)) has.dispatchEvent(new Event('change', { bubbles: true }));
-    };
-    has.addEventListener('blur', take);
-    has.addEventListener('keyup', (e) => {
-      if (e.key === 'Enter') take();
-    });
+  }
+  const has = name ? host.querySelector<HTMLElement>(`[${attribute}="${CSS.escape(name)}"]`) : null;
+  has?.focus({ preventScroll: true });
+  if (typed === undefined || !(has instanceof HTMLInputElement) || has === had) return;
+  has.value = typed;
+  untaken.add(has);
+  // A browser tells of a change only what was typed into this very element.
+  const take = (): void => {
+    if (!renewing && untaken.has(has)) has.dispatchEvent(new Event('change', { bubbles: true }));
   };
+  has.addEventListener('blur', take);
+  has.addEventListener('keyup', (e) => {
+    if (e.key === 'Enter') take();
+  });
 }
 
 /** Line icons on a grid of 24. */

@@ -40,11 +40,7 @@ impl Hull3 {
     /// The planes of its faces as unit normals that point outwards and distances from the origin along them: a point is
     /// inside where `normal.dot(point) <= distance` for all. Faces without area are left out.
     pub fn planes(&self) -> Vec<(DVec3, f64)> {
-        let plane = |[a, b, c]: [DVec3; 3]| {
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            (normal != DVec3::ZERO).then(|| (normal, normal.dot((a + b + c) / 3.0)))
-        };
-        self.corners().filter_map(plane).collect()
+        self.corners().map(plane).filter(|(normal, _)| *normal != DVec3::ZERO).collect()
     }
 
     /// The area of the surface.
@@ -69,6 +65,13 @@ pub fn convex_hull3(points: &[DVec3]) -> Option<Hull3> {
         }
     }
     Some(hull.finish())
+}
+
+/// The unit normal of a triangle, zero without area, and its distance from the origin along it.
+fn plane([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    // Of the middle, not of a corner: long thin faces are tilted less by rounding.
+    (normal, normal.dot((a + b + c) / 3.0))
 }
 
 const NONE: usize = usize::MAX;
@@ -157,10 +160,7 @@ impl<'a> Quickhull<'a> {
     }
 
     fn add(&mut self, corner: [usize; 3], across: [usize; 3]) {
-        let [a, b, c] = corner.map(|i| self.points[i]);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        // Of the middle, not of a corner: long thin faces are tilted less by rounding.
-        let offset = normal.dot((a + b + c) / 3.0);
+        let (normal, offset) = plane(corner.map(|i| self.points[i]));
         let (outside, farthest, alive) = (Vec::new(), 0.0, true);
         self.faces.push(Face { corner, across, normal, offset, outside, farthest, alive });
         self.seen.push(0);

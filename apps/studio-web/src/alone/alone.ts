@@ -4,74 +4,58 @@
  */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { FIRST, OF_PRESET, PRESETS, type Preset } from '../view/moods';
-import { Looks } from '../view/plant';
+import { LENS } from '../view/camera';
+import { FIRST, OF_PRESET, PRESETS } from '../view/moods';
+import { type Buildable, Looks } from '../view/plant';
 import { drawnBySoftware } from '../view/quality';
-import { Stage } from '../view/stage';
-import type { MaterialView } from '../wire';
+import { awayOf, stand } from '../view/snapshot';
+import { SHADOW, Stage } from '../view/stage';
+import type { MaterialView, PartView } from '../wire';
 
 /** Where numbers lie among the bytes after the contents: the first byte, and how many numbers. */
 type Rows = readonly [at: number, count: number];
 
 /** What comes before the bytes. */
 interface Contents {
-  readonly low: readonly [number, number, number];
-  readonly high: readonly [number, number, number];
-  readonly stage: Preset;
+  /** Corners of its bounds, metres. */
+  readonly min: readonly [number, number, number];
+  readonly max: readonly [number, number, number];
   readonly textures: readonly { width: number; height: number; pixels: Rows }[];
-  readonly materials: readonly MaterialView[];
-  readonly parts: readonly {
-    readonly name: string;
-    readonly material: number;
+  readonly materials: MaterialView[];
+  readonly parts: readonly (PartView & {
     /** Metres, as 32-bit floats; normals as bytes, -127 to 127; texture coordinates as floats; colours as 16 bits, linear. */
     readonly positions: Rows;
     readonly normals: Rows;
     readonly uvs: Rows;
     readonly colors: Rows;
     readonly indices: Rows;
-  }[];
+  })[];
 }
 
-/** The lens of the Studio, degrees, and pixels along an edge of a shadow. */
-const LENS = 32;
-const SHADOW = { fast: 1024, fine: 2048 };
 /** Not below the ground. */
 const LOWEST = 0.495 * Math.PI;
 /** How far an arrow key turns, radians, and how much nearer a plus comes. */
 const TURN = 0.1;
 const NEARER = 0.9;
 
-function geometryOf(part: Contents['parts'][number], bytes: ArrayBuffer): THREE.BufferGeometry {
-  const geometry = new THREE.BufferGeometry();
-  const [places, count] = part.positions;
-  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytes, places, count), 3));
-  const [turns, sides] = part.normals;
-  geometry.setAttribute('normal', new THREE.BufferAttribute(new Int8Array(bytes, turns, sides), 3, true));
-  const [uvs, flat] = part.uvs;
-  if (flat > 0) geometry.setAttribute('uv', new THREE.BufferAttribute(new Float32Array(bytes, uvs, flat), 2));
-  const [tints, dyed] = part.colors;
-  if (dyed > 0)
-    geometry.setAttribute('color', new THREE.BufferAttribute(new Uint16Array(bytes, tints, dyed), 3, true));
-  const [corners, sum] = part.indices;
-  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes, corners, sum), 1));
-  geometry.computeBoundingSphere();
-  return geometry;
-}
-
-function plantOf({ textures, materials, parts }: Contents, bytes: ArrayBuffer, looks: Looks): THREE.Group {
-  textures.forEach(({ width, height, pixels: [at, count] }, number) => {
-    looks.addTexture({ number, width, height, pixels: new Uint8Array(bytes, at, count) });
-  });
-  const group = new THREE.Group();
-  for (const part of parts) {
-    const geometry = geometryOf(part, bytes);
-    const look = looks.material(materials[part.material]!, geometry.hasAttribute('color'));
-    const mesh = new THREE.Mesh(geometry, look);
-    mesh.name = part.name;
-    mesh.castShadow = mesh.receiveShadow = true;
-    group.add(mesh);
-  }
-  return group;
+/** The plant as the Studio has it. */
+function plantOf({ textures, materials, parts }: Contents, bytes: ArrayBuffer): Buildable {
+  return {
+    view: { parts: [...parts], materials },
+    parts: parts.map(({ positions, normals, uvs, colors, indices }) => ({
+      positions: new Float32Array(bytes, ...positions),
+      normals: Float32Array.from(new Int8Array(bytes, ...normals), (x) => x / 127),
+      uvs: new Float32Array(bytes, ...uvs),
+      colors: Float32Array.from(new Uint16Array(bytes, ...colors), (x) => x / 65535),
+      indices: new Uint32Array(bytes, ...indices),
+    })),
+    textures: textures.map(({ width, height, pixels }, number) => ({
+      number,
+      width,
+      height,
+      pixels: new Uint8Array(bytes, ...pixels),
+    })),
+  };
 }
 
 async function unpacked(base64: string): Promise<ArrayBuffer> {
@@ -92,10 +76,6 @@ async function show(packed: string): Promise<void> {
   canvas.setAttribute('role', 'img');
   canvas.setAttribute('aria-label', document.title);
   document.body.append(canvas);
-  renderer.shadowMap.enabled = true;
-  renderer.shadowMap.autoUpdate = false;
-  renderer.shadowMap.type = THREE.PCFShadowMap;
-  renderer.toneMapping = THREE.NeutralToneMapping;
   renderer.setPixelRatio(slow ? 1 : Math.min(2, devicePixelRatio));
 
   let asked = false;
@@ -105,15 +85,9 @@ async function show(packed: string): Promise<void> {
     requestAnimationFrame(draw);
   };
   const stage = new Stage(slow ? SHADOW.fast : SHADOW.fine, renderer, redraw);
-  const camera = new THREE.PerspectiveCamera(LENS, 1, 0.01, 200);
-  const holder = plantOf(contents, numbers, new Looks(slow));
-  const box = new THREE.Box3(new THREE.Vector3(...contents.low), new THREE.Vector3(...contents.high));
-  const size = box.getSize(new THREE.Vector3());
-  const metre = 1 / Math.max(size.x, size.y, size.z, 1e-9);
-  holder.scale.setScalar(metre);
-  holder.position.y = Math.max(0, -box.min.y * metre);
-  const middle = box.getCenter(new THREE.Vector3()).multiplyScalar(metre).add(holder.position);
-  const radius = (size.length() * metre) / 2;
+  const camera = new THREE.PerspectiveCamera(LENS.first, 1, 0.01, 200);
+  const holder = new Looks(slow).build(plantOf(contents, numbers));
+  const { metre, middle, radius } = stand(holder, contents);
   stage.scene.add(holder);
   stage.setMetre(metre);
   stage.shadeUpTo(Math.hypot(middle.x, middle.z) + radius);
@@ -129,9 +103,7 @@ async function show(packed: string): Promise<void> {
 
   /** Far enough that all of it is seen, from the front right and a little above. */
   function frame(): void {
-    const away =
-      ((radius / Math.sin(THREE.MathUtils.degToRad(LENS / 2))) * 0.98) / Math.min(1, camera.aspect);
-    camera.position.set(1.25, 0.55, 2.6).setLength(away).add(middle);
+    camera.position.set(1.25, 0.55, 2.6).setLength(awayOf(radius, camera)).add(middle);
     controls.update();
   }
   function draw(): void {
@@ -176,7 +148,7 @@ async function show(packed: string): Promise<void> {
     step(...by);
   });
   // The next stage: studio, noon, evening, clouds, night.
-  let shown = PRESETS.indexOf(contents.stage);
+  let shown = 0;
   const set = (): void => stage.set({ ...FIRST, ...OF_PRESET[PRESETS[shown]!] }, !slow);
   const next = document.createElement('button');
   next.textContent = '☀';

@@ -4,6 +4,11 @@ import type { PartArrays, Sent, TexturePixels } from '../protocol';
 import type { CarriedPose, MaterialView, ObstacleView, PlantView, TextureView } from '../wire';
 import { Carrying, type HeldRows } from './carry';
 
+/** What a plant is built of. */
+export type Buildable = Pick<Sent, 'parts' | 'textures'> & {
+  readonly view: Pick<PlantView, 'parts' | 'materials'>;
+};
+
 /** Textures and materials of all plants. */
 export class Looks {
   private textures = new Map<number, THREE.DataTexture>();
@@ -21,7 +26,7 @@ export class Looks {
   }
 
   /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
-  build({ view, parts, textures }: Sent): THREE.Group {
+  build({ view, parts, textures }: Buildable): THREE.Group {
     for (const t of textures) this.addTexture(t);
     const group = new THREE.Group();
     view.parts.forEach(({ material }, i) => {

@@ -110,6 +110,9 @@ const DIFFUSE = Math.PI;
 /** Thickness of the densest fog, for each height of a plant. */
 const FOG = 0.32;
 
+/** Pixels along an edge of the shadow map, without a graphics card and with one. */
+export const SHADOW = { fast: 512, fine: 2048 } as const;
+
 export class Stage {
   readonly scene = new THREE.Scene();
   private readonly sky: THREE.Mesh<THREE.SphereGeometry, THREE.ShaderMaterial>;
@@ -139,12 +142,18 @@ export class Stage {
   private fine = false;
   private metre = 1;
 
-  /** `shadowSize`: pixels along an edge of the shadow map; `changed`: what came late is to be drawn. */
+  /** What draws it is set up for it. `shadowSize`: as in `SHADOW`; `changed`: what came late is to be drawn. */
   constructor(
     shadowSize: number,
     private readonly renderer: THREE.WebGLRenderer,
     private readonly changed: () => void,
   ) {
+    renderer.shadowMap.enabled = true;
+    // The light stands still: its shadows change with the plant only.
+    renderer.shadowMap.autoUpdate = false;
+    renderer.shadowMap.type = THREE.PCFShadowMap;
+    renderer.toneMapping = THREE.NeutralToneMapping;
+    renderer.toneMappingExposure = 1.08;
     const uniforms = {
       zenith: { value: new THREE.Color() },
       horizon: { value: new THREE.Color() },

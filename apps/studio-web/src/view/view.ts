@@ -25,11 +25,9 @@ import { drawnBySoftware, Pace } from './quality';
 import { Rings } from './rings';
 import { cameraFor, type ShotSize, shoot } from './shot';
 import { snapshotOf } from './snapshot';
-import { Stage } from './stage';
+import { SHADOW, Stage } from './stage';
 import type { WalkMode } from './walk';
 
-/** Edge of the shadow map, pixels. */
-const SHADOW = { fast: 512, fine: 2048 } as const;
 /** Eyes of a walker, metres, and between which heights of the stage they stay. */
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
 /** What a person does in the view, and what it says of itself. */
@@ -116,12 +114,6 @@ export class PlantView {
     });
     this.easel = this.slow ? new Easel(this.renderer.getContext() as WebGL2RenderingContext) : undefined;
     this.canvas = this.easel?.canvas ?? this.renderer.domElement;
-    this.renderer.shadowMap.enabled = true;
-    // The light stands still: its shadows change with the plant only.
-    this.renderer.shadowMap.autoUpdate = false;
-    this.renderer.shadowMap.type = THREE.PCFShadowMap;
-    this.renderer.toneMapping = THREE.NeutralToneMapping;
-    this.renderer.toneMappingExposure = 1.08;
     this.stage = new Stage(this.slow ? SHADOW.fast : SHADOW.fine, this.renderer, () => this.redraw());
     this.element.className = 'view';
     const { canvas } = this;

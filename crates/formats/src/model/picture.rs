@@ -32,7 +32,7 @@ const MAX_PICTURE_BYTES: usize = 512 << 20;
 /// ```
 pub fn write_png(width: u32, height: u32, pixels: &[u8], out: impl Write) -> Result<(), WriteError> {
     let fault = || WriteError::Texture { width, height, bytes: pixels.len() };
-    if width == 0 || height == 0 || pixels.len() as u64 != 4 * u64::from(width) * u64::from(height) {
+    if !fits(width, height, pixels) {
         return Err(fault());
     }
     let rgb: Vec<u8>;
@@ -49,6 +49,11 @@ pub fn write_png(width: u32, height: u32, pixels: &[u8], out: impl Write) -> Res
     encoder.set_filter(Filter::Adaptive);
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(bytes));
     written.map_err(|e| WriteError::Io(e.into()))
+}
+
+/// Whether there are pixels, four bytes for each of the picture.
+fn fits(width: u32, height: u32, pixels: &[u8]) -> bool {
+    width > 0 && height > 0 && pixels.len() as u64 == 4 * u64::from(width) * u64::from(height)
 }
 
 /// Reads a PNG or JPEG within bounds. `None` if it is neither, broken, or too large.
@@ -101,8 +106,7 @@ pub(super) const WEBP_TYPE: &str = "image/webp";
 pub(super) fn webp(texture: &Texture) -> Option<Vec<u8>> {
     let Texture { width, height, pixels } = texture;
     // The format has no more; and its encoder panics at pixels that do not fit the size.
-    let most = (1..=16_384).contains(width) && (1..=16_384).contains(height);
-    if !most || pixels.len() as u64 != 4 * u64::from(*width) * u64::from(*height) {
+    if !fits(*width, *height, pixels) || width.max(height) > &16_384 {
         return None;
     }
     let mut bytes = Vec::new();

@@ -49,7 +49,7 @@ pub(super) fn leaves_outside(plant: &Plant, margins: &[Vec<DVec3>], points: &mut
     // Flowers and fruits reach higher, but are no crown.
     let leaves = || {
         let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
-        leaves.filter_map(|o| margins[o.shape.index()].split_first().map(|(first, _)| (o, *first)))
+        leaves.filter_map(|o| margins[o.shape.index()].first().map(|first| (o, *first)))
     };
     // One point of each leaf; the rest is no farther from it than `reach`.
     points.extend(leaves().map(|(o, first)| o.frame.place(first, o.scale)));
