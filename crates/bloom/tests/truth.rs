@@ -126,9 +126,10 @@ fn regions(rates: [f64; 3], determined: bool) -> GrowthLaw {
 
 #[test]
 fn laws_of_regions_open_a_petal_region_by_region() {
-    let lily = preset("lily").unwrap();
+    // Its petals turn at their base as well as at their tip; those of a lily hardly do.
+    let tulip = preset("tulip").unwrap();
     let points = |law: &GrowthLaw| {
-        let plant = lily.at(3.0, law, Seed::new(1));
+        let plant = tulip.at(3.0, law, Seed::new(1));
         assert!(bloom::part_overlap(&plant, None) <= 0.0, "no petal crosses another");
         let first = plant.organs.iter().find(|o| o.kind == OrganKind::Petal).unwrap().clone();
         let Shape::Sheet(sheet) = &plant.shapes[first.shape.index()] else { panic!("a petal is a sheet") };
