@@ -248,9 +248,18 @@ fn points_of_real_scans_that_were_kept_back_are_predicted() {
             };
             let even = mean(kept_back.points.iter().zip(&truth).map(|(p, t)| apart(ours(*p), *t)));
             let plainly = mean(truth.iter().map(|t| apart(trivial, *t)));
+            // What neighbours can tell at all.
+            let known_tree = KdTree::new(&known.points);
+            let sixteen = |p: DVec3| {
+                let (mut gaps, mut near) = ([0.0; 16], Vec::new());
+                known_tree.nearest_distances(p, &mut gaps);
+                known_tree.within(p, gaps[15], &mut near);
+                one_colour(&known.select(&near).colors)
+            };
+            let floor = mean(pairs().map(|(p, c)| apart(sixteen(*p), *c)));
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             println!(
-                "{name} 1 of {step}: points {error:.2} of 255, one colour {plain:.2}; means {even:.2}, one colour {plainly:.2}"
+                "{name} 1 of {step}: points {error:.2} of 255, one colour {plain:.2}, 16 neighbours {floor:.2}; means {even:.2}, one colour {plainly:.2}"
             );
             assert!(error < plain && even < 0.95 * plainly, "{name}: {error} {plain}, {even} {plainly}");
         }

@@ -27,7 +27,7 @@ pub(super) fn filled(cells: Vec<Cell>, columns: usize) -> Vec<Cell> {
     let between = |x: usize, y: usize| {
         // Three quarters of the square that the cell is in and a quarter of the next one, each way.
         let side = |at: usize, most: usize| {
-            let next = if at % 2 == 0 { (at / 2).saturating_sub(1) } else { at / 2 + 1 };
+            let next = if at.is_multiple_of(2) { (at / 2).saturating_sub(1) } else { at / 2 + 1 };
             [(at / 2, 0.75), (next.min(most - 1), 0.25)]
         };
         let mut sum = [0.0; 3];
@@ -53,7 +53,7 @@ mod tests {
         let known = |k: usize| {
             let x = k % columns;
             let hole = (8..30).contains(&x) && k / columns > 3;
-            (!hole).then(|| [x as f64, 1.0, 0.0])
+            (!hole).then_some([x as f64, 1.0, 0.0])
         };
         let cells: Vec<Cell> = (0..columns * rows).map(known).collect();
         let whole = filled(cells.clone(), columns);
