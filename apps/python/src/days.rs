@@ -11,7 +11,7 @@ use crate::compute::{aside, compute};
 use crate::fault::{beyond, unusable};
 use crate::held::Held;
 use crate::make::RawLaw;
-use crate::model::axes;
+use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
 /// The scan of a day: the bytes of a file and its name, or points as bytes of `f64`, three each.
@@ -26,11 +26,6 @@ pub(crate) struct OfDay {
     /// Of points that are given: bytes, three each; none without colours.
     #[pyo3(item)]
     colors: Vec<u8>,
-}
-
-/// Colours of points, from bytes of three each.
-pub(crate) fn colours(bytes: &[u8]) -> Vec<[u8; 3]> {
-    bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
 }
 
 /// Scans of several days, their organs found again from day to day.

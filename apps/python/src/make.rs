@@ -20,10 +20,9 @@ use pyo3::prelude::*;
 
 use crate::asked::Asked;
 use crate::compute::{aside, compute};
-use crate::days::colours;
 use crate::fault::{beyond, choice, refused, unusable, wrong};
 use crate::held::{Held, run};
-use crate::model::axes;
+use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
 /// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.

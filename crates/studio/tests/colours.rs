@@ -10,7 +10,7 @@ use burgeon::formats::{CloudFormat, ExportSpec, read_cloud};
 use burgeon::geom::KdTree;
 use burgeon::glam::DVec3;
 use burgeon::leaf::ScanSpec;
-use burgeon::mesh::{PointCloud, Texture};
+use burgeon::mesh::{Model, PointCloud, Texture};
 use burgeon::plant::Shape;
 use burgeon::{
     MadePlant, Report, Run, ScannedDays, Seed, SeedlingOptions, Unit, linear_of_srgb, make_leaf_from_scan,
@@ -51,7 +51,7 @@ fn spread(s: &mut Stream, count: usize) -> Vec<(f64, f64)> {
 }
 
 fn in_hole(x: f64, y: f64) -> bool {
-    (x - 0.006).hypot(y - 0.03) < 0.002
+    DVec3::new(x - 0.006, y - 0.03, 0.0).length() < 0.002
 }
 
 fn bytes(c: Colour) -> [u8; 3] {
@@ -223,7 +223,7 @@ fn points_of_real_scans_that_were_kept_back_are_predicted() {
         }
         for step in [1, 2, 4] {
             let rows = |back: bool| {
-                let of = move |k: &usize| (k % 10 == 9) == back && (back || k % step == 0);
+                let of = move |k: &usize| (k % 10 == 9) == back && (back || k.is_multiple_of(step));
                 (0..cloud.points.len()).filter(of).collect::<Vec<usize>>()
             };
             let (known, kept_back) = (cloud.select(&rows(false)), cloud.select(&rows(true)));
@@ -318,7 +318,7 @@ fn a_seedling_between_two_days_has_the_mean_of_their_colours() {
         assert!(reddest > 0.05, "day {day}: the stem is brown");
         // Coarser copies keep their pictures.
         let coarse = made.at_level(1, &Run::plain()).expect("a copy");
-        let painted = |m: &burgeon::mesh::Model| m.materials.iter().filter(|m| m.texture.is_some()).count();
+        let painted = |m: &Model| m.materials.iter().filter(|m| m.texture.is_some()).count();
         assert_eq!((painted(&coarse), painted(&made.model)), (2, 2));
     }
 }
