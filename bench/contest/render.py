@@ -89,16 +89,15 @@ def load(path, ez):
 
 
 def scaled(height):
-    """All meshes as one tree of this height on the ground; corners of what hangs in the crown."""
+    """All meshes as one tree of this height, its origin on the ground; corners of what hangs in the crown."""
     objects = [o for o in bpy.context.scene.objects if o.type == "MESH"]
     corners = [o.matrix_world @ Vector(c) for o in objects for c in o.bound_box]
-    low, high = (f(c.z for c in corners) for f in (min, max))
+    high = max(c.z for c in corners)
     root = bpy.data.objects.new("tree", None)
     bpy.context.collection.objects.link(root)
     for o in objects:
         o.parent = root
-    root.scale = [height / (high - low)] * 3
-    root.location.z = -low * height / (high - low)
+    root.scale = [height / high] * 3
     bpy.context.view_layer.update()
     return [o.matrix_world @ v.co for o in objects for v in o.data.vertices]
 

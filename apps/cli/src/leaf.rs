@@ -147,7 +147,7 @@ fn check_used(args: &LeafArgs) -> Outcome {
     }
     if args.scan {
         let others = ["thickness", "side_veins", "graph", "length", "number", "materials"];
-        for options in [&MESH[..], &SURFACE, &LOOK[..2], &others] {
+        for options in [&MESH[..], &SURFACE, &LOOK[..3], &others] {
             given.refuse(options, "leaves of marks and veins", "--scan makes the surface that it finds")?;
         }
         if given.has("texture")
@@ -171,7 +171,7 @@ const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein"
 /// What surface the blade is.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
 /// How the leaf is bent and painted, its paint last.
-const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
+const LOOK: [&str; 4] = ["curl", "wilt", "ball", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.
@@ -249,6 +249,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         surface: shape.surface.into(),
         curl: look.curl,
         wilt: look.wilt,
+        balls: look.ball.clone(),
         texture,
         thickness: in_file.or(shape.thickness.map(Into::into)),
         parameters: match shape.parameters {
@@ -431,7 +432,8 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made, Some(Measured::Rows(options.spec.pose().apply(&marks).to_marks())))
+        let shaped = options.spec.shaped(&marks).map_err(|e| failure(args, e.into()))?;
+        (made, Some(Measured::Rows(shaped.to_marks())))
     };
     made.item.timings_ms.add_io(read_ms, 0.0);
     Ok(Product { made, marks, offset_m: None })
@@ -446,7 +448,7 @@ fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outco
     let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
     let mut made = made.map_err(|e| failure(args, e))?;
     made.item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
-    let rays = options.spec.pose().apply_rays(&rays);
+    let rays = options.spec.shaped_rays(&rays).map_err(|e| failure(args, LeafError::from(e)))?;
     Ok(Product { made, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 

@@ -68,7 +68,8 @@ function inPage({ id, points, step }) {
     sheet.setPointerCapture = () => {};
     const kept = document.querySelector('#b-kept');
     let done = Number(document.body.dataset.strokes);
-    const tell = (what) => window.told(what, done, sessionStorage.getItem('burgeon.document'));
+    const tell = (what) =>
+      window.told(what, done, sessionStorage.getItem('burgeon.document'), kept.textContent);
     const saved = () => {
       if (/^Saved/.test(kept.textContent)) tell('saved');
     };
@@ -116,7 +117,7 @@ function lengthsOf(id) {
   });
 }
 
-const sums = { pages: 0, browsers: 0, strokes: 0, loading: 0, short: 0, under: 0 };
+const sums = { pages: 0, browsers: 0, strokes: 0, loading: 0, short: 0, under: 0, waited: 0 };
 const wrong = [];
 const hands = Array.from({ length: HANDS }, () => ({ id: '', done: 0, saved: 0, known: 0, end: '' }));
 const pause = (ms) =>
@@ -132,34 +133,40 @@ async function open(hand) {
   const { page } = hand;
   page.setDefaultTimeout(60_000);
   await page.addInitScript(inPage, { id: hand.id, points: POINTS, step: STEP });
-  await page.exposeFunction('told', (what, n, id) => {
+  await page.exposeFunction('told', (what, n, id, said) => {
     hand[what] = Math.max(hand[what], n);
-    hand.id = id;
+    [hand.id, hand.said] = [id, said];
   });
   await page.goto(url);
   await until(page, () => document.body.dataset.ready === 'true');
 }
 
-/** A page may fall with one that is killed beside it, before it has a process of its own. */
+/**
+ * A page may fall with one that is killed beside it, before it has a process of its own. And one that was killed may have
+ * its document still, while the system takes its process apart: until then the document can only be looked at.
+ */
 async function openSurely(hand) {
   for (;;) {
     hand.page = await context.newPage();
     try {
       await open(hand);
-      return;
+      if (hand.id === '' || !(await readonly(hand))) return;
+      sums.waited += 1;
     } catch (e) {
       if (!e.message.includes('Target crashed')) throw e;
-      await hand.page.close().catch(() => {});
     }
+    await hand.page.close().catch(() => {});
   }
 }
+
+const readonly = ({ page }) => page.evaluate(() => document.body.dataset.kept === 'readonly');
 
 async function check(hand) {
   if (hand.id === '') return;
   const found = await hand.page.evaluate(() => Number(document.body.dataset.strokes));
   if (found < hand.done)
     wrong.push(
-      `${found} strokes of ${hand.done}, of which ${hand.saved} were called saved (${hand.id}, ${hand.end})`,
+      `${found} strokes of ${hand.done}, of which ${hand.saved} were called saved (${hand.id}, ${hand.end}; it opened with ${hand.known} and said last: ${hand.said})`,
     );
   const lengths = await hand.page.evaluate(lengthsOf, hand.id);
   const last = lengths.at(-1) ?? POINTS;
@@ -202,7 +209,9 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
     hand.end = end;
     if (whole) return;
     const cdp = await context.newCDPSession(hand.page);
-    await Promise.race([cdp.send('Page.crash').catch(() => {}), pause(500)]);
+    // A page that is only being opened does not always say that it fell.
+    const fell = hand.page.waitForEvent('crash', { timeout: 5000 }).catch(() => {});
+    await Promise.race([cdp.send('Page.crash').catch(() => {}), fell]);
     sums.pages += 1;
     await hand.page.close().catch(() => {});
   });
@@ -226,7 +235,7 @@ const pages = sums.pages + HANDS * sums.browsers;
 console.log(
   `${wrong.length === 0 ? 'ok      ' : 'FAILED  '}${pages} pages killed while ${sums.strokes} strokes were drawn: ` +
     `${sums.pages} by themselves, ${sums.browsers} times ${HANDS} with the whole browser, ${sums.loading} while they opened; ` +
-    `${sums.under} strokes that were under the pen are there, ${sums.short} finished ones lack their end (seed ${seed}, ` +
+    `${sums.under} strokes that were under the pen are there, ${sums.short} finished ones lack their end; ${sums.waited} documents were not free at once (seed ${seed}, ` +
     `${((Date.now() - began) / 1000).toFixed(0)} s)`,
 );
 for (const each of wrong) console.log(`        ${each}`);

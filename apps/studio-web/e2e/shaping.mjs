@@ -1,5 +1,6 @@
 // Hands on plants in the view: prune, turn, draw, brush; what survives and what says that it did not.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
@@ -447,6 +448,81 @@ async function sky({ page, url, shot }) {
   await shot('shape-sky');
 }
 
+/** Where the control balls of a leaf are on the page, the tip first. */
+async function balls(page) {
+  await page.waitForFunction(() => document.body.dataset.balls !== '');
+  const box = await page.locator('.view').boundingBox();
+  const places = (await data(page, 'balls')).split(' ').map(Number);
+  return Array.from({ length: places.length / 3 }, (_, i) => [
+    box.x + places[3 * i],
+    box.y + places[3 * i + 1],
+  ]);
+}
+
+/** A leaf is taken by its marks: one is pulled, another made thicker; all go back to where they were measured. */
+async function marks({ page, url, shot }) {
+  await begin(page, url);
+  await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
+  await until(page, 'triangles', ['above', 500], 'a leaf from marks');
+  await page.selectOption('[data-path="/surface"]', 'approximate');
+  const plain = await settled(page);
+  await page.waitForTimeout(900);
+  assert.equal((await data(page, 'balls')) ?? '', '');
+  await page.keyboard.press('Shift+S');
+  const before = await balls(page);
+  assert.equal(before.length, 71, 'ten rows of seven marks and the tip');
+  const [x, y] = before[0];
+  await page.mouse.move(x + 3, y - 2);
+  await page.mouse.down();
+  for (let k = 1; k <= 10; k += 1) await page.mouse.move(x + 3, y - 2 - 6 * k);
+  await page.mouse.up();
+  await changed(page, plain, 'the tip was pulled');
+  const pulled = await settled(page);
+  // The camera follows the plant: what counts is where the tip is beside the base of the leaf.
+  const away = (all) => Math.hypot(all[0][0] - all[67][0], all[0][1] - all[67][1]);
+  let after = before;
+  for (let tries = 0; tries < 100 && Math.abs(away(after) - away(before)) < 8; tries += 1) {
+    await page.waitForTimeout(100);
+    after = await balls(page);
+  }
+  assert.ok(Math.abs(away(after) - away(before)) > 8, 'the tip went with the pointer');
+  await page.waitForTimeout(500);
+  after = await balls(page);
+  await shot('leaf-marks');
+  assert.equal(await page.locator('#b-measured').count(), 1);
+  // The wheel over a mark makes its veins thicker, and does not zoom.
+  const mark = after[11];
+  await page.mouse.move(...mark);
+  for (let k = 0; k < 6; k += 1) await page.mouse.wheel(0, -100);
+  await changed(page, pulled, 'a thicker vein');
+  const thick = await settled(page);
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, pulled);
+  await page.keyboard.press('Control+y');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, thick);
+  // Held and given up with Escape, nothing is done.
+  const now = await balls(page);
+  await page.mouse.move(...now[4]);
+  await page.mouse.down();
+  await page.mouse.move(now[4][0] + 40, now[4][1] + 20);
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, thick);
+  // Elsewhere the view is turned as always.
+  const centre = await CENTRE(page);
+  await page.mouse.move(centre.x, centre.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(centre.x + 120, centre.y + 200, { steps: 5 });
+  await page.mouse.up();
+  await page.waitForTimeout(300);
+  assert.notDeepEqual(await balls(page), now, 'another view');
+  assert.equal(await data(page, 'digest'), thick);
+  await page.click('#b-measured');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.body.dataset.balls === '');
+}
+
 export const shaping = [
   ['shape: prune a branch and undo', prune, WIDE],
   ['shape: what bears a twig', bearer, WIDE],
@@ -458,5 +534,6 @@ export const shaping = [
   ['shape: another seed says what is gone', seeds, WIDE],
   ['shape: saved, reloaded, recovered', kept, WIDE],
   ['shape: a drawing, and a click on a plant', drawn, WIDE],
+  ['shape: marks of a leaf', marks, WIDE],
   ['shape: fingers', fingers, { viewport: { width: 820, height: 1000 }, hasTouch: true }],
 ];

@@ -19,6 +19,7 @@ import { GroundPen } from './scattering';
 import { type Gizmo, SceneList } from './scene';
 import { Scenery } from './scenery';
 import { Session, type SessionEvents } from './session';
+import { Balls } from './balls';
 import { Shaping } from './shaping';
 import { openShelf } from './shelf';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
@@ -50,6 +51,7 @@ export class App implements Page {
   /** Both are there, or neither is. */
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
+  readonly balls: Balls | undefined;
   readonly pen: GroundPen | undefined;
   readonly modes: ViewModes;
   readonly door: Door;
@@ -84,6 +86,7 @@ export class App implements Page {
     try {
       this.view = this.makeView();
       this.shaping = this.makeShaping(this.view);
+      this.balls = this.makeBalls(this.view);
       this.pen = new GroundPen(
         this.view,
         (ground) => {
@@ -166,7 +169,10 @@ export class App implements Page {
         session.draftShown();
         this.sheet.setOrgans(session.organs, this.readings.doubtful);
         this.panel.follow();
-        if (fresh.some((f) => f.view.id === session.state?.current)) this.shaping?.renewed();
+        if (fresh.some((f) => f.view.id === session.state?.current)) {
+          this.shaping?.renewed();
+          this.balls?.renewed();
+        }
         for (const { id, error } of view.plants) this.sayOnce(id, error && tell(error));
         this.show.idle();
         this.show.view();
@@ -271,6 +277,7 @@ export class App implements Page {
       obstacle: (file) => void this.panels.addObstacle(file),
       open: (file) => void this.files.openFile(file),
       renew: () => this.show.document(),
+      measured: () => this.balls?.measured(),
     });
   }
 
@@ -368,7 +375,10 @@ export class App implements Page {
     const { session } = this;
     return new PlantView(t('view.label'), {
       pick: (plant, more) => (more ? this.list.chooseToo(plant) : this.list.choose([plant])),
-      drawn: () => this.shaping?.drawn(),
+      drawn: () => {
+        this.shaping?.drawn();
+        this.balls?.drawn();
+      },
       front: (on) => this.show.press('front', on),
       walked: (mode) => this.scenery.walked(mode),
       context: (lost) => {
@@ -392,6 +402,21 @@ export class App implements Page {
       refused: (why) => note(t('note.refused', { why }), 'bad'),
       say: (what) => note(what),
       changed: () => this.show.shaping(),
+    });
+  }
+
+  private makeBalls(view: PlantView): Balls {
+    const { session } = this;
+    return new Balls(view, {
+      ask: (request) => session.engine.ask(request),
+      begin: (name) => session.begin(name),
+      stage: (command) => session.stage(command),
+      commit: () => session.commit(),
+      abandon: () => session.end(false),
+      changed: (on) => {
+        this.show.shaping();
+        if (on) note(t('leaf.balls.hint'));
+      },
     });
   }
 

@@ -328,12 +328,13 @@ function leftSide(page: Page, pieces: Pieces, parts: Parts): HTMLElement {
 }
 
 function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): HTMLElement {
-  const { view, shaping, pen } = page;
+  const { view, shaping, balls, pen } = page;
   const shown =
     view && shaping
       ? [
           view.element,
           shaping.overlay.element,
+          ...(balls ? [balls.overlay.element] : []),
           ...(pen ? [pen.element] : []),
           viewTools(buttons, page),
           shaping.element,

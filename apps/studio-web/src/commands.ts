@@ -10,6 +10,7 @@ import type { GroundPen } from './scattering';
 import type { Gizmo, SceneList } from './scene';
 import type { Scenery } from './scenery';
 import type { Session } from './session';
+import type { Balls } from './balls';
 import type { Shaping } from './shaping';
 import type { Sheet, Tool } from './sheet/sheet';
 import type { TextKey } from './text';
@@ -29,6 +30,7 @@ export interface Page {
   /** The view and its tools: none without WebGL 2. */
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
+  readonly balls: Balls | undefined;
   /** What draws on the ground. */
   readonly pen: GroundPen | undefined;
   readonly modes: ViewModes;
@@ -114,6 +116,7 @@ function turn(page: Page, angle_deg: number, across: 1 | -1): void {
 function leave(page: Page): void {
   if (page.scatters) page.stopScattering();
   else if (page.gizmo) page.place(undefined);
+  else if (page.balls?.isOn) page.balls.leave();
   else page.sheet.select([]);
 }
 
@@ -163,7 +166,8 @@ const TABLE = [
     label: 'shape.title',
     keys: 'Shift+S',
     when: (p) => p.shaping !== undefined,
-    run: (p) => p.shaping?.toggle(),
+    // A leaf has no branches: its marks are what a hand takes.
+    run: (p) => (p.session.plant?.leaf ? p.balls : p.shaping)?.toggle(),
   },
   { id: 'place-move', label: 'place.translate', keys: 'G', when: hasView, run: (p) => p.place('translate') },
   { id: 'place-turn', label: 'place.rotate', keys: 'R', when: hasView, run: (p) => p.place('rotate') },

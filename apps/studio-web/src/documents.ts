@@ -24,6 +24,8 @@ export interface DocumentsEvents {
 
 /** How long a tab that is being reloaded may hold on to its document. */
 const SOON_MS = 400;
+/** How long a document that is only to be looked at is waited for: a tab that fell has it until the system has cleared up. */
+const LATER_MS = 10_000;
 /** How long another tab may take to hand a document over before it is taken. */
 const HAND_OVER_MS = 1500;
 /** A picture is made when nothing was grown for so long. */
@@ -38,6 +40,8 @@ export class Documents {
   private free: Free | undefined;
   private readonly channel = 'BroadcastChannel' in globalThis ? new BroadcastChannel('burgeon') : undefined;
   private timer = 0;
+  /** Ends waiting for the document that is here. */
+  private waiting = new AbortController();
   /** The small picture is not of what is seen now. */
   private stale = false;
   private id: string | undefined;
@@ -124,17 +128,24 @@ export class Documents {
   async takeOver(): Promise<void> {
     const { id } = this;
     if (id === undefined) return;
+    this.waiting.abort();
     this.channel?.postMessage(id);
     const lost = (): void => this.lose();
     const free = (await hold(id, { wait: HAND_OVER_MS, lost })) ?? (await hold(id, { steal: true, lost }));
     await this.show(id, free);
   }
 
-  /** The document may be free now. */
-  private async retry(): Promise<void> {
-    if (this.keeper.standing !== 'readonly' || this.id === undefined) return;
-    const free = await hold(this.id, { wait: SOON_MS, lost: () => this.lose() });
-    if (free) await this.show(this.id, free);
+  /** The document may be free now, or soon. */
+  private async retry(wait = SOON_MS): Promise<void> {
+    const { id } = this;
+    if (this.keeper.standing !== 'readonly' || id === undefined) return;
+    this.waiting.abort();
+    this.waiting = new AbortController();
+    const free = await hold(id, { wait, until: this.waiting.signal, lost: () => this.lose() });
+    // Meanwhile another document may have been asked for.
+    if (this.id === id && this.keeper.standing === 'readonly') {
+      if (free) await this.show(id, free);
+    } else free?.();
   }
 
   /** Another tab has it. What was done here is written before it is let go. */
@@ -145,6 +156,7 @@ export class Documents {
   }
 
   private async leave(): Promise<void> {
+    this.waiting.abort();
     await this.portray();
     await this.keeper.close('opening');
     this.free?.();
@@ -160,6 +172,7 @@ export class Documents {
 
   /** Reads a document and shows it, for writing if no other tab does; one that cannot be read gives an empty one. */
   private async show(id: string, held?: Free): Promise<boolean> {
+    this.waiting.abort();
     await this.keeper.close('opening');
     const lost = (): void => this.lose();
     const free = held ?? (await hold(id, { wait: SOON_MS, lost }));
@@ -181,6 +194,7 @@ export class Documents {
     this.here(id);
     this.keeper.open(id, kept.rows, free ? undefined : 'readonly');
     this.events.opened();
+    if (!free) void this.retry(LATER_MS);
     return true;
   }
 
@@ -234,12 +248,16 @@ function journalOf({ whole, rows }: Kept): Request[] {
 /** Has a document for this tab alone, until it is let go; undefined if another tab does not let go of it in time. */
 function hold(
   id: string,
-  { wait, steal, lost }: { wait?: number; steal?: true; lost: () => void },
+  { wait, until, steal, lost }: { wait?: number; until?: AbortSignal; steal?: true; lost: () => void },
 ): Promise<Free | undefined> {
   if (!navigator.locks) return Promise.resolve(() => undefined);
   return new Promise((resolve) => {
     let granted = false;
-    const options = wait === undefined ? { steal: steal ?? false } : { signal: AbortSignal.timeout(wait) };
+    const patience = new AbortController();
+    const end = (): void => patience.abort();
+    if (wait !== undefined) setTimeout(end, wait);
+    until?.addEventListener('abort', end);
+    const options = wait === undefined ? { steal: steal ?? false } : { signal: patience.signal };
     navigator.locks
       .request(lockOf(id), options, () => {
         granted = true;

@@ -68,12 +68,6 @@ function valueAt(fields: Json | undefined, path: string): Json | undefined {
   return at;
 }
 
-/** A copy with another value at the end of a way into it. */
-export function withField<T extends object>(settings: T, [key, ...rest]: string[], value: Json): T {
-  const inner = (settings as Record<string, unknown>)[key!];
-  return { ...settings, [key!]: rest.length > 0 ? withField(inner as object, rest, value) : value };
-}
-
 /** Brings a value back to what it was at first. */
 export function resetButton(name: string, act: () => void): HTMLElement {
   const label = t('form.reset', { name });

@@ -1,6 +1,6 @@
 /** The left side of plants that are not drawn: species, age, obstacles; marks and surface; species and day. */
 import type { Engine } from './engine';
-import { Form, type Fields, resetButton, withField } from './form';
+import { Form, type Fields, resetButton } from './form';
 import type {
   Action,
   Command,
@@ -13,7 +13,7 @@ import type {
   PlantView,
   TreeCommand,
 } from './wire';
-import { drawingSchema, named, type Schema } from './schema';
+import { drawingSchema, named, type Schema, withField } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
 import { ownPresets } from './own';
@@ -41,6 +41,8 @@ export interface MakerEvents {
   choose(accept: string, act: (file: File) => void): void;
   obstacle(file: File): void;
   open(file: File): void;
+  /** Control balls of a leaf go back to where they were measured. */
+  measured(): void;
   /** What is not of the document changed: the panel is shown again. */
   renew(): void;
 }
@@ -522,6 +524,7 @@ export class MakerPanel {
         ),
         edit,
       ),
+      ...this.moved(leaf.settings.balls.length),
       this.section(
         t('leaf.own'),
         this.own(plant, (own) => ({
@@ -529,6 +532,18 @@ export class MakerPanel {
         })),
       ),
     ];
+  }
+
+  /** What a hand did to the marks. */
+  private moved(count: number): HTMLElement[] {
+    if (count === 0) return [];
+    const back = el(
+      'button',
+      { type: 'button', class: 'chip', id: 'b-measured', onclick: () => this.events.measured() },
+      t('leaf.measured'),
+    );
+    const told = el('p', { class: 'muted' }, t('leaf.moved', { count }));
+    return [this.section(t('shape.title'), told, el('div', { class: 'chips' }, back))];
   }
 
   /** A leaf to begin with: its table can be changed then. */

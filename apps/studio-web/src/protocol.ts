@@ -67,6 +67,8 @@ export type Request =
   | { kind: 'ready'; triangles: number }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
+  /** The control balls of the chosen leaf: `LeafBalls`. */
+  | { kind: 'balls' }
   /** Triangles of the meshes that the hand carries: part, first, and the one after the last, of each range. */
   | { kind: 'held' }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array; pen?: PenStyle }

@@ -56,3 +56,12 @@ export function drawingSchema(sketch: Schema, skin: Schema): Schema {
     properties: { ...shown(sketch.properties), skin: { ...surface, properties: shown(skin.properties) } },
   };
 }
+
+/** A copy with another value at the end of a way into it. */
+export function withField<T extends object>(settings: T, [key, ...rest]: string[], value: Json): T {
+  const inner = (settings as Record<string, unknown>)[key!];
+  const now = rest.length > 0 ? withField(inner as object, rest, value) : value;
+  // A list stays one.
+  if (Array.isArray(settings)) return settings.with(Number(key), now) as unknown as T;
+  return { ...settings, [key!]: now };
+}

@@ -1,7 +1,7 @@
 /** The panel of a drawing: a form made of the schemas of drawing and surface, a lent leaf, and the pen. */
-import { Form, type Fields, withField } from './form';
+import { Form, type Fields } from './form';
 import { ownChips } from './ownchips';
-import type { Schema } from './schema';
+import { type Schema, withField } from './schema';
 import { t, tOf } from './text';
 import { el } from './ui';
 import type { Json, PlantState, SketchCommand, SketchSpec, SketchState, SkinSpec } from './wire';

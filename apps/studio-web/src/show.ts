@@ -1,4 +1,5 @@
 /** Shows in the bars and over both sides what the document and its plant are now. */
+import type { Balls } from './balls';
 import type { Parts } from './bars';
 import { keyOf } from './commands';
 import { dot } from './correct';
@@ -28,6 +29,7 @@ export interface Shown {
   readonly panel: MakerPanel;
   readonly list: SceneList;
   readonly shaping: Shaping | undefined;
+  readonly balls: Balls | undefined;
   readonly modes: ViewModes;
   readonly door: Door;
   readonly theme: Theme;
@@ -101,10 +103,11 @@ export class Show {
 
   /** What has a part of the page to itself. */
   private pieces(state: DocumentState): void {
-    const { session, panel, list, shaping } = this.shown;
+    const { session, panel, list, shaping, balls } = this.shown;
     panel.show(session.plant, state, session.seen);
     list.show(state, session.scene);
     shaping?.show(session.plant, session.shapeable);
+    balls?.show(session.plant);
     this.shaping();
     this.bloom();
   }
@@ -134,10 +137,10 @@ export class Show {
 
   /** The tools of the view: whether one is held, whether one could be. */
   shaping(): void {
-    const { shaping } = this.shown;
-    if (!shaping) return;
-    this.press('shape', shaping.isOn);
-    this.parts.buttons.get('shape')!.disabled = !shaping.isPossible && !shaping.isOn;
+    const { shaping, balls, session } = this.shown;
+    if (!shaping || !balls) return;
+    this.press('shape', shaping.isOn || balls.isOn);
+    this.parts.buttons.get('shape')!.disabled = !shaping.isPossible && !shaping.isOn && !session.plant?.leaf;
     document.body.dataset['shape'] = shaping.word ?? '';
     this.shown.door.renewed();
   }

@@ -6,6 +6,7 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 /** Every code of a `Refusal`, with its fields. */
 export const CODES = {
   "archive": ["why"],
+  "ball-none": ["row", "mark", "rows"],
   "cancelled": [],
   "class-without-stroke": ["index"],
   "edit-at-fault": ["row", "why"],
@@ -172,6 +173,7 @@ export const CODES = {
   "tree-file": ["file"],
   "tree-line": ["line", "why"],
   "unknown-file": [],
+  "veins-ball-none": ["ray", "mark", "rays", "marks"],
   "veins-none": [],
   "veins-not-finite": ["ray", "mark"],
   "veins-repeated": ["ray", "mark"],
@@ -231,6 +233,18 @@ export type AxisKey =
   {
     near: [number, number, number];
   };
+
+/** One control ball moved and rescaled: the place of a mark and the thickness of the veins there. */
+export type BallMove = {
+  /** How far it is moved: to the right as one looks at the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
+  by_m: [number, number, number];
+  /** Mark of the row from the right margin, 1 to 7, of which 4 is on the midrib; of chief veins the mark from the base. */
+  mark: number;
+  /** Row of marks from the tip down, from 1, or 0 for the tip; of chief veins the vein from the right margin, from 1. */
+  row: number;
+  /** The veins there are so many times as thick, 0.05 to 20, default 1. */
+  thickness: number;
+};
 
 /** How the depth of branches is found (He and Cheng 2021, section 5.2). */
 export type BranchDepth =
@@ -980,9 +994,29 @@ export type Layer = {
   name: string;
 };
 
+/** One control ball. */
+export type LeafBall = {
+  /** Where it is, in the coordinates of the leaf, metres. */
+  at: [number, number, number];
+  /** As in `BallMove`. */
+  mark: number;
+  /** Of the thickest vein there, metres; 0 where there is none. */
+  radius_m: number;
+  /** As in `BallMove`. */
+  row: number;
+};
+
+/** All control balls of a leaf, bent as it is, and the directions in which they are moved. */
+export type LeafBalls = {
+  /** The tip first, then row by row; of chief veins vein by vein. */
+  balls: LeafBall[];
+  /** Unit vectors of the first, second and third number of `BallMove::by_m`. */
+  sides: [[number, number, number], [number, number, number], [number, number, number]];
+};
+
 /** What can be asked of a measured leaf. */
 export type LeafCommand =
-  | /** Takes other measurements. */
+  | /** Takes other measurements, none of whose control balls was moved. */
   {
     'set-data': LeafData;
   }
@@ -1093,6 +1127,8 @@ export type LeafReport = {
 
 /** How a leaf is made of its marks (Wang et al. */
 export type LeafSpec = {
+  /** Control balls moved and rescaled by hand (Wang et al. */
+  balls: BallMove[];
   /** Round ends on the veins; default false. */
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */

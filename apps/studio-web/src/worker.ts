@@ -122,6 +122,8 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.ready_levels(request.triangles);
     case 'branch':
       return s.branch(request.axis);
+    case 'balls':
+      return JSON.parse(s.balls());
     case 'held':
       return s.held_rows();
     case 'share':
@@ -185,6 +187,7 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'share',
   'schema',
   'branch',
+  'balls',
   'held',
   'ready',
 ]);

@@ -314,6 +314,14 @@ impl StudioSession {
         self.0.branch(axis)
     }
 
+    /// The control balls of the chosen leaf: `LeafBalls` as JSON.
+    ///
+    /// # Errors
+    /// When the chosen plant is no leaf, or makes none.
+    pub fn balls(&self) -> Result<String, Refused> {
+        to_json(&self.0.balls()?)
+    }
+
     /// Triangles of the meshes that a hand carries: part, first, and the one after the last, of each range.
     pub fn held_rows(&self) -> Vec<u32> {
         self.0.held_rows().to_vec()

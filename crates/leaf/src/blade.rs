@@ -6,7 +6,6 @@ use plant::{Chart, RimPoint, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
 use crate::spec::{LeafSpec, SurfaceKind, VeinParameters};
-use crate::thickness::ThicknessRule;
 
 /// A leaf as curves and a surface.
 ///
@@ -148,10 +147,7 @@ struct Grid {
 
 impl Grid {
     fn new(marks: &FullMarks, spec: &LeafSpec) -> Self {
-        let radius = match spec.thickness.unwrap_or_default() {
-            ThicknessRule::Diameter => 0.5,
-            ThicknessRule::Radius => 1.0,
-        };
+        let radius = spec.thickness.unwrap_or_default().radius();
         let rows = marks.rows.len();
         let up = || marks.rows.iter().rev();
         let mut points: Vec<DVec3> = up().flat_map(|r| r.points.into_iter().rev()).collect();
@@ -182,6 +178,7 @@ mod tests {
 
     use super::*;
     use crate::marks::tests::sample;
+    use crate::thickness::ThicknessRule;
 
     fn full(rows: usize) -> FullMarks {
         sample(rows).complete(&mut Report::default()).unwrap()

@@ -12,6 +12,7 @@
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `pose` | curl and wilt |
+//! | `balls` | [`BallMove`]: control balls moved by hand |
 //! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> rays |
 //! | `growth` | a leaf between measured stages |
 //! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
@@ -20,6 +21,7 @@
 //!
 //! Lengths are metres. A leaf knows nothing of the plant that bears it; its triangles are `skin`'s to make.
 
+mod balls;
 mod blade;
 mod form;
 mod graph;
@@ -36,6 +38,7 @@ mod scan;
 mod spec;
 mod thickness;
 
+pub use balls::BallMove;
 pub use blade::Leaf;
 pub use form::LeafForm;
 pub use graph::{GraphError, VeinGraph};

@@ -112,6 +112,18 @@ pub enum MarksError {
         "row 1 meets the midrib at the tip; the tip is repeated, or row 1 is the tip itself: remove one of them"
     )]
     TipRepeated,
+    /// A ball to be moved that is not there.
+    #[error(
+        "there is no control ball {mark} in row {row}: the leaf has rows 1 to {rows} of marks 1 to 7, and the tip as row 0"
+    )]
+    NoBall {
+        /// Row asked for.
+        row: usize,
+        /// Mark asked for.
+        mark: usize,
+        /// Rows of the leaf.
+        rows: usize,
+    },
     /// Too few points of the margin.
     #[error("a margin of {0} points encloses nothing; give at least 3, or none")]
     MarginFew(usize),
@@ -464,6 +476,7 @@ base::coded!(MarksError {
     Self::Point(row) => "marks-one-point" { row },
     Self::SameRow(row) => "marks-same-row" { row, next = row + 1 },
     Self::TipRepeated => "marks-tip" {},
+    Self::NoBall { row, mark, rows } => "ball-none" { row, mark, rows },
     Self::MarginFew(points) => "margin-few" { points },
     Self::MarginNotFinite(point) => "margin-not-finite" { point },
     Self::MarginCrosses(times) => "margin-crosses" { times },

@@ -80,6 +80,20 @@ pub enum RaysError {
         /// First of the two marks, from 1.
         mark: usize,
     },
+    /// A ball to be moved that is not there.
+    #[error(
+        "there is no control ball {mark} on vein {ray}: the leaf has veins 1 to {rays} of marks 1 to {marks}"
+    )]
+    NoBall {
+        /// Chief vein asked for.
+        ray: usize,
+        /// Mark asked for.
+        mark: usize,
+        /// Veins of the leaf.
+        rays: usize,
+        /// Marks of each.
+        marks: usize,
+    },
     /// No thickness anywhere.
     #[error("no vein has a thickness; measure it on at least one")]
     NoVein,
@@ -372,6 +386,7 @@ base::coded!(RaysError {
     Self::NotFinite { ray, mark } => "veins-not-finite" { ray, mark },
     Self::Thickness { ray, mark, value } => "veins-thickness" { ray, mark, value },
     Self::Repeated { ray, mark } => "veins-repeated" { ray, mark },
+    Self::NoBall { ray, mark, rays, marks } => "veins-ball-none" { ray, mark, rays, marks },
     Self::NoVein => "veins-none" {},
 } wraps {
     Self::Spline(e) => e, SplineError;

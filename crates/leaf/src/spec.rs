@@ -4,6 +4,7 @@ use geom::RingRule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::balls::BallMove;
 use crate::form::LeafForm;
 use crate::pose::Pose;
 use crate::thickness::ThicknessRule;
@@ -78,6 +79,8 @@ pub struct LeafSpec {
     /// Loss of stiffness: 0 as measured to 1 hanging limp, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub wilt: f64,
+    /// Control balls moved and rescaled by hand (Wang et al. 2011, Fig 4), one after another; default none.
+    pub balls: Vec<BallMove>,
     /// Colour of the blade.
     pub texture: LeafPaint,
     /// What a measured thickness is; default what the file says, else the diameter.
@@ -115,6 +118,7 @@ impl Default for LeafSpec {
             surface: SurfaceKind::default(),
             curl: 0.0,
             wilt: 0.0,
+            balls: Vec::new(),
             texture: LeafPaint::default(),
             thickness: None,
             parameters: VeinParameters::default(),

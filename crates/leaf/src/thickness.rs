@@ -13,3 +13,13 @@ pub enum ThicknessRule {
     /// The ball's radius, as the formulas take it.
     Radius,
 }
+
+impl ThicknessRule {
+    /// The radius of the ball of a vein that is 1 thick.
+    pub const fn radius(self) -> f64 {
+        match self {
+            Self::Diameter => 0.5,
+            Self::Radius => 1.0,
+        }
+    }
+}

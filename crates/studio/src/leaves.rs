@@ -95,7 +95,7 @@ pub fn make_leaf(
 
 /// As [`make_leaf`], from marks that are complete, adding to what was reported before.
 ///
-/// The marks as they were meshed are those of [`LeafSpec::pose`].
+/// The marks as they were meshed are those of [`LeafSpec::shaped`].
 ///
 /// # Errors
 /// [`LeafError`].
@@ -108,7 +108,7 @@ pub fn make_leaf_of(
     mut report: Report,
 ) -> Result<MadePlant, LeafError> {
     run.budget.check(Counted::Triangles, options.mesh().triangles(marks.rows.len()), COARSER)?;
-    let marks = options.spec.pose().apply(marks);
+    let marks = options.spec.shaped(marks)?;
     let leaf = report.stage("structure", run.clock, |_| Leaf::new(&marks, &options.spec))?;
     run.cancel.check()?;
     let texture = report.stage("mesh", run.clock, |_| leaf_texture(&leaf, options, seed, run));

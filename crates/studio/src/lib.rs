@@ -17,6 +17,7 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod balls;
 mod days;
 mod drawn;
 mod evaluate;
@@ -42,6 +43,7 @@ mod template;
 mod trees;
 mod venation;
 
+pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
     NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,

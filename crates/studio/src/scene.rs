@@ -647,7 +647,7 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 }
 
 /// What was measured of a leaf.
-enum LeafInput {
+pub(crate) enum LeafInput {
     /// Marks along its midrib, veins and margins.
     Marks(FullMarks),
     /// Chief veins that start together.
@@ -655,7 +655,7 @@ enum LeafInput {
 }
 
 /// What was measured of a leaf of a document, and how it is made.
-fn leaf_input(leaf: &LeafMaker) -> Result<(LeafInput, LeafOptions), SceneError> {
+pub(crate) fn leaf_input(leaf: &LeafMaker) -> Result<(LeafInput, LeafOptions), SceneError> {
     let LeafMaker { data, settings } = leaf;
     if is_rays(data.text.as_bytes()) {
         let read = read_rays(data.text.as_bytes(), &data.name, MarksAxes::default())?;

@@ -51,8 +51,10 @@ pub fn make_shoot(
     let each = forms.iter().map(|form| options.mesh().triangles(form.rows.len())).max().unwrap_or(0);
     run.budget.check(Counted::Triangles, each * u64::from(count), COARSER)?;
     let stem = stem(spec, seed)?;
+    let forms: Vec<FullMarks> =
+        forms.iter().map(|form| options.spec.moved(form)).collect::<Result<_, _>>()?;
     let mut textures = Vec::with_capacity(forms.len());
-    for form in forms {
+    for form in &forms {
         let leaf = Leaf::new(form, &options.spec)?;
         textures.push(leaf_texture(&leaf, options, seed, run));
     }

@@ -51,7 +51,7 @@ impl LeafTemplate {
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<Self, LeafError> {
-        let marks = options.spec.pose().apply(marks);
+        let marks = options.spec.shaped(marks)?;
         let leaf = Leaf::new(&marks, &options.spec)?;
         run.cancel.check()?;
         let mut blade = leaf_blade(&leaf, &marks, 1.0);
@@ -79,6 +79,7 @@ impl LeafTemplate {
     ) -> Result<Result<Self, TemplateError>, LeafError> {
         let mut model = crate::make_ray_leaf("leaf", rays, options, run)?.model;
         // The root is where the veins start together; it may lie anywhere.
+        let rays = options.spec.shaped_rays(rays).map_err(LeafError::from)?;
         let root = rays.rays.iter().find_map(|r| r.points.first()).copied().unwrap_or_default();
         for p in model.parts.iter_mut().flat_map(|p| &mut p.mesh.positions) {
             #[expect(clippy::cast_possible_truncation, reason = "positions are f32 in meshes")]

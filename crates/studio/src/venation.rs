@@ -23,7 +23,7 @@ pub fn make_ray_leaf(
     run: &Run<'_>,
 ) -> Result<MadePlant, LeafError> {
     let mut report = Report::default();
-    let rays = &options.spec.pose().apply_rays(rays);
+    let rays = &options.spec.shaped_rays(rays)?;
     let leaf = report.stage("structure", run.clock, |_| {
         RayLeaf::new(rays, options.spec.thickness.unwrap_or_default()).map(|mut leaf| {
             leaf.add_side_veins(rays, options.side_veins as usize);

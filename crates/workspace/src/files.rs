@@ -12,7 +12,7 @@ use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
 use burgeon::leaf::LeafSpec;
 use burgeon::spec::{self, through_json};
-use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
+use burgeon::{LeafError, Report, SceneError, leaf_balls, leaf_marks, read_tree_spec, tree_settings};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -118,10 +118,20 @@ impl Workspace {
         }
     }
 
-    /// What the document leaves to the sender of a command: that measurements make a leaf.
+    /// What the document leaves to the sender of a command: that measurements make a leaf, and that the balls that are moved
+    /// are its own.
     pub(crate) fn check(&self, command: &document::Command) -> Result<(), WorkspaceError> {
         match command {
             document::Command::Leaf(_, document::LeafCommand::SetData(data)) => check_marks(data),
+            document::Command::Leaf(id, document::LeafCommand::Set(settings))
+                if !settings.balls.is_empty() =>
+            {
+                let plant = self.editor.document().plant(*id).map(DocumentPlant::settings);
+                if let Some(Maker::Leaf(leaf)) = plant.map(|s| &s.maker) {
+                    leaf_balls(&LeafMaker { settings: (**settings).clone(), ..(**leaf).clone() })?;
+                }
+                Ok(())
+            }
             _ => Ok(()),
         }
     }

@@ -4,7 +4,8 @@
 
 use std::sync::Arc;
 
-use burgeon::document::{CommandError, Document, Editor, PlantId, ShapeCommand};
+use burgeon::LeafBalls;
+use burgeon::document::{CommandError, Document, Editor, Maker, PlantId, ShapeCommand};
 use burgeon::geom;
 use burgeon::glam::{DQuat, DVec2, DVec3};
 use burgeon::mesh::Model;
@@ -382,6 +383,16 @@ impl Workspace {
             }
         }
         out
+    }
+
+    /// The control balls of the current leaf, for hands that move them.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::NoPlant`]; [`WorkspaceError::NothingMade`] for a plant that is no leaf; why it makes no leaf.
+    pub fn balls(&self) -> Result<LeafBalls, WorkspaceError> {
+        let plant = self.current_plant().ok_or(WorkspaceError::NoPlant)?;
+        let Maker::Leaf(leaf) = &plant.settings().maker else { return Err(WorkspaceError::NothingMade) };
+        Ok(burgeon::leaf_balls(leaf)?)
     }
 
     /// What of the current plant's meshes a hand carries: part, first triangle, and the one after the last, of each range;

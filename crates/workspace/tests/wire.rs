@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use burgeon::document::Command;
 use burgeon::shape::ToolKind;
 use burgeon::skin::OrganMaterial;
-use burgeon::{Coded, Refusal};
+use burgeon::{Coded, LeafBalls, Refusal};
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use workspace::{
@@ -56,6 +56,7 @@ fn types() -> String {
     add::<ShapeReach>(&mut all);
     add::<ShapeInput>(&mut all);
     add::<ShapeAnswer>(&mut all);
+    add::<LeafBalls>(&mut all);
     add::<GestureRecord>(&mut all);
     add::<Refusal>(&mut all);
     let mut out = HEAD.to_owned();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use burgeon::leaf::{LeafSpec, SurfaceKind};
+use burgeon::leaf::{BallMove, LeafSpec, SurfaceKind};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
@@ -96,6 +96,7 @@ const LEAF_EXAMPLES: &str = "Examples:
   burgeon leaf marks.csv -o leaf.glb --surface bezier            bezier, approximate, interpolate or nurbs
   burgeon leaf marks.csv -o leaf.glb --rings envelope --caps     the exact surface of the veins
   burgeon leaf marks.csv -o leaf.glb --curl 0.3 --wilt 0.6
+  burgeon leaf marks.csv -o leaf.glb --surface approximate --ball 4,1,0,0,0.01,2   one control ball, by hand
   burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
   burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
   burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
@@ -160,6 +161,11 @@ pub(crate) struct LookArgs {
     /// Loss of stiffness, 0 (as measured) to 1 (hanging limp).
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| of::<LeafSpec>(s, "wilt"))]
     pub(crate) wilt: f64,
+    /// Move a control ball: that of mark MARK (1 to 7 from the right margin) in row ROW (1 from the tip, 0 the tip itself), or
+    /// of mark MARK on chief vein ROW, by so many metres to the right, towards the tip and off the upper side, and make the
+    /// veins there TIMES as thick; again for more balls.
+    #[arg(long, value_name = "ROW,MARK,RIGHT,FORTH,UP[,TIMES]", allow_hyphen_values = true, value_parser = ball)]
+    pub(crate) ball: Vec<BallMove>,
     /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
     /// (.png or .jpg), cropped to its box with the tip at the top. With --scan: scan (that of the points, where they have
     /// any; the default) or plain.
@@ -171,6 +177,27 @@ pub(crate) struct LookArgs {
     /// The day to show, between the first and the last of --days.
     #[arg(long, value_name = "D", requires = "days")]
     pub(crate) day: Option<f64>,
+}
+
+/// A moved control ball, as `--ball` names it.
+fn ball(text: &str) -> Result<BallMove, String> {
+    let form = || format!("`{text}` is not ROW,MARK,RIGHT,FORTH,UP or ROW,MARK,RIGHT,FORTH,UP,TIMES");
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let (&[row, mark, right, forth, up], times) = parts
+        .split_at_checked(5)
+        .and_then(|(five, rest)| {
+            let five: &[&str; 5] = five.try_into().ok()?;
+            (rest.len() < 2).then_some((five, rest.first()))
+        })
+        .ok_or_else(form)?;
+    let count = |word: &str| word.parse::<u32>().map_err(|_e| form());
+    let number = |word: &str| word.parse::<f64>().map_err(|_e| form());
+    let by_m = [number(right)?, number(forth)?, number(up)?];
+    let thickness = times.map_or(Ok(1.0), |word| number(word))?;
+    let ball = BallMove { row: count(row)?, mark: count(mark)?, by_m, thickness };
+    let asked = LeafSpec { balls: vec![ball], ..LeafSpec::default() };
+    burgeon::spec::check(&asked).map_err(|e| e.to_string())?;
+    Ok(ball)
 }
 
 /// A whole plant of these leaves.

@@ -122,6 +122,8 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'margin-not-finite': '叶缘第 {point} 点：坐标不是有限的数，请重新测量',
   'margin-crosses': '叶缘在展平的叶片上自相交 {times} 次：请按顺序给出绕叶片一周的点',
   'margin-apart': '主脉的中点不在叶缘之内：两者是同一片叶、同一单位吗？',
+  'ball-none': '第 {row} 行没有控制球 {mark}：此叶有 1 至 {rows} 行，每行标记点 1 至 7，叶尖为第 0 行',
+  'veins-ball-none': '第 {ray} 条脉没有控制球 {mark}：此叶有 1 至 {rays} 条脉，每条有标记点 1 至 {marks}',
   'marks-tip': '第 1 行在叶尖处与主脉相交：叶尖重复了，请删去一个',
   'no-strokes': '绘图“{name}”没有可用的笔画：请至少画一条两点的线',
   'split-no-drawing': '只有绘图可以拆成单株植物',

@@ -4,6 +4,8 @@
 type Line = Float32Array;
 
 const CORE = '#ffd166';
+/** Of a point that can be taken, pixels. */
+const [DOT, DOT_MEANT] = [4, 7];
 const EDGE = 'rgb(20 30 25 / 75%)';
 
 export class Overlay {
@@ -13,6 +15,8 @@ export class Overlay {
   private kind: 'line' | 'brush' | 'outline' = 'line';
   private width = 2;
   private ring: { x: number; y: number; r: number } | undefined;
+  private dots: Float32Array | undefined;
+  private meant = -1;
 
   /** `project`: points of the plant on the screen. `isUnseen`: the scene is in a headset. */
   constructor(
@@ -51,6 +55,12 @@ export class Overlay {
     this.draw();
   }
 
+  /** Points that can be taken (x, y, z, radius of each), and the one that is meant. */
+  setDots(points: Float32Array | undefined, meant = -1): void {
+    [this.dots, this.meant] = [points, meant];
+    this.draw();
+  }
+
   draw(): void {
     if (this.isUnseen()) return;
     const { element } = this;
@@ -64,6 +74,7 @@ export class Overlay {
     c.lineCap = c.lineJoin = 'round';
     if (this.branch) this.drawBranch(c, this.project(this.branch));
     if (this.path.length > 0) this.drawPath(c);
+    if (this.dots) this.drawDots(c, this.project(this.dots));
     if (this.ring) {
       const { x, y, r } = this.ring;
       for (const [style, wide] of [
@@ -76,6 +87,19 @@ export class Overlay {
         c.arc(x, y, Math.max(2, r), 0, 2 * Math.PI);
         c.stroke();
       }
+    }
+  }
+
+  private drawDots(c: CanvasRenderingContext2D, dots: Line): void {
+    for (let i = 0; 3 * i < dots.length; i += 1) {
+      if (dots[3 * i + 2] === 0) continue;
+      c.beginPath();
+      c.arc(dots[3 * i]!, dots[3 * i + 1]!, i === this.meant ? DOT_MEANT : DOT, 0, 2 * Math.PI);
+      c.fillStyle = i === this.meant ? CORE : 'rgb(255 255 255 / 85%)';
+      c.fill();
+      c.strokeStyle = EDGE;
+      c.lineWidth = 1.5;
+      c.stroke();
     }
   }
 

@@ -131,7 +131,7 @@ fn named(new: NamedObstacle) -> NamedObstacle {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LeafCommand {
-    /// Takes other measurements. The sender has checked that they make a leaf.
+    /// Takes other measurements, none of whose control balls was moved. The sender has checked that they make a leaf.
     SetData(LeafData),
     /// Sets how the leaf is made.
     Set(Box<leaf::LeafSpec>),
@@ -158,7 +158,10 @@ impl LeafCommand {
             };
             let LeafMaker { data, settings } = &mut **leaf;
             match self {
-                Self::SetData(new) => *data = LeafData { name: shortened(&new.name), ..new },
+                Self::SetData(new) => {
+                    *data = LeafData { name: shortened(&new.name), ..new };
+                    settings.balls.clear();
+                }
                 Self::Set(new) => *settings = *new,
             }
             Ok(())
