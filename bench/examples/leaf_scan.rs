@@ -11,6 +11,7 @@ use burgeon::Clock as _;
 use burgeon::glam::DVec3;
 use burgeon::leaf::ScanSpec;
 use burgeon::make_leaf_from_scan;
+use burgeon::mesh::PointCloud;
 use burgeon_bench::{Stopwatch, TwoThreads};
 
 /// A blade of 60 mm x 36 mm with a stalk of 40 mm: 93 of 100 points on the blade, 6 on the stalk, 1 anywhere.
@@ -41,10 +42,10 @@ fn main() {
     let run = Run { executor: &TwoThreads, ..Run::plain() };
     println!("| points | seconds | length, mm | RMS, mm | explained | outliers |\n|---|---|---|---|---|---|");
     for count in [1_000, 10_000, 100_000, 1_000_000, 5_000_000] {
-        let points = cloud(count);
+        let cloud = PointCloud { points: cloud(count), ..PointCloud::default() };
         let from = watch.now_ms();
         let (made, _) =
-            make_leaf_from_scan("leaf", &points, &ScanSpec::default(), &run).expect("the cloud is a leaf");
+            make_leaf_from_scan("leaf", &cloud, &ScanSpec::default(), &run).expect("the cloud is a leaf");
         let seconds = 1e-3 * (watch.now_ms() - from);
         let leaf = made.item.leaf.expect("a leaf");
         let fit = leaf.fit_error;

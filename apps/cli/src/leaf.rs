@@ -31,8 +31,8 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         ("--marks", args.marks.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    let picture =
-        Some(&args.look.texture).filter(|t| !["veins", "plain"].iter().any(|word| t.as_os_str() == *word));
+    let picture = Some(&args.look.texture)
+        .filter(|t| !["veins", "plain", "scan"].iter().any(|word| t.as_os_str() == *word));
     let mut outputs =
         Outputs::new(&outputs, &args.inputs.iter().chain(picture).chain(&args.edits).collect::<Vec<_>>())?;
     check_used(args)?;
@@ -147,9 +147,21 @@ fn check_used(args: &LeafArgs) -> Outcome {
     }
     if args.scan {
         let others = ["thickness", "side_veins", "graph", "length", "number", "materials"];
-        for options in [&MESH[..], &SURFACE, &LOOK, &others] {
+        for options in [&MESH[..], &SURFACE, &LOOK[..3], &others] {
             given.refuse(options, "leaves of marks and veins", "--scan makes the surface that it finds")?;
         }
+        if given.has("texture")
+            && !["scan", "plain"].iter().any(|word| args.look.texture.as_os_str() == *word)
+        {
+            return Err(Failure::Bad(format!(
+                "--texture {}: a leaf of a scan has the colours of its points (scan) or is plain",
+                args.look.texture.display()
+            )));
+        }
+    } else if args.look.texture.as_os_str() == "scan" {
+        return Err(Failure::Bad(
+            "--texture scan is for leaves of scans: give one with --scan, or say veins or plain".into(),
+        ));
     }
     Ok(())
 }
@@ -158,7 +170,7 @@ fn check_used(args: &LeafArgs) -> Outcome {
 const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein", "wind"];
 /// What surface the blade is.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
-/// How the leaf is bent and painted.
+/// How the leaf is bent and painted, its paint last.
 const LOOK: [&str; 4] = ["curl", "wilt", "ball", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
@@ -340,13 +352,17 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let axes = files::axes(args.axes.up, args.axes.unit);
     let opened = files::open_cloud(path)?;
     let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, opened, &axes, &mut report));
-    let mut points = cloud?.points;
-    check_unit(args, &mut points, &mut report);
+    let mut cloud = cloud?;
+    args.given.only_if(!cloud.colors.is_empty(), &["texture"], "clouds with colours", "this one has none")?;
+    if args.look.texture.as_os_str() == "plain" {
+        cloud.colors.clear();
+    }
+    check_unit(args, &mut cloud.points, &mut report);
     let mut origin = Origin::default();
-    origin.bring(&mut points, &axes, &mut report);
+    origin.bring(&mut cloud.points, &axes, &mut report);
     let made = machine.with_progress("scan", |_| {
         let (name, spec) = (files::stem(path), ScanSpec::default());
-        burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
+        burgeon::make_leaf_from_scan(&name, &cloud, &spec, &machine.run())
     });
     let (mut made, found) = made.map_err(|e| failure(args, e))?;
     made.model.offset_m = origin.offset_m;

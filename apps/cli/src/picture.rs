@@ -96,7 +96,8 @@ pub(crate) fn with_dots(mut model: Model) -> Model {
         // More than 40,000 dots show nothing more.
         let step = part.mesh.positions.len().div_ceil(40_000).max(1);
         let mut dots = TriMesh::default();
-        for p in part.mesh.positions.iter().step_by(step) {
+        for (row, p) in part.mesh.positions.iter().enumerate().step_by(step) {
+            let color = part.mesh.colors.get(row).copied();
             let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
             let corners = [
                 DVec3::new(1.0, 1.0, 1.0),
@@ -105,6 +106,7 @@ pub(crate) fn with_dots(mut model: Model) -> Model {
                 DVec3::new(1.0, -1.0, -1.0),
             ];
             let [a, b, c, d] = corners.map(|q| dots.push(p + q * size));
+            dots.colors.extend(color.iter().flat_map(|c| [*c; 4]));
             dots.triangles.extend([[a, b, c], [a, d, b], [a, c, d], [b, d, c]]);
         }
         dots.compute_normals();

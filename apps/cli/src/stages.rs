@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use burgeon::bloom::{self, CleanSpec, Oddity, ScanOrgan, SegmentSpec, Stage};
 use burgeon::formats::{CloudFormat, ExportSpec};
 use burgeon::glam::DVec3;
-use burgeon::mesh::TriMesh;
+use burgeon::mesh::{PointCloud, TriMesh};
 use burgeon::{Report, Seed, Unit, UpAxis};
 use serde::{Deserialize, Serialize};
 
@@ -132,13 +132,13 @@ pub(crate) struct Options {
     pub(crate) split: bool,
 }
 
-/// Points of a scan or of a model, in metres, +Y up, and the model's faces.
+/// Points of a scan with their colours, or of a model, in metres, +Y up, and the model's faces.
 fn read_any(
     path: &Path,
     axes: &ExportSpec,
     origin: &mut Origin,
     warnings: &mut Vec<String>,
-) -> Outcome<(Vec<DVec3>, Option<TriMesh>)> {
+) -> Outcome<(PointCloud, Option<TriMesh>)> {
     let mut tell = |told: Vec<burgeon::Warning>| {
         warnings.extend(told.iter().map(|w| format!("{}: {w}", path.display())));
     };
@@ -169,18 +169,18 @@ fn read_any(
         }
         let points =
             mesh.positions.iter().map(|p| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
-        let points = points.collect();
-        return Ok((points, (!mesh.triangles.is_empty()).then_some(mesh)));
+        let cloud = PointCloud { points: points.collect(), ..PointCloud::default() };
+        return Ok((cloud, (!mesh.triangles.is_empty()).then_some(mesh)));
     };
     let opened = match stdin {
         Some((input, _)) => input,
         None => files::open_bytes(path)?,
     };
     let mut report = Report::default();
-    let mut points = files::read_cloud(path, (opened, format), axes, &mut report)?.points;
-    origin.bring(&mut points, axes, &mut report);
+    let mut cloud = files::read_cloud(path, (opened, format), axes, &mut report)?;
+    origin.bring(&mut cloud.points, axes, &mut report);
     tell(report.warnings);
-    Ok((points, None))
+    Ok((cloud, None))
 }
 
 /// A scan for comparison with what was loaded: its points, cleaned.
@@ -191,7 +191,8 @@ pub(crate) fn read_points(
     seed: Seed,
     machine: &Machine,
 ) -> Outcome<Vec<DVec3>> {
-    let (points, mesh) = read_any(path, &loaded.axes, &mut loaded.origin, &mut loaded.warnings)?;
+    let (PointCloud { points, .. }, mesh) =
+        read_any(path, &loaded.axes, &mut loaded.origin, &mut loaded.warnings)?;
     if !clean || mesh.is_some() {
         return Ok(points);
     }
@@ -208,13 +209,14 @@ fn prepare(
     seed: Seed,
     machine: &Machine,
     out: &mut Loaded,
-) -> Outcome<(Vec<DVec3>, Option<TriMesh>, StageReport)> {
+) -> Outcome<(PointCloud, Option<TriMesh>, StageReport)> {
     machine.cancel.check()?;
     let Loaded { warnings, origin, .. } = out;
-    let (mut points, mesh) = read_any(path, axes, origin, warnings)?;
+    let (mut cloud, mesh) = read_any(path, axes, origin, warnings)?;
     if mirror {
-        points.iter_mut().for_each(|p| *p = mirrored(*p));
+        cloud.points.iter_mut().for_each(|p| *p = mirrored(*p));
     }
+    let points = &cloud.points;
     // The box to keep is given in the coordinates of the file.
     let spec = spec
         .map(|s| CleanSpec { crop: s.crop.map(|c| c.map(|p| mirrored_if(mirror, origin.place(p)))), ..*s });
@@ -229,8 +231,8 @@ fn prepare(
         size_mm: [0.0; 3],
         organs: vec![],
     };
-    told.size_mm = (box_of(&points) * 1e3).to_array();
-    let size = box_of(&points).max_element();
+    told.size_mm = (box_of(points) * 1e3).to_array();
+    let size = box_of(points).max_element();
     // Between the smallest seedling and what anybody scans as a series.
     if size > 20.0 || (size > 0.0 && size < 5e-4) {
         warnings.push(format!(
@@ -239,8 +241,8 @@ fn prepare(
             path.display()
         ));
     }
-    let Some(spec) = spec.filter(|_| mesh.is_none()) else { return Ok((points, mesh, told)) };
-    let cleaned = bloom::clean(&points, &spec, seed, &machine.run())?;
+    let Some(spec) = spec.filter(|_| mesh.is_none()) else { return Ok((cloud, mesh, told)) };
+    let cleaned = bloom::clean(points, &spec, seed, &machine.run())?;
     told.cropped = cleaned.cropped;
     told.ground = cleaned.ground;
     told.outliers = cleaned.outliers;
@@ -281,8 +283,8 @@ fn prepare(
             points.len()
         ));
     }
-    let kept: Vec<DVec3> = cleaned.kept.into_iter().map(|i| points[i]).collect();
-    told.size_mm = (box_of(&kept) * 1e3).to_array();
+    let kept = cloud.select(&cleaned.kept);
+    told.size_mm = (box_of(&kept.points) * 1e3).to_array();
     Ok((kept, mesh, told))
 }
 
@@ -410,7 +412,7 @@ fn add_entry(
         crop: entry.crop.map(|c| c.map(place)),
         ..CleanSpec::default()
     };
-    let (points, mesh, mut told) =
+    let (PointCloud { points, colors, .. }, mesh, mut told) =
         prepare(&scan, entry.day, (&axes, entry.mirror), Some(&clean), seed, machine, out)?;
     let origin = out.origin;
     let near = |p: [f64; 3]| mirrored_if(entry.mirror, origin.place(place(p)));
@@ -443,7 +445,7 @@ fn add_entry(
     }
     if let Some(stage) = out.stages.last_mut() {
         for organ in found {
-            add_organ(stage, organ, entry.region);
+            add_organ(stage, organ.coloured(&colors), entry.region);
         }
     }
     Ok(())
@@ -462,6 +464,10 @@ fn add_organ(stage: &mut Stage, mut organ: ScanOrgan, region: Option<usize>) {
     match stage.organs.iter_mut().find(|o| o.name == organ.name) {
         Some(whole) => {
             whole.points.extend(organ.points);
+            whole.colors.extend(organ.colors);
+            if whole.colors.len() != whole.points.len() {
+                whole.colors.clear();
+            }
             whole.way.extend(organ.way);
             whole.rows = (0..whole.points.len()).collect();
             if region == 1 {
@@ -543,7 +549,7 @@ pub(crate) fn load_files(
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;
     for &(path, day) in shapes {
-        let (points, mesh, mut told) =
+        let (PointCloud { points, colors, .. }, mesh, mut told) =
             prepare(path, day, (axes, false), Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
@@ -558,6 +564,7 @@ pub(crate) fn load_files(
         if out.stages.is_empty() {
             out.mesh = mesh;
         }
+        let organs = organs.into_iter().map(|o| o.coloured(&colors)).collect();
         out.stages.push(Stage { day, organs });
     }
     // A scan that falls into stem and leaves cannot meet one that is a single organ.
@@ -567,7 +574,9 @@ pub(crate) fn load_files(
             .push("one shape is a single organ and the other is not: both are taken as one organ".into());
         for stage in &mut out.stages {
             let all: Vec<DVec3> = stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect();
-            stage.organs = vec![bloom::single_organ(&all, "organ", &spec).map_err(Failure::bloom(first))?];
+            let colors: Vec<[u8; 3]> = stage.organs.iter().flat_map(|o| o.colors.iter().copied()).collect();
+            let one = bloom::single_organ(&all, "organ", &spec).map_err(Failure::bloom(first))?;
+            stage.organs = vec![one.coloured(&colors)];
         }
         split = false;
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Tuple
 
 from . import _burgeon
 from .errors import SpecError
@@ -94,6 +94,20 @@ def points(scan: Any, name: str = "scan") -> "np.ndarray":
         row = int(np.argmin(np.isfinite(array).all(axis=1)))
         raise beyond(f"{name}[{row}]", array[row].tolist(), "finite")
     return array
+
+
+def coloured(scan: Any, name: str = "scan") -> "Tuple[np.ndarray, bytes]":
+    """Points of a scan as (n, 3) float64 and, of an array with red, green and blue (0 to 255) after them, those as bytes."""
+    import numpy as np
+
+    array = np.asarray(scan)
+    if array.ndim != 2 or array.shape[1] != 6:
+        return points(array, name), b""
+    colors = array[:, 3:]
+    if not ((colors >= 0) & (colors <= 255)).all():
+        row = int(np.argmin(((colors >= 0) & (colors <= 255)).all(axis=1)))
+        raise wrong(f"{name}[{row}]: a colour is red, green and blue", f"{name}[{row}]", colors[row].tolist(), "each 0 to 255")
+    return points(array[:, :3], name), np.ascontiguousarray(np.rint(colors), np.uint8).tobytes()
 
 
 def path(name: str, value: Any) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import beyond, flag, number, path, points, whole, word, wrong
+from ._given import beyond, coloured, flag, number, path, whole, word, wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -102,23 +102,31 @@ class Law:
 
 
 def scans_of(
-    name: str, scans: "Mapping[float, Any]", unit: str, up: str, single: bool, seed: int, budget: float
+    name: str,
+    scans: "Mapping[float, Any]",
+    unit: str,
+    up: str,
+    single: bool,
+    seed: int,
+    budget: float,
+    texture: str = "scan",
 ) -> "_burgeon.RawDays":
     """Scans of several days, in the order of the days."""
     rows = []
     for key, cloud in scans.items():
-        row: "Dict[str, Any]" = {"day": number("scans: a day", key, -1e4, 1e4, "d"), "file": None, "points": b""}
+        row: "Dict[str, Any]" = {"day": number("scans: a day", key, -1e4, 1e4, "d"), "file": None, "points": b"", "colors": b""}
         if isinstance(cloud, (str, os.PathLike)):
             file = path("scans", cloud)
             with open(file, "rb") as read:
                 row["file"] = (read.read(), os.path.basename(file))
         else:
-            row["points"] = points(cloud, f"scans[{key}]").tobytes()
+            found, row["colors"] = coloured(cloud, f"scans[{key}]")
+            row["points"] = found.tobytes()
         rows.append(row)
     rows.sort(key=lambda row: row["day"])
     if not rows:
         raise wrong("there are no scans: give a dict from days to clouds", "scans", "{}", "one day or more")
-    days = (word("unit", unit), word("up", up))
+    days = (word("unit", unit), word("up", up), texture)
     seed, budget = whole("seed", seed, 0, 2**64 - 1), number("budget", budget, 1, 1000)
     return _burgeon.RawDays(word("name", name), rows, days, flag("single", single), seed, budget)
 

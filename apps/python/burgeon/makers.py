@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple
 
 from . import _burgeon
 from ._given import beyond, number, whole, word, wrong
+from ._given import coloured as _coloured
 from ._given import path as path_of
 from ._given import points as _points
 from .law import Law, scans_of
@@ -116,16 +117,15 @@ def bloom(
     fitted law that sets the pace; ``fields``: ``schema("flower")``, docs/bloom.md.
 
     Of scans, ``spec`` is a dict from days to clouds of points, each a file (``.xyz``, ``.ply``, ``.pcd``, ``.las``) or an array
-    (points, 3), in ``unit`` (m, cm, mm) with ``up`` (y, z); ``day``: default the last; ``single``: each is one organ, not a stem
-    with leaves; ``law``: that of ``Law.fit_scans``, default an even pace.
+    (points, 3), or (points, 6) with red, green and blue from 0 to 255, in ``unit`` (m, cm, mm) with ``up`` (y, z); ``day``:
+    default the last; ``single``: each is one organ, not a stem with leaves; ``law``: that of ``Law.fit_scans``, default an even
+    pace; ``texture``: ``scan`` (the colours of the clouds, where they have some; the default) or ``plain``.
     """
     if not isinstance(law, (Law, type(None))):
         raise TypeError(f"law must be a Law, not {law!r}")
     if isinstance(spec, Mapping) and spec and not any(isinstance(key, str) for key in spec):
-        if fields:
-            field = next(iter(fields))
-            raise wrong(f"{field} is of flowers; a plant of scans has no fields", field, fields[field], "left out")
-        days = scans_of("scan", cast("Mapping[float, Any]", spec), unit, up, single, seed, budget)
+        texture = _scan_texture(fields, "flowers; a plant of scans has no fields but texture")
+        days = scans_of("scan", cast("Mapping[float, Any]", spec), unit, up, single, seed, budget, texture)
         when = max(map(float, spec)) if day is None else number("day", day, -1e4, 1e4, "d")
         return Plant(days.plant(when, None if law is None else law._raw))
     for name, value, usual in (("unit", unit, "m"), ("up", up, "y"), ("single", single, False)):
@@ -156,7 +156,8 @@ def leaf(
     **fields: Any,
 ) -> Plant:
     """A leaf (``burgeon leaf``): of measured marks or chief veins (``.csv``), of a vein graph (``.json``), of a scan
-    (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres), or of numbers.
+    (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres, or (points, 6) with red, green and blue
+    from 0 to 255), or of numbers. Of a scan, ``texture`` is ``scan`` (its colours, where it has some; the default) or ``plain``.
 
     ``venation``: ``palmate`` or ``parallel``, a leaf of chief veins that start together: how many ``veins`` (odd),
     ``length`` in metres, of palmate leaves the ``depth`` of the notches (0 to 0.9), and ``side_veins`` (0 to 12);
@@ -205,11 +206,24 @@ def leaf(
 
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
     """The leaf of a cloud of points."""
-    if fields:
-        field = next(iter(fields))
-        raise wrong(f"{field} is of measured leaves; a leaf of a scan has no fields", field, fields[field], "left out")
-    rows: "List[List[float]]" = _points(points).tolist() if file is None else []
-    return Plant(_burgeon.leaf_of_scan(name, file, rows, number("budget", budget, 1, 1000)))
+    texture = _scan_texture(fields, "measured leaves; a leaf of a scan has no fields but texture")
+    rows: "List[List[float]]" = []
+    colors = b""
+    if file is None:
+        found, colors = _coloured(points)
+        rows = found.tolist()
+    return Plant(_burgeon.leaf_of_scan(name, file, (rows, colors), texture, number("budget", budget, 1, 1000)))
+
+
+def _scan_texture(fields: "Mapping[str, Any]", others: str) -> str:
+    """The one field of what is made of scans."""
+    for field, value in fields.items():
+        if field != "texture":
+            raise wrong(f"{field} is of {others}", field, value, "left out")
+    texture = word("texture", fields.get("texture", "scan"))
+    if texture not in ("scan", "plain"):
+        raise wrong(f"texture: {texture!r} is no texture of a scan", "texture", texture, "scan or plain")
+    return texture
 
 
 def scan(

@@ -11,7 +11,7 @@ use crate::compute::{aside, compute};
 use crate::fault::{beyond, unusable};
 use crate::held::Held;
 use crate::make::RawLaw;
-use crate::model::axes;
+use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
 /// The scan of a day: the bytes of a file and its name, or points as bytes of `f64`, three each.
@@ -23,6 +23,9 @@ pub(crate) struct OfDay {
     file: Option<(Vec<u8>, String)>,
     #[pyo3(item)]
     points: Vec<u8>,
+    /// Of points that are given: bytes, three each; none without colours.
+    #[pyo3(item)]
+    colors: Vec<u8>,
 }
 
 /// Scans of several days, their organs found again from day to day.
@@ -35,13 +38,13 @@ pub(crate) struct RawDays {
 
 #[pymethods]
 impl RawDays {
-    /// Of scans in the order of their days, in a unit and with an axis that is up; `single`: each is one organ.
+    /// Of scans in the order of their days, in a unit, with an axis that is up and a texture (`scan`, `plain`); `single`: each is one organ.
     #[new]
     fn new(
         py: Python<'_>,
         name: String,
         scans: Vec<OfDay>,
-        unit_and_up: (String, String),
+        unit_up_texture: (String, String, String),
         single: bool,
         seed: u64,
         budget: f64,
@@ -49,15 +52,17 @@ impl RawDays {
         if !(1.0..=1000.0).contains(&budget) {
             return Err(beyond("budget", budget, "1 to 1000"));
         }
-        let spec = axes(&unit_and_up.0, &unit_and_up.1)?;
+        let (unit, up, texture) = unit_up_texture;
+        let spec = axes(&unit, &up)?;
         let mut clouds = Vec::new();
         for scan in scans {
-            let points = match scan.file {
+            let mut cloud = match scan.file {
                 None => {
                     let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
                     let row =
                         |row: &[u8]| DVec3::new(number(&row[..8]), number(&row[8..16]), number(&row[16..]));
-                    scan.points.chunks_exact(24).map(|r| spec.inward(row(r))).collect()
+                    let points = scan.points.chunks_exact(24).map(|r| spec.inward(row(r))).collect();
+                    PointCloud { points, colors: colours(&scan.colors), offset_m: None }
                 }
                 Some((bytes, file)) => {
                     let extension = file.rsplit('.').next().unwrap_or_default();
@@ -69,15 +74,17 @@ impl RawDays {
                     let read = aside(py, move || {
                         burgeon::formats::read_cloud(&*bytes, format, &spec, &mut Report::default())
                     })?;
-                    read.map_err(|e| unusable(py, &format!("{file}: {e}")))?.points
+                    read.map_err(|e| unusable(py, &format!("{file}: {e}")))?
                 }
             };
-            clouds.push((scan.day, points));
+            if texture == "plain" {
+                cloud.colors.clear();
+            }
+            clouds.push((scan.day, cloud));
         }
         // All by the same, so that they stay where they are to one another.
-        let offset =
-            clouds.first().and_then(|(_, points)| PointCloud::far_offset(points)).unwrap_or_default();
-        clouds.iter_mut().flat_map(|(_, points)| points).for_each(|p| *p -= offset);
+        let offset = clouds.first().and_then(|(_, c)| PointCloud::far_offset(&c.points)).unwrap_or_default();
+        clouds.iter_mut().flat_map(|(_, c)| &mut c.points).for_each(|p| *p -= offset);
         let made = compute(py, budget, |run| ScannedDays::new(&clouds, single, Seed::new(seed), run))?;
         let days = made.map_err(|e| unusable(py, &format!("{name}: {e}")))?;
         Ok(Self { name, days, budget })

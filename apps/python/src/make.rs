@@ -12,6 +12,7 @@ use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, MarksAxes, ModelF
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{Drawing, StrokeClass};
 use burgeon::leaf::{LeafSpec, PalmateSpec, ParallelSpec, Rays, ScanSpec};
+use burgeon::mesh::PointCloud;
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
@@ -21,7 +22,7 @@ use crate::asked::Asked;
 use crate::compute::{aside, compute};
 use crate::fault::{beyond, choice, refused, unusable, wrong};
 use crate::held::{Held, run};
-use crate::model::axes;
+use crate::model::{axes, colours};
 use crate::plant::RawPlant;
 
 /// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.
@@ -250,17 +251,23 @@ pub(crate) fn leaf_of_veins(py: Python<'_>, veins: Veins, asked: Asked<'_>) -> P
     Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?, None, budget)))
 }
 
-/// A leaf of a scan: points in metres, or the bytes of a file, its extension and its unit.
+/// A leaf of a scan: points in metres, with their colours as bytes if they have some, or the bytes of a file, its extension and
+/// its unit; and its texture (`scan`, `plain`).
 #[pyfunction]
 pub(crate) fn leaf_of_scan(
     py: Python<'_>,
     name: &str,
     file: Option<(Vec<u8>, String, String)>,
-    points: Vec<[f64; 3]>,
+    points: (Vec<[f64; 3]>, Vec<u8>),
+    texture: &str,
     budget: f64,
 ) -> PyResult<RawPlant> {
-    let points = match file {
-        None => points.into_iter().map(DVec3::from_array).collect(),
+    let mut cloud = match file {
+        None => {
+            let (points, colors) = points;
+            let points = points.into_iter().map(DVec3::from_array).collect();
+            PointCloud { points, colors: colours(&colors), offset_m: None }
+        }
         Some((bytes, extension, unit)) => {
             let format = CloudFormat::from_extension(&extension);
             let format = format
@@ -269,14 +276,17 @@ pub(crate) fn leaf_of_scan(
             let read = aside(py, move || {
                 burgeon::formats::read_cloud(&*bytes, format, &axes, &mut Report::default())
             })?;
-            read.map_err(|e| unusable(py, &format!("{name}: {e}")))?.points
+            read.map_err(|e| unusable(py, &format!("{name}: {e}")))?
         }
     };
+    if texture == "plain" {
+        cloud.colors.clear();
+    }
     if !(1.0..=1000.0).contains(&budget) {
         return Err(beyond("budget", budget, "1 to 1000"));
     }
     let spec = ScanSpec::default();
-    let made = compute(py, budget, |run| burgeon::make_leaf_from_scan(name, &points, &spec, run))?;
+    let made = compute(py, budget, |run| burgeon::make_leaf_from_scan(name, &cloud, &spec, run))?;
     Ok(RawPlant(Held::lone(made.map_err(|e| refused(py, &e))?.0, None, budget)))
 }
 

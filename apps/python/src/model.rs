@@ -51,6 +51,11 @@ impl RawModel {
     }
 }
 
+/// Colours of points, from bytes of three each.
+pub(crate) fn colours(bytes: &[u8]) -> Vec<[u8; 3]> {
+    bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
+}
+
 /// Unit and up axis of a file, by their words.
 pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
     let unit = match unit {

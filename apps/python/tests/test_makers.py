@@ -234,9 +234,24 @@ def test_a_plant_of_scans_of_several_days_is_the_command_lines(cli, tmp_path):
     assert bg.bloom(clouds, single=True).digest == bg.bloom(clouds, 3.0, single=True).digest
 
 
+def test_what_is_made_of_a_scan_has_its_colours():
+    cloud = leaf_cloud(0.03)
+    brown = np.column_stack([cloud, np.tile([120, 80, 40], (len(cloud), 1))])
+
+    def painted(plant):
+        pictures = [part.texture for part in plant.model.parts if part.texture is not None]
+        return [np.asarray(p)[..., :3].reshape(-1, 3).mean(axis=0).round().tolist() for p in pictures]
+
+    for make in (bg.leaf, lambda scan, **fields: bg.bloom({0: scan}, single=True, **fields)):
+        assert painted(make(brown)) == [[120, 80, 40]]
+        assert make(brown, texture="plain").digest == make(cloud).digest and painted(make(cloud)) == []
+
+
 @pytest.mark.parametrize(
     "call, field",
     [
+        (lambda: bg.leaf(np.full((50, 6), 300.0)), "scan[0]"),
+        (lambda: bg.leaf(leaf_cloud(0.02), texture="veins"), "texture"),
         (lambda: bg.bloom({0: leaf_cloud(0.02)}, stalk_m=0.2), "stalk_m"),
         (lambda: bg.bloom("rose", unit="mm"), "unit"),
         (lambda: bg.bloom({0: np.zeros((5, 2))}), "scans[0]"),

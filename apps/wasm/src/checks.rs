@@ -46,7 +46,7 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
         "xyz" => {
             let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };
             let cloud = formats::read_cloud(bytes, CloudFormat::Xyz, &axes, &mut report)?;
-            burgeon::make_leaf_from_scan(name, &cloud.points, &ScanSpec::default(), &run)?.0.item
+            burgeon::make_leaf_from_scan(name, &cloud, &ScanSpec::default(), &run)?.0.item
         }
         "json" => {
             let marks = formats::read_vein_graph(bytes)?.graph.marks(&mut report)?;

@@ -124,7 +124,7 @@ impl Bough<'_> {
         }
         let points = grid.points.iter().map(|&p| self.seat.at(p)).collect();
         let Grid { across, along, colors, .. } = grid;
-        let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
+        let sheet = Sheet { points, across, along, colors, veins: Venation::default(), form: None };
         if let Some((sheet, frame)) = sheet.framed() {
             self.push(Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
         }

@@ -512,6 +512,7 @@ mod tests {
         let points = way.iter().map(|w| DVec3::new(w * length, 0.3 * w * length, 0.0) + DVec3::ONE).collect();
         let organ = ScanOrgan {
             name: "petal".into(),
+            colors: Vec::new(),
             rows: (0..900).collect(),
             points,
             way,

@@ -19,6 +19,7 @@
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
 //! | `odd` | [`odd_stages`]: scans that are mirrored, lie down, or have another scale |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
+//! | `coloured` | [`OrganPoints`]: points of a day with their colours |
 //! | `motion` | [`Motion`]: the shape at any day |
 //! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]: what can be asked |
 //! | `flower`, `species` | whole flowers that open and wilt, day -> `Plant` |
@@ -34,6 +35,7 @@ mod blades;
 mod centre;
 mod clean;
 mod cluster;
+mod coloured;
 mod error;
 mod errors;
 mod flower;
@@ -63,6 +65,7 @@ mod whorl;
 
 pub use blades::blades;
 pub use clean::{CleanSpec, Cleaned, clean, largest_thing, on_table};
+pub use coloured::OrganPoints;
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};

@@ -3,6 +3,7 @@
 use base::Run;
 use glam::DVec3;
 
+use crate::coloured;
 use crate::{
     BloomError, GrowthLaw, Lattice, Quantity, RegisterSpec, Registration, ScanOrgan, Stage, Weights,
     match_organs, register,
@@ -28,6 +29,8 @@ struct Segment {
     fit: Registration,
     /// Place of each control point along the organ, 0 to 1.
     along: Vec<f64>,
+    /// Colours of the points at the beginning and, as those nearest to where they get have them, at the end.
+    colors: [Vec<[u8; 3]>; 2],
 }
 
 /// An organ that is new at a stage grows out of its base over the time before.
@@ -40,6 +43,7 @@ struct Birth {
     /// The row of an older organ nearest to the base: it carries the base along, at this distance at birth.
     bearer: Option<usize>,
     gap: DVec3,
+    colors: Vec<[u8; 3]>,
 }
 
 /// One organ over all days.
@@ -140,7 +144,7 @@ impl Motion {
         let start = self.points;
         self.points += organ.points.len();
         let day = |k: usize| stages[k].day - stages[0].day;
-        let mut points = organ.points.clone();
+        let (mut points, mut colors) = (organ.points.clone(), organ.colors.clone());
         let mut base = organ.base;
         let mut at = begin;
         let mut segments = Vec::new();
@@ -152,7 +156,9 @@ impl Motion {
             self.residuals.push((organ.name.clone(), day(at), day(k), fit.residual));
             points = weights.apply(&fit.last, run)?;
             base = next.base;
-            segments.push(Segment { from: day(at), to: day(k), weights, fit, along });
+            let there = coloured::nearest(&points, &next.points, &next.colors, run);
+            let colors = [core::mem::replace(&mut colors, there.clone()), there];
+            segments.push(Segment { from: day(at), to: day(k), weights, fit, along, colors });
             at = k;
         }
         let mut born = None;
@@ -162,7 +168,8 @@ impl Motion {
             let bearer = (0..start).min_by(|a, b| gap(a).total_cmp(&gap(b)));
             let (from, to) = (day(begin - 1), day(begin));
             let gap = bearer.map_or(DVec3::ZERO, |row| organ.base - older[row]);
-            born = Some(Birth { from, to, base: organ.base, points: organ.points.clone(), bearer, gap });
+            let (points, colors) = (organ.points.clone(), organ.colors.clone());
+            born = Some(Birth { from, to, base: organ.base, points, bearer, gap, colors });
         } else if segments.is_empty() {
             // Nothing is known of it later: it stays.
             let always = f64::NEG_INFINITY;
@@ -174,6 +181,7 @@ impl Motion {
                 points,
                 bearer: None,
                 gap: DVec3::ZERO,
+                colors: organ.colors.clone(),
             });
         }
         let rows = start..self.points;
@@ -190,6 +198,24 @@ impl Motion {
     /// There is no point.
     pub fn is_empty(&self) -> bool {
         self.points == 0
+    }
+
+    /// The colours of the points of each organ at `day` since the first stage, in the order of [`organs`](Self::organs): between
+    /// two stages a mean of both, by the time; before the first and after the last those of the nearest. Empty for an organ
+    /// whose stages have none.
+    pub fn colors(&self, day: f64) -> Vec<Vec<[u8; 3]>> {
+        let of = |track: &Track| {
+            let first_from = track.segments.first().map_or(f64::INFINITY, |s| s.from);
+            match &track.born {
+                Some(b) if day < first_from => b.colors.clone(),
+                _ => {
+                    let segment = track.segments.iter().find(|s| day <= s.to).or(track.segments.last());
+                    let mixed = |s: &Segment| coloured::mixed(&s.colors, (day - s.from) / (s.to - s.from));
+                    segment.map(mixed).unwrap_or_default()
+                }
+            }
+        };
+        self.tracks.iter().map(of).collect()
     }
 
     /// All points at `day` since the first stage: the organs of the first stage in order, then those that came

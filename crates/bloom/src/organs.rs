@@ -74,7 +74,7 @@ impl Bed<'_> {
     /// A petal whose points are those of the plant.
     pub(crate) fn loose_petal(&mut self, kind: OrganKind, grid: Grid) {
         let Grid { points, across, along, colors } = grid;
-        let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
+        let sheet = Sheet { points, across, along, colors, veins: Venation::default(), form: None };
         if let Some((sheet, frame)) = sheet.framed() {
             self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
         }
@@ -86,7 +86,7 @@ impl Bed<'_> {
         // Local z is the flower's y.
         let points = points.map(|p| DVec3::new(p.z, p.x, p.y)).collect();
         let Grid { across, along, colors, .. } = grid;
-        let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
+        let sheet = Sheet { points, across, along, colors, veins: Venation::default(), form: None };
         let [right, up, normal] = [DVec3::Z, DVec3::X, DVec3::Y].map(|d| self.place.1 * d);
         let frame = Frame { origin: self.at(foot), right, along: up, normal };
         self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);

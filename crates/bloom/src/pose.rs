@@ -6,7 +6,8 @@ use glam::{DQuat, DVec3};
 
 use crate::thin::thin;
 use crate::{
-    BloomError, GrowthLaw, Motion, MotionSpec, RegisterSpec, ScanOrgan, ShapeError, Stage, Weights, register,
+    BloomError, GrowthLaw, Motion, MotionSpec, OrganPoints, RegisterSpec, ScanOrgan, ShapeError, Stage,
+    Weights, register,
 };
 
 /// A turn about a place and a shift: `p -> to + turn * (p - from)`.
@@ -129,9 +130,6 @@ pub struct Settled {
 /// Where a point is on one day and on the next.
 type Places = (DVec3, DVec3);
 
-/// The organs of a day, each with its points.
-type Organs = Vec<(String, Vec<DVec3>)>;
-
 /// Points of an organ that pose is estimated from: more change no figure that is printed.
 const SAMPLE: usize = 1500;
 
@@ -253,19 +251,20 @@ impl Settled {
         spec: &MotionSpec,
         day: f64,
         run: &Run<'_>,
-    ) -> Result<Organs, BloomError> {
+    ) -> Result<Vec<OrganPoints>, BloomError> {
         let [i, j] = self.round(day);
         let (a, b) = (&self.stages[i], &self.stages[j]);
         let begin = self.stages.first().map_or(0.0, |s| s.day);
-        let carried = |first: &Stage, last: &Stage| -> Result<Organs, BloomError> {
+        let carried = |first: &Stage, last: &Stage| -> Result<Vec<OrganPoints>, BloomError> {
             let pair = [first.clone(), last.clone()];
             let motion = Motion::since(first.day - begin, &pair, law.clone(), *spec, run)?;
             let points = motion.at(day - first.day, run)?;
-            Ok(motion
-                .organs
-                .iter()
-                .map(|(name, rows)| (name.clone(), points[rows.clone()].to_vec()))
-                .collect())
+            let of = |((name, rows), colors): (&(String, core::ops::Range<usize>), _)| OrganPoints {
+                name: name.clone(),
+                points: points[rows.clone()].to_vec(),
+                colors,
+            };
+            Ok(motion.organs.iter().zip(motion.colors(day - first.day)).map(of).collect())
         };
         let has = |s: &Stage, name: &str| s.organs.iter().any(|o| o.name == name);
         if day > b.day {
@@ -273,30 +272,33 @@ impl Settled {
         }
         let mut out = carried(a, b)?;
         // Before its first scan nothing is known of a new organ.
-        out.retain(|o| day > a.day || has(a, &o.0));
+        out.retain(|o| day > a.day || has(a, &o.name));
         if day < a.day {
             return Ok(out);
         }
-        for (name, points) in &mut out {
-            if let Some(whole) = b.organs.iter().find(|o| o.name == *name && !has(a, name)) {
-                *points = as_dense(points, &whole.points);
+        for organ in &mut out {
+            let new = !has(a, &organ.name);
+            if let Some(whole) = b.organs.iter().find(|o| new && o.name == organ.name) {
+                let step = as_dense(&organ.points, &whole.points);
+                organ.points = organ.points.iter().copied().step_by(step).collect();
+                organ.colors = organ.colors.iter().copied().step_by(step).collect();
             }
         }
         let mut shared = b.clone();
         shared.organs.retain(|o| has(a, &o.name));
-        for (name, points) in carried(&shared, a)? {
-            if let Some(organ) = out.iter_mut().find(|o| o.0 == name && has(b, &name)) {
-                organ.1.extend(points);
+        for more in carried(&shared, a)? {
+            if let Some(organ) = out.iter_mut().find(|o| o.name == more.name && has(b, &more.name)) {
+                organ.add(more);
             }
         }
         Ok(out)
     }
 }
 
-/// A smaller copy of an organ with its points a unit of area: as many as the square of its size allows.
-fn as_dense(small: &[DVec3], whole: &[DVec3]) -> Vec<DVec3> {
+/// Every which point of a smaller copy of an organ is to stay for as many a unit of area: as the square of its size allows.
+fn as_dense(small: &[DVec3], whole: &[DVec3]) -> usize {
     let share = (extent(small) / extent(whole).max(1e-12)).clamp(0.0, 1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the number of points")]
     let step = (1.0 / (share * share).max(1e-9)).min(small.len() as f64).max(1.0) as usize;
-    small.iter().copied().step_by(step).collect()
+    step
 }

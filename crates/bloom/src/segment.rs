@@ -19,6 +19,8 @@ pub struct ScanOrgan {
     pub rows: Vec<usize>,
     /// The points, metres.
     pub points: Vec<DVec3>,
+    /// Colours of the points, sRGB bytes; empty or one a point.
+    pub colors: Vec<[u8; 3]>,
     /// Way along the organ from its base, 0 to 1, one a point.
     pub way: Vec<f64>,
     /// Where it sits on its bearer.
@@ -28,6 +30,14 @@ pub struct ScanOrgan {
 }
 
 impl ScanOrgan {
+    /// With the colours of the cloud that it was cut from; without, if there is not one a point.
+    #[must_use]
+    pub fn coloured(mut self, colors: &[[u8; 3]]) -> Self {
+        let own: Vec<[u8; 3]> = self.rows.iter().filter_map(|&row| colors.get(row).copied()).collect();
+        self.colors = if own.len() == self.points.len() { own } else { Vec::new() };
+        self
+    }
+
     /// Rows of `points` by region: equal parts of the way from base to tip, base first.
     pub fn regions(&self, count: usize) -> Vec<Vec<usize>> {
         let count = count.max(1);

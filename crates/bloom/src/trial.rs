@@ -105,9 +105,9 @@ fn trial(
     let law = fitted.unwrap_or_else(|| even.clone());
     let pose = settled.pose(day);
     let model = settled.day(&law, spec, day, run)?;
-    let model = model.into_iter().flat_map(|o| o.1).map(|p| pose.apply(p)).collect();
+    let model = model.into_iter().flat_map(|o| o.points).map(|p| pose.apply(p)).collect();
     let plain = Settled::unmoved(rest).day(&even, spec, day, run)?;
-    let plain = plain.into_iter().flat_map(|o| o.1).collect();
+    let plain = plain.into_iter().flat_map(|o| o.points).collect();
     let away = |s: &&Stage| (s.day - day).abs();
     let nearest = rest.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
     let nearest = nearest.map(all).unwrap_or_default();

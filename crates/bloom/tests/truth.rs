@@ -27,6 +27,7 @@ fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
         // The joint itself, and the way that the sheet knows.
         ScanOrgan {
             name: format!("petal-{}", k + 1),
+            colors: Vec::new(),
             rows: (0..at.len()).collect(),
             base: at[0],
             tip: at[at.len() - 1],

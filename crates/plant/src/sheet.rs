@@ -90,6 +90,9 @@ pub struct Sheet {
     pub colors: Vec<[f32; 3]>,
     /// Its veins.
     pub veins: Venation,
+    /// The number of a texture of its own, from 0, as that of a [`SplineBlade`], whose numbers they share; its veins are
+    /// painted with it. `None` for none.
+    pub form: Option<u32>,
 }
 
 impl Venation {
@@ -164,7 +167,7 @@ impl SplineBlade {
         let (us, vs) = self.grid_at(2);
         let points: Vec<DVec3> = self.surface.grid(&us, &vs).iter().map(|p| p.position).collect();
         let veins = Venation::default();
-        let sheet = Sheet { points, across: us, along: vs, colors: vec![], veins };
+        let sheet = Sheet { points, across: us, along: vs, colors: vec![], veins, form: None };
         area(&sheet.points, sheet.triangles())
     }
 
@@ -268,6 +271,9 @@ impl Digestible for SplineBlade {
 impl Digestible for Sheet {
     fn digest(&self, d: &mut Digest) {
         d.add(&self.points).add(&self.across).add(&self.along).add(&self.colors).add(&self.veins);
+        if let Some(form) = self.form {
+            d.add(&form);
+        }
     }
 }
 

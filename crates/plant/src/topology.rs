@@ -40,6 +40,9 @@ pub struct Axis {
     pub nodes: Range<u32>,
     /// The stroke it was read from, by index in the drawing; `None` for what the program grew.
     pub source: Option<u32>,
+    /// Its colours at even shares of its length, base first, linear RGB; empty for one whose surface tells. Of stems and
+    /// stalks.
+    pub colors: Vec<[f32; 3]>,
 }
 
 impl Axis {
@@ -109,7 +112,7 @@ impl Plant {
         self.nodes.position.extend_from_slice(points);
         self.nodes.radius_m.extend(points.iter().map(|_| 0.0));
         self.nodes.axis.extend(points.iter().map(|_| id));
-        self.axes.push(Axis { kind, bearer, order, key, nodes: start..end, source });
+        self.axes.push(Axis { kind, bearer, order, key, nodes: start..end, source, colors: Vec::new() });
         id
     }
 
@@ -199,6 +202,9 @@ impl Digestible for Plant {
         for a in &self.axes {
             d.add(&(a.kind as u8)).add(&a.bearer.map(NodeId::raw)).add(&a.order).add(&a.key);
             d.add(&a.nodes.start).add(&a.nodes.end).add(&a.source);
+            if !a.colors.is_empty() {
+                d.add(&a.colors);
+            }
         }
         d.add(&self.nodes.position).add(&self.nodes.radius_m);
         d.add(&self.organs).add(&self.flowers).add(&self.shapes).add(&self.paint);

@@ -20,6 +20,7 @@ pub(crate) struct Branch {
     pub(crate) kind: AxisKind,
     pub(crate) key: u64,
     pub(crate) source: Option<u32>,
+    pub(crate) colors: Vec<[f32; 3]>,
     pub(crate) bearer: Option<At>,
     pub(crate) points: Vec<DVec3>,
     pub(crate) radii: Vec<f64>,
@@ -87,6 +88,7 @@ impl Draft {
                 kind: axis.kind,
                 key: axis.key,
                 source: axis.source,
+                colors: axis.colors.clone(),
                 bearer: axis.bearer.and_then(at),
                 points: plant.axis_points(id).to_vec(),
                 radii: plant.axis_radii(id).to_vec(),
@@ -162,6 +164,7 @@ impl Draft {
             let id = plant.add_axis(branch.kind, bearer, branch.key, &points, branch.source);
             let rows = plant.axis(id).nodes.clone();
             plant.nodes.radius_m[rows.start as usize..].copy_from_slice(&branch.radii);
+            plant.axes[id.index()].colors.clone_from(&branch.colors);
             start[b] = Some(rows.start);
         }
         let seated = |at: Option<At>| at.map(|at| node_of(&start, at));
@@ -263,6 +266,14 @@ impl Draft {
         let (end, along) = (self.branches[b].points[last], self.branches[b].tangent(last));
         self.branches[b].points.truncate(last + 1);
         self.branches[b].radii.truncate(last + 1);
+        let kept = self.branches[b].length() / whole;
+        let colors = &mut self.branches[b].colors;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most as many as there are"
+        )]
+        colors.truncate((colors.len() as f64 * kept).ceil().max(1.0) as usize);
         let slack = self.branches[b].radii[last];
         self.drop_fallen(|p| p.branch == b && p.node > last);
         for o in &mut self.organs {

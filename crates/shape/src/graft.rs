@@ -161,6 +161,7 @@ fn graft(
             kind,
             key: seed.child(axis.key).number(),
             source: None,
+            colors: Vec::new(),
             bearer: Some(bearer.unwrap_or(at)),
             points,
             radii,

@@ -179,6 +179,7 @@ fn on_ground(draft: &mut Draft, foot: DVec3, habit: &Habit, bench: &Bench<'_>) -
         kind,
         key: 0,
         source: None,
+        colors: Vec::new(),
         bearer: None,
         points: vec![foot, first],
         radii: vec![habit.tip_m; 2],

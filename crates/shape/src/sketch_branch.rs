@@ -82,6 +82,7 @@ pub(crate) fn add(
         kind: kind_on(draft.branches[host].kind),
         key: own.number(),
         source: None,
+        colors: Vec::new(),
         bearer: Some(at),
         radii: radii.collect(),
         points: course,

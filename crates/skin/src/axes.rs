@@ -5,6 +5,7 @@ use glam::DVec3;
 use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
+use crate::coloured::Coloured;
 use crate::fork::{Bearer, Collar, reach};
 use crate::rings::{drawn, planes, rings};
 use crate::sleeve::{Circle, Ribs, Sleeve, drop_flat};
@@ -164,6 +165,7 @@ pub(crate) fn tubes<'p>(
         2 * u64::from(*sides) * rows
     });
     run.budget.check(Counted::Triangles, sleeves.sum(), crate::FEWER)?;
+    let coloured = Coloured::of(plant);
     let tubes = grouped(run, chains.len(), |i| {
         let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
         let bearer = hosts[i].and_then(|(host, sample)| {
@@ -185,6 +187,9 @@ pub(crate) fn tubes<'p>(
         let traced = traced.filter(|t| chain.axes.iter().all(|&a| t.has(plant.axis(a).source)));
         if let Some(traced) = traced {
             traced.tube(&mut mesh, spine);
+        }
+        if let Some(coloured) = &coloured {
+            coloured.tube(&mut mesh, &chain.axes, spine);
         }
         Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
     })?;

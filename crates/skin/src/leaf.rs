@@ -1,6 +1,6 @@
 //! Blades that are surfaces -> triangles: tubes of the veins, grid of the blade, at any resolution.
 
-use geom::{BallBSpline, BallTubeSpec, subdivided};
+use geom::{BallBSpline, BallTubeSpec, KdTree, subdivided};
 use glam::DVec3;
 use mesh::TriMesh;
 use plant::{Chart, Netted, Sheet, SplineBlade, VeinShade, Venation};
@@ -110,6 +110,7 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
         along: along.iter().map(|&i| sheet.along[i]).collect(),
         colors: Vec::new(),
         veins: Venation::default(),
+        form: None,
     };
     for k in along.iter().flat_map(|i| across.iter().map(move |j| i * columns + j)) {
         thin.points.push(sheet.points[k]);
@@ -123,6 +124,12 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
     out.blade_faces = across.len().saturating_sub(1) * along.len().saturating_sub(1);
     mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::sleeve::index)));
     mesh.colors = thin.colors;
+    if sheet.form.is_some() {
+        // Painted as the place of the blade that each vertex is nearest to.
+        let tree = KdTree::new(&thin.points);
+        let uv = |p: &[f32; 3]| tree.nearest(wide(*p), f64::INFINITY).map_or([0.5; 2], |k| mesh.uvs[k]);
+        out.veins.uvs = out.veins.positions.iter().map(uv).collect();
+    }
     // Cells without area stay: a bud has the triangles of the bloom.
     mesh.compute_normals();
     out

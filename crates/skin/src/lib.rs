@@ -17,6 +17,7 @@
 //! | `needles` | shoots in needles, painted on cards |
 //! | `shoots` | [`FoliageStyle`], [`Shoots`]: leaves as cards, several on one |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
+//! | `coloured` | stems in colours of their own |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
 //! | `wind`, `sway` | weights and pivots for wind; [`sway()`]: joints that move by them |
@@ -26,6 +27,7 @@ mod axes;
 
 mod blade;
 mod body;
+mod coloured;
 mod copies;
 mod fork;
 mod layout;
@@ -60,7 +62,7 @@ pub use organs::KeptShapes;
 pub use pictures::SurfacePictures;
 pub use shoots::{FoliageStyle, Shoots};
 pub use sway::{gust, sway};
-pub use texture::{LeafColours, swatch, vein_texture};
+pub use texture::{CloudColours, LeafColours, swatch, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 

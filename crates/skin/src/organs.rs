@@ -71,14 +71,18 @@ pub(crate) fn organs(
         let shape = &plant.shapes[o.shape.index()];
         let slot = match *shape {
             Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint, shape)),
+            Shape::Sheet(ref sheet) if sheet.form.is_some() => {
+                Slot::Form(sheet.form.unwrap_or_default(), Coat::of(o.paint, shape))
+            }
             _ => ground.slot(o, shape),
         };
+        let veins = if matches!(shape, Shape::Sheet(s) if s.form.is_some()) { slot } else { Slot::Veins };
         let slot = match spec.worn.of(o) {
             Some((wearer, row)) => Slot::Worn(wearer, row),
             None if of_photo(o).is_some() => slot.traced(),
             None => slot,
         };
-        [(slot, i, Layer::Surface), (Slot::Veins, i, Layer::Veins)]
+        [(slot, i, Layer::Surface), (veins, i, Layer::Veins)]
     };
     let organs = plant.organs.iter().enumerate();
     let organs = organs.filter(|(_, o)| o.shape.index() < shapes.len() && sound(o));

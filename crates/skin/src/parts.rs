@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use base::Executor;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use plant::{Blade, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId};
+use plant::{Blade, OrganKind, Paint, Plant, Shape, ShapeId};
 
+use crate::coloured::is_coloured;
 use crate::layout::{Layout, Piece};
 use crate::pictures::SurfacePictures;
 use crate::texture::{
@@ -233,15 +234,17 @@ impl Slot {
     }
 
     /// Its colour as the plant's maker knows it.
-    fn known_color(self, paint: &PlantPaint, spec: &SkinSpec, old: bool) -> Option<[f32; 3]> {
+    fn known_color(self, plant: &Plant, spec: &SkinSpec, old: bool) -> Option<[f32; 3]> {
         match self {
             Self::Bark | Self::YoungBark if !spec.textures => {
                 #[expect(clippy::cast_possible_truncation, reason = "a colour")]
                 let plain = |b: BarkSpec| b.of(old && self == Self::YoungBark).1.linear().map(|x| x as f32);
                 spec.bark.map(plain)
             }
-            Self::Stem => paint.stem,
-            Self::Veins => paint.veins,
+            // Those of its axes are in the mesh.
+            Self::Stem | Self::Body if is_coloured(plant) => Some([1.0; 3]),
+            Self::Stem => plant.paint.stem,
+            Self::Veins => plant.paint.veins,
             _ => None,
         }
     }
@@ -254,7 +257,7 @@ impl Slot {
         executor: &dyn Executor,
     ) -> Material {
         let textures = spec.textures.then_some(executor);
-        let (kind, known) = (self.kind(), self.known_color(&plant.paint, spec, old));
+        let (kind, known) = (self.kind(), self.known_color(plant, spec, old));
         let mut m = Material::plain(self.names(&spec.worn).1, kind, [1.0; 3]);
         m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
         if let Self::Worn(_, row) = self {

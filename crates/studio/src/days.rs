@@ -2,10 +2,11 @@
 
 use base::{Run, Seed};
 use bloom::{
-    BloomError, CleanSpec, GrowthLaw, LawSpec, MotionSpec, RegisterSpec, ScanOrgan, SegmentSpec, Settled,
-    Stage,
+    BloomError, CleanSpec, GrowthLaw, LawSpec, MotionSpec, OrganPoints, RegisterSpec, ScanOrgan, SegmentSpec,
+    Settled, Stage,
 };
 use glam::DVec3;
+use mesh::PointCloud;
 
 use crate::made::MadePlant;
 use crate::seedling::{SeedlingError, SeedlingOptions, make_seedling};
@@ -16,14 +17,14 @@ const FEWEST_POINTS: usize = 8;
 /// Scans of one plant on several days: cleaned, cut into organs that are found again, the plant's own motion taken off.
 ///
 /// ```
-/// use burgeon::{Run, ScannedDays, Seed, glam::DVec3};
+/// use burgeon::{Run, ScannedDays, Seed, glam::DVec3, mesh::PointCloud};
 /// let leaf = |length: f64| {
 ///     let point = |k: i32| DVec3::new(0.01 * f64::from(k % 20), length * f64::from(k / 20) / 30.0, 0.0);
-///     (0..600).map(point).collect::<Vec<_>>()
+///     PointCloud { points: (0..600).map(point).collect(), ..PointCloud::default() }
 /// };
 /// let scans = [(0.0, leaf(0.1)), (2.0, leaf(0.2))];
 /// let days = ScannedDays::new(&scans, true, Seed::new(1), &Run::plain())?;
-/// let (_, points) = days.organs(1.0, None, &Run::plain())?.remove(0);
+/// let points = days.organs(1.0, None, &Run::plain())?.remove(0).points;
 /// let high = points.iter().map(|p| p.y).fold(0.0, f64::max) - points.iter().map(|p| p.y).fold(1.0, f64::min);
 /// assert!((0.12..0.18).contains(&high), "half-way between both days: {high}");
 /// # Ok::<(), burgeon::bloom::BloomError>(())
@@ -37,33 +38,42 @@ impl ScannedDays {
     /// Of clouds, each with its day, metres, +Y up; days increase. `whole`: each is one organ, such as a leaf that was cut
     /// off; otherwise stem and leaves are told apart where every scan shows both.
     ///
-    /// Stray points and a ground plane are taken out first. Cost: n log n, and a registration for each organ and step.
+    /// Stray points and a ground plane are taken out first. Colours of the clouds go with their points. Cost: n log n, and a registration for each organ and step.
     ///
     /// # Errors
     /// [`BloomError`]: too few points, or stopped.
     pub fn new(
-        scans: &[(f64, Vec<DVec3>)],
+        scans: &[(f64, PointCloud)],
         whole: bool,
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<Self, BloomError> {
         let spec = SegmentSpec::default();
         let mut kept = Vec::new();
-        for (day, points) in scans {
-            let cleaned = bloom::clean(points, &CleanSpec::default(), seed, run)?;
-            kept.push((*day, cleaned.kept.into_iter().map(|row| points[row]).collect::<Vec<_>>()));
+        for (day, cloud) in scans {
+            let cleaned = bloom::clean(&cloud.points, &CleanSpec::default(), seed, run)?;
+            kept.push((*day, cloud.select(&cleaned.kept)));
         }
-        let one = |points: &[DVec3]| bloom::single_organ(points, "organ", &spec).map(|organ| vec![organ]);
-        let cut = |points: &[DVec3]| if whole { one(points) } else { bloom::organs(points, &spec) };
+        let one = |cloud: &PointCloud| -> Result<Vec<ScanOrgan>, BloomError> {
+            let organ = bloom::single_organ(&cloud.points, "organ", &spec)?;
+            Ok(vec![organ.coloured(&cloud.colors)])
+        };
+        let cut = |cloud: &PointCloud| -> Result<Vec<ScanOrgan>, BloomError> {
+            if whole {
+                return one(cloud);
+            }
+            let organs = bloom::organs(&cloud.points, &spec)?.into_iter();
+            Ok(organs.map(|o| o.coloured(&cloud.colors)).collect())
+        };
         let mut stages: Vec<Stage> = kept
             .iter()
-            .map(|(day, points)| Ok(Stage { day: *day, organs: cut(points)? }))
+            .map(|(day, cloud)| Ok(Stage { day: *day, organs: cut(cloud)? }))
             .collect::<Result<_, BloomError>>()?;
         let single = stages.iter().filter(|s| s.organs.len() == 1).count();
         if single > 0 && single < stages.len() {
             // A scan that falls into stem and leaves cannot meet one that is a single organ.
-            for (stage, (_, points)) in stages.iter_mut().zip(&kept) {
-                stage.organs = one(points)?;
+            for (stage, (_, cloud)) in stages.iter_mut().zip(&kept) {
+                stage.organs = one(cloud)?;
             }
         }
         for stage in &mut stages {
@@ -93,7 +103,7 @@ impl ScannedDays {
         bloom::fit_stages(name, &self.settled.stages, &LawSpec::default())
     }
 
-    /// The organs of a day, each with its points, in the frame of the plant; without a law everything goes at an even pace.
+    /// The organs of a day, each with its points and their colours, in the frame of the plant; without a law everything goes at an even pace.
     ///
     /// # Errors
     /// [`BloomError`].
@@ -102,10 +112,9 @@ impl ScannedDays {
         day: f64,
         law: Option<&GrowthLaw>,
         run: &Run<'_>,
-    ) -> Result<Vec<(String, Vec<DVec3>)>, BloomError> {
+    ) -> Result<Vec<OrganPoints>, BloomError> {
         if let [one] = self.settled.stages.as_slice() {
-            let points = |o: &ScanOrgan| (o.name.clone(), o.points.clone());
-            return Ok(one.organs.iter().map(points).collect());
+            return Ok(one.organs.iter().map(OrganPoints::from).collect());
         }
         let [first, last] = self.days();
         let even = GrowthLaw::even(first, last);

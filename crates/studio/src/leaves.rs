@@ -149,7 +149,7 @@ pub(crate) fn finish(
 ) -> Result<(MadePlant, ShapeMesh), LeafError> {
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
     let veins = LeafColours::default().wilted(options.spec.wilt).vein.map(linear_of);
-    plant.paint = PlantPaint { stem: Some(STEM), veins: Some(veins) };
+    plant.paint = PlantPaint { stem: Some(mean_of_axes(&plant).unwrap_or(STEM)), veins: Some(veins) };
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
     let skin = options.skin.clone();
@@ -177,6 +177,14 @@ pub(crate) fn finish(
         );
     }
     Ok((MadePlant::untold(plant, (model, spec), (edits, &options.edits), report).told(), mesh))
+}
+
+/// The mean colour of the axes that have some.
+fn mean_of_axes(plant: &Plant) -> Option<[f32; 3]> {
+    let colors: Vec<[f32; 3]> = plant.axes.iter().flat_map(|a| a.colors.iter().copied()).collect();
+    #[expect(clippy::cast_precision_loss, reason = "twelve an axis")]
+    let count = colors.len() as f32;
+    (count > 0.0).then(|| [0, 1, 2].map(|k| colors.iter().map(|c| c[k]).sum::<f32>() / count))
 }
 
 pub(crate) fn leaf_texture(

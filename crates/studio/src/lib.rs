@@ -47,7 +47,7 @@ pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
     NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,
-    brief, grouped, map_indexed, map_of, meant, quoted, set_of, sort_by_key,
+    brief, grouped, linear_of_srgb, map_indexed, map_of, meant, quoted, set_of, sort_by_key, srgb_of_linear,
 };
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
@@ -57,7 +57,7 @@ pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
-pub use motion::{cloud_model, motion_model};
+pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{

@@ -39,6 +39,20 @@ pub fn motion_model(
     model
 }
 
+/// Gives the parts of [`motion_model`] the colours of their points, sRGB bytes, one list a part; a part whose list is not of as
+/// many stays as it is.
+pub fn colour_points(model: &mut Model, colors: &[Vec<[u8; 3]>]) {
+    for (part, colors) in model.parts.iter_mut().zip(colors) {
+        if colors.is_empty() || colors.len() != part.mesh.positions.len() {
+            continue;
+        }
+        part.mesh.colors = colors.iter().map(|c| c.map(crate::leaves::linear_of)).collect();
+        if let Some(look) = model.materials.get_mut(part.material.index()) {
+            look.base_color = [1.0; 3];
+        }
+    }
+}
+
 /// A scan as a model of points without triangles, with their colours.
 pub fn cloud_model(name: &str, cloud: &PointCloud) -> Model {
     let mut mesh = TriMesh::default();

@@ -6,7 +6,9 @@ use base::{Report, Run, Seed, ops};
 use geom::{Ball, BallBSpline, SplineError};
 use glam::DVec3;
 use leaf::{LeafPaint, LeafSpec, ScanLeaf, ScanSpec};
-use plant::{AxisKind, NodeId, Plant, Shape, Sheet, Vein, Venation};
+use mesh::{PointCloud, Texture};
+use plant::{AxisKind, NodeId, Paint, Plant, Shape, Sheet, Vein, Venation};
+use skin::CloudColours;
 
 use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
@@ -15,7 +17,8 @@ use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 /// Distances from the leaf that was found beyond this share of its length are told: a leaf that is torn and folded has 0.03.
 const UNLIKE: f64 = 0.06;
 
-/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud.
+/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud, in the colours of the
+/// cloud where it has some.
 ///
 /// A table below it and things that stand apart from it are left out, with a warning.
 ///
@@ -23,13 +26,14 @@ const UNLIKE: f64 = 0.06;
 /// [`LeafError::Scan`]; [`LeafError::Several`] for a plant or a leaf of leaflets.
 pub fn make_leaf_from_scan(
     name: &str,
-    points: &[DVec3],
+    cloud: &PointCloud,
     spec: &ScanSpec,
     run: &Run<'_>,
 ) -> Result<(MadePlant, ScanLeaf), LeafError> {
     let mut report = Report::default();
-    let alone = alone(points, &mut report);
-    let points = alone.as_deref().unwrap_or(points);
+    let alone = alone(cloud, &mut report);
+    let cloud = alone.as_ref().unwrap_or(cloud);
+    let points = cloud.points.as_slice();
     let blades = bloom::blades(points);
     if blades > 1 {
         return Err(LeafError::Several(blades));
@@ -46,17 +50,21 @@ pub fn make_leaf_from_scan(
         );
     }
     let mut plant = Plant { name: name.into(), ..Plant::default() };
-    let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk));
+    let colours = report.stage("mesh", run.clock, |_| colours_of(points, &cloud.colors, run));
+    let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk, colours.as_ref()));
     let n = found.columns;
     let rows = found.grid.len() / n;
-    let sheet = sheet_of(&found)?;
     let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
     let options = LeafOptions { spec, ..LeafOptions::default() };
+    let mut textures = Vec::new();
+    let sheet =
+        report.stage("mesh", run.clock, |_| sheet_of(&found, colours.as_ref(), &mut textures, run))?;
+    let paint = painted(&sheet, &options);
     if let Some((sheet, frame)) = sheet.framed() {
         let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
-        add_leaf(&mut plant, shape, frame, bearer, options.paint([1.0; 3]), 1);
+        add_leaf(&mut plant, shape, frame, bearer, paint, 1);
     }
-    let (mut made, mesh) = finish(plant, &[], &options, run, &mut report)?;
+    let (mut made, mesh) = finish(plant, &textures, &options, run, &mut report)?;
     let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
     let mut outline = found.outline();
     outline.extend(outline.first().copied());
@@ -83,24 +91,23 @@ pub fn make_leaf_from_scan(
 }
 
 /// The cloud without a table and without what stands apart; `None` if it has neither.
-fn alone(points: &[DVec3], report: &mut Report) -> Option<Vec<DVec3>> {
-    let of = |points: &[DVec3], rows: Vec<usize>| rows.into_iter().map(|i| points[i]).collect::<Vec<DVec3>>();
-    let above = bloom::on_table(points, Seed::new(1)).map(|rows| of(points, rows));
+fn alone(cloud: &PointCloud, report: &mut Report) -> Option<PointCloud> {
+    let above = bloom::on_table(&cloud.points, Seed::new(1)).map(|rows| cloud.select(&rows));
     if let Some(above) = &above {
         base::warn!(
             report,
             "scan-table",
-            { points = points.len() - above.len() },
+            { points = cloud.points.len() - above.points.len() },
             "{points} points of a plane below the leaf (a table) were left out"
         );
     }
-    let left = above.as_deref().unwrap_or(points);
-    let one = bloom::largest_thing(left).map(|rows| of(left, rows));
+    let left = above.as_ref().unwrap_or(cloud);
+    let one = bloom::largest_thing(&left.points).map(|rows| left.select(&rows));
     if let Some(one) = &one {
         base::warn!(
             report,
             "scan-apart",
-            { points = left.len() - one.len() },
+            { points = left.points.len() - one.points.len() },
             "{points} points of other things stand apart from the largest one, which was taken for the leaf: cut the leaf out \
              of the cloud if it is another"
         );
@@ -108,18 +115,39 @@ fn alone(points: &[DVec3], report: &mut Report) -> Option<Vec<DVec3>> {
     one.or(above)
 }
 
-/// The blade that was found, where it stands in the scan.
-pub(crate) fn sheet_of(found: &ScanLeaf) -> Result<Sheet, SplineError> {
+/// Colours of points, if there is one a point and they show something.
+pub(crate) fn colours_of(points: &[DVec3], colors: &[[u8; 3]], run: &Run<'_>) -> Option<CloudColours> {
+    (points.len() == colors.len()).then(|| CloudColours::new(points, colors, run.executor)).flatten()
+}
+
+/// What a blade of a scan is painted with: a texture has its own colours.
+pub(crate) fn painted(sheet: &Sheet, options: &LeafOptions) -> Paint {
+    if sheet.form.is_some() { Paint::Natural([1.0; 3]) } else { options.paint([1.0; 3]) }
+}
+
+/// The blade that was found, where it stands in the scan; with colours its texture is added to `textures`.
+pub(crate) fn sheet_of(
+    found: &ScanLeaf,
+    colours: Option<&CloudColours>,
+    textures: &mut Vec<Option<Arc<Texture>>>,
+    run: &Run<'_>,
+) -> Result<Sheet, SplineError> {
     let n = found.columns;
     let rows = found.grid.len() / n;
-    Ok(Sheet {
+    let mut sheet = Sheet {
         // The grid's rows run from left to right.
         points: found.grid.chunks(n).flat_map(|row| row.iter().rev().copied()).collect(),
         across: (0..n).rev().map(|j| j as f64 / (n - 1) as f64).collect(),
         along: (0..rows).map(|i| i as f64 / (rows - 1) as f64).collect(),
         colors: Vec::new(),
+        form: None,
         veins: Venation { fine: vec![midrib(found, &found.midrib())?], ..Venation::default() },
-    })
+    };
+    if let Some(colours) = colours {
+        sheet.form = u32::try_from(textures.len()).ok();
+        textures.push(Some(Arc::new(colours.sheet(&sheet, run.executor))));
+    }
+    Ok(sheet)
 }
 
 /// The midrib, thinner towards the tip; how thick it is only a stalk tells.
@@ -134,11 +162,14 @@ fn midrib(found: &ScanLeaf, line: &[DVec3]) -> Result<Vein, SplineError> {
 }
 
 /// The stalk as an axis from its lower end to the blade; its last node.
-fn add_stalk(plant: &mut Plant, stalk: &BallBSpline) -> Option<NodeId> {
+fn add_stalk(plant: &mut Plant, stalk: &BallBSpline, colours: Option<&CloudColours>) -> Option<NodeId> {
     let balls: Vec<Ball> = evenly(stalk, 40).into_iter().rev().map(|t| stalk.ball(t)).collect();
     let points: Vec<DVec3> = balls.iter().map(|b| b.centre).collect();
     let axis = plant.add_axis(AxisKind::Petiole, None, 1, &points, None);
     plant.nodes.radius_m = balls.iter().map(|b| b.radius).collect();
+    if let Some(colours) = colours {
+        plant.axes[axis.index()].colors = colours.along(&points, &plant.nodes.radius_m);
+    }
     plant.axis(axis).node_ids().last()
 }
 

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use base::{Report, Run, Stopped};
-use bloom::{BloomError, Limb, ShapeError};
+use bloom::{BloomError, Limb, OrganPoints, ShapeError};
 use glam::DVec3;
 use leaf::{LeafPaint, LeafSpec, ScanError, ScanLeaf, ScanSpec};
-use mesh::{Model, TriMesh};
+use mesh::{Model, Texture, TriMesh};
 use plant::{AxisKind, NodeId, Plant, Shape};
 use serde::Serialize;
+use skin::CloudColours;
 
 use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
-use crate::scanned::sheet_of;
+use crate::scanned::{colours_of, painted, sheet_of};
 
 /// How a plant is made of the organs of a scan.
 #[derive(Clone, Debug)]
@@ -66,31 +67,33 @@ const STEP_M: f64 = 0.000_25;
 
 /// Makes a plant of the organs of a scan, each with its points, metres, +Y up; that which is called `stem` bears the others.
 ///
-/// An organ of too few points for a blade becomes an axis, with a warning. The error is that of the surface against all points.
+/// Organs whose points have colours are painted with them. An organ of too few points for a blade becomes an axis, with a warning. The error is that of the surface against all points.
 /// Cost: n log n.
 ///
 /// # Errors
 /// [`SeedlingError`].
 pub fn make_seedling(
     name: &str,
-    organs: &[(String, Vec<DVec3>)],
+    organs: &[OrganPoints],
     options: &SeedlingOptions,
     run: &Run<'_>,
 ) -> Result<(MadePlant, Vec<OrganFit>, ShapeError), SeedlingError> {
     let mut report = Report::default();
     let mut plant = Plant { name: name.into(), ..Plant::default() };
     let mut fits = Vec::new();
-    let stem = organs.iter().find(|o| o.0 == "stem");
-    let mut bearers = Vec::new();
-    if let Some((name, points)) = stem {
+    let stem = organs.iter().find(|o| o.name == "stem");
+    let (mut bearers, mut textures) = (Vec::new(), Vec::new());
+    if let Some(OrganPoints { name, points, colors }) = stem {
         let limb = bloom::stem(points)?;
-        bearers = add_axis(&mut plant, AxisKind::Stem, None, 0, &limb);
+        let colours = colours_of(points, colors, run);
+        bearers = add_axis(&mut plant, (AxisKind::Stem, 0), None, &limb, colours.as_ref());
         fits.push(OrganFit { name: name.clone(), ..OrganFit::of(&limb) });
     }
-    for ((name, points), key) in organs.iter().filter(|o| stem.is_none_or(|s| s.0 != o.0)).zip(1_u64..) {
+    for (organ, key) in organs.iter().filter(|o| stem.is_none_or(|s| s.name != o.name)).zip(1_u64..) {
+        let OrganPoints { name, points, colors } = organ;
         run.cancel.check().map_err(|c| LeafError::from(Stopped::from(c)))?;
         // It sits where it is nearest to the stem.
-        let trunk = stem.map(|s| s.1.as_slice()).unwrap_or_default();
+        let trunk = stem.map(|s| s.points.as_slice()).unwrap_or_default();
         let joint = bloom::joint(points, trunk).unwrap_or_else(|| lowest(points));
         let nearest = |n: &&NodeId| plant.nodes.position[n.index()].distance(joint);
         let bearer = bearers.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))).copied();
@@ -112,10 +115,12 @@ pub fn make_seedling(
                 None
             }
         };
-        fits.push(add_organ(&mut plant, (name, key), bearer, (limb, points, found), options)?);
+        let colours = colours_of(points, colors, run);
+        let mut grove = Grove { plant: &mut plant, textures: &mut textures, colours, options, run };
+        fits.push(grove.add_organ((name, key), bearer, (limb, points, found))?);
     }
-    let (made, _) = finish(plant, &[], &options.leaf, run, &mut report)?;
-    let all: Vec<DVec3> = organs.iter().flat_map(|o| o.1.iter().copied()).collect();
+    let (made, _) = finish(plant, &textures, &options.leaf, run, &mut report)?;
+    let all: Vec<DVec3> = organs.iter().flat_map(|o| o.points.iter().copied()).collect();
     let error = bloom::compare(&all, &surface_places(&made.model), run)?;
     Ok((made, fits, error))
 }
@@ -127,49 +132,65 @@ pub fn surface_places(model: &Model) -> Vec<DVec3> {
     bloom::surface_places(faces.flat_map(corners), STEP_M)
 }
 
-/// A leaf: its stalk, and its blade if one was found.
-fn add_organ(
-    plant: &mut Plant,
-    (name, key): (&str, u64),
-    bearer: Option<NodeId>,
-    (mut limb, points, found): (Limb, &[DVec3], Option<ScanLeaf>),
-    options: &SeedlingOptions,
-) -> Result<OrganFit, SeedlingError> {
-    let at = bearer.map(|b| (plant.nodes.position[b.index()], plant.nodes.radius_m[b.index()]));
-    match &found {
-        Some(found) => {
-            // The stalk goes up to the blade. One that is too short to be seen is half as thick as what bears it.
-            let radius = limb.radii.last().copied().or(at.map(|a| 0.5 * a.1)).unwrap_or(0.000_5);
-            limb.line.push(found.grid[found.columns / 2]);
-            limb.radii.push(0.5 * radius);
+/// Where organs go.
+struct Grove<'a> {
+    plant: &'a mut Plant,
+    textures: &'a mut Vec<Option<Arc<Texture>>>,
+    /// Of the organ that is added.
+    colours: Option<CloudColours>,
+    options: &'a SeedlingOptions,
+    run: &'a Run<'a>,
+}
+
+impl Grove<'_> {
+    /// A leaf: its stalk, and its blade if one was found.
+    fn add_organ(
+        &mut self,
+        (name, key): (&str, u64),
+        bearer: Option<NodeId>,
+        (mut limb, points, found): (Limb, &[DVec3], Option<ScanLeaf>),
+    ) -> Result<OrganFit, SeedlingError> {
+        let plant = &mut *self.plant;
+        let at = bearer.map(|b| (plant.nodes.position[b.index()], plant.nodes.radius_m[b.index()]));
+        match &found {
+            Some(found) => {
+                // The stalk goes up to the blade. One that is too short to be seen is half as thick as what bears it.
+                let radius = limb.radii.last().copied().or(at.map(|a| 0.5 * a.1)).unwrap_or(0.000_5);
+                limb.line.push(found.grid[found.columns / 2]);
+                limb.radii.push(0.5 * radius);
+            }
+            None => limb = bloom::stem(points)?,
         }
-        None => limb = bloom::stem(points)?,
+        if let Some((place, _)) = at {
+            limb.line.insert(0, place);
+            limb.radii.insert(0, limb.radii.first().copied().unwrap_or(0.000_5));
+        }
+        let mut fit = OrganFit { name: name.into(), ..OrganFit::of(&limb) };
+        let mut bearer = bearer;
+        if limb.line.len() >= 2 {
+            bearer = add_axis(plant, (AxisKind::Petiole, key), bearer, &limb, self.colours.as_ref())
+                .last()
+                .copied();
+        }
+        let Some(found) = found else { return Ok(fit) };
+        let sheet =
+            sheet_of(&found, self.colours.as_ref(), self.textures, self.run).map_err(LeafError::from)?;
+        let n = found.columns;
+        let mesh = TriMesh {
+            positions: sheet.points.iter().map(|p| p.as_vec3().to_array()).collect(),
+            triangles: sheet.triangles().map(|t| t.map(|k| u32::try_from(k).unwrap_or(u32::MAX))).collect(),
+            ..TriMesh::default()
+        };
+        fit.blade_mm = 1e3 * geom::polyline_length3(&found.midrib());
+        fit.width_mm = 1e3 * found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
+        fit.area_mm2 = 1e6 * mesh.area();
+        let paint = painted(&sheet, &self.options.leaf);
+        if let Some((sheet, frame)) = sheet.framed() {
+            let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
+            add_leaf(plant, shape, frame, bearer, paint, key);
+        }
+        Ok(fit)
     }
-    if let Some((place, _)) = at {
-        limb.line.insert(0, place);
-        limb.radii.insert(0, limb.radii.first().copied().unwrap_or(0.000_5));
-    }
-    let mut fit = OrganFit { name: name.into(), ..OrganFit::of(&limb) };
-    let mut bearer = bearer;
-    if limb.line.len() >= 2 {
-        bearer = add_axis(plant, AxisKind::Petiole, bearer, key, &limb).last().copied();
-    }
-    let Some(found) = found else { return Ok(fit) };
-    let sheet = sheet_of(&found).map_err(LeafError::from)?;
-    let n = found.columns;
-    let mesh = TriMesh {
-        positions: sheet.points.iter().map(|p| p.as_vec3().to_array()).collect(),
-        triangles: sheet.triangles().map(|t| t.map(|k| u32::try_from(k).unwrap_or(u32::MAX))).collect(),
-        ..TriMesh::default()
-    };
-    fit.blade_mm = 1e3 * geom::polyline_length3(&found.midrib());
-    fit.width_mm = 1e3 * found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
-    fit.area_mm2 = 1e6 * mesh.area();
-    if let Some((sheet, frame)) = sheet.framed() {
-        let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
-        add_leaf(plant, shape, frame, bearer, options.leaf.paint([1.0; 3]), key);
-    }
-    Ok(fit)
 }
 
 impl OrganFit {
@@ -187,10 +208,19 @@ impl OrganFit {
 }
 
 /// Its nodes, from the base on.
-fn add_axis(plant: &mut Plant, kind: AxisKind, bearer: Option<NodeId>, key: u64, limb: &Limb) -> Vec<NodeId> {
+fn add_axis(
+    plant: &mut Plant,
+    (kind, key): (AxisKind, u64),
+    bearer: Option<NodeId>,
+    limb: &Limb,
+    colours: Option<&CloudColours>,
+) -> Vec<NodeId> {
     let first = plant.nodes.radius_m.len();
     let axis = plant.add_axis(kind, bearer, key, &limb.line, None);
     plant.nodes.radius_m[first..].copy_from_slice(&limb.radii);
+    if let Some(colours) = colours {
+        plant.axes[axis.index()].colors = colours.along(&limb.line, &limb.radii);
+    }
     plant.axis(axis).node_ids().collect()
 }
 

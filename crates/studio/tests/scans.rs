@@ -22,7 +22,7 @@ fn real_scans_are_explained() {
         let mut report = Report::default();
         let cloud = read_cloud(bytes.as_slice(), CloudFormat::Xyz, &axes, &mut report).unwrap();
         let spec = ScanSpec::default();
-        let (made, _) = make_leaf_from_scan("t", &cloud.points, &spec, &Run::plain()).unwrap();
+        let (made, _) = make_leaf_from_scan("t", &cloud, &spec, &Run::plain()).unwrap();
         let about = made.item.leaf.unwrap();
         let fit = about.fit_error;
         println!("{}: {fit:?} {:?}", path.display(), about.scan);

@@ -141,6 +141,9 @@ pub(crate) struct BloomRunArgs {
     /// folder, or of one scan alone (without --end).
     #[arg(long, conflicts_with = "whole")]
     pub(crate) plant: bool,
+    /// Colour of what is made of scans: that of their points, where they have any, or plain.
+    #[arg(long, value_enum, default_value_t = ScanTextureWord::Scan)]
+    pub(crate) texture: ScanTextureWord,
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
     #[arg(long)]
     pub(crate) whole: bool,
@@ -184,6 +187,15 @@ pub(crate) struct BloomRunArgs {
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// Colour of what is made of scans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ScanTextureWord {
+    /// Of the points, where they have colours
+    Scan,
+    /// Green
+    Plain,
 }
 
 /// Coordinates of a result.

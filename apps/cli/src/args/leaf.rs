@@ -167,8 +167,9 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "ROW,MARK,RIGHT,FORTH,UP[,TIMES]", allow_hyphen_values = true, value_parser = ball)]
     pub(crate) ball: Vec<BallMove>,
     /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
-    /// (.png or .jpg), cropped to its box with the tip at the top.
-    #[arg(long, value_name = "veins|plain|FILE", default_value = "veins")]
+    /// (.png or .jpg), cropped to its box with the tip at the top. With --scan: scan (that of the points, where they have
+    /// any; the default) or plain.
+    #[arg(long, value_name = "veins|plain|scan|FILE", default_value = "veins")]
     pub(crate) texture: PathBuf,
     /// Days on which the leaf was measured, one a file, in order.
     #[arg(long, value_name = "D,D,...", value_delimiter = ',', requires = "day")]

@@ -25,6 +25,7 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
         "lattice",
         "straight",
         "frame",
+        "texture",
         "whole",
         "no_clean",
         "start_day",

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use burgeon::bloom::{
-    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, RigidMotion, Settled,
+    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, OrganPoints, RegisterSpec, RigidMotion,
+    Settled,
 };
 use burgeon::formats::ExportSpec;
 use burgeon::glam::DVec3;
@@ -13,7 +14,7 @@ use burgeon::{LeafError, MadePlant, OrganFit, Run, Seed, SeedlingError, Seedling
 use super::told::{BloomReport, ErrorReport, ResidualReport, ScannedPlant, tell};
 use super::write::write_show;
 use super::{Show, Shown, hand_edits, no_pace};
-use crate::args::{BloomRunArgs, FrameWord};
+use crate::args::{BloomRunArgs, FrameWord, ScanTextureWord};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::materials::Materials;
@@ -59,6 +60,11 @@ pub(super) fn run(
         machine.with_progress("scans", |_| load_shapes(args, &axes, options, law.as_ref(), machine))
     });
     let mut loaded = loaded?;
+    let coloured = loaded.stages.iter().flat_map(|s| &s.organs).any(|o| !o.colors.is_empty());
+    args.given.only_if(coloured, &["texture"], "scans with colours", "these have none")?;
+    if args.texture == ScanTextureWord::Plain {
+        loaded.stages.iter_mut().flat_map(|s| &mut s.organs).for_each(|o| o.colors.clear());
+    }
     outputs.check()?;
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
@@ -110,8 +116,9 @@ pub(super) fn run(
                 let model = Model { offset_m: loaded.origin.offset_m, ..plant.model };
                 return Ok(Shown { plant: Some(plant.plant), model, lods, overlap: None });
             }
-            let model =
+            let mut model =
                 burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &organs.rows, &organs.points);
+            burgeon::colour_points(&mut model, &organs.colors);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
             Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None })
         }),
@@ -180,12 +187,12 @@ impl<'a> Scans<'a> {
         let mut organs = match &self.motion {
             Some(motion) => {
                 let points = motion.at(day - self.first_day, self.compute).map_err(failed)?;
-                Organs { rows: motion.organs.clone(), points }
+                Organs { rows: motion.organs.clone(), points, colors: motion.colors(day - self.first_day) }
             }
             // One scan is one day.
             None if self.settled.stages.len() == 1 => {
                 let organs = self.settled.stages.iter().flat_map(|s| &s.organs);
-                Organs::of(organs.map(|o| (o.name.clone(), o.points.clone())).collect())
+                Organs::of(organs.map(OrganPoints::from).collect())
             }
             None => Organs::of(self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?),
         };
@@ -249,17 +256,25 @@ fn compared(
 struct Organs {
     rows: Vec<(String, core::ops::Range<usize>)>,
     points: Vec<DVec3>,
+    /// Of each organ; empty or one a point.
+    colors: Vec<Vec<[u8; 3]>>,
 }
 
 impl Organs {
     /// Each organ with its points.
-    fn rows(&self) -> Vec<(String, Vec<DVec3>)> {
-        self.rows.iter().map(|(name, rows)| (name.clone(), self.points[rows.clone()].to_vec())).collect()
+    fn rows(&self) -> Vec<OrganPoints> {
+        let of = |((name, rows), colors): (&(String, core::ops::Range<usize>), &Vec<[u8; 3]>)| OrganPoints {
+            name: name.clone(),
+            points: self.points[rows.clone()].to_vec(),
+            colors: colors.clone(),
+        };
+        self.rows.iter().zip(&self.colors).map(of).collect()
     }
 
-    fn of(organs: Vec<(String, Vec<DVec3>)>) -> Self {
-        let mut out = Self { rows: Vec::new(), points: Vec::new() };
-        for (name, points) in organs {
+    fn of(organs: Vec<OrganPoints>) -> Self {
+        let mut out = Self { rows: Vec::new(), points: Vec::new(), colors: Vec::new() };
+        for OrganPoints { name, points, colors } in organs {
+            out.colors.push(colors);
             let start = out.points.len();
             out.points.extend(points);
             out.rows.push((name, start..out.points.len()));

@@ -134,8 +134,14 @@ fn write_one(
             let color = model.material(part).base_color;
             for p in &part.mesh.positions {
                 cloud.points.push(DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-                cloud.colors.push(color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8));
+            }
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+            if part.mesh.colors.is_empty() {
+                let color = color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8);
+                cloud.colors.resize(cloud.points.len(), color);
+            } else {
+                let byte = |c: f32| (burgeon::srgb_of_linear(f64::from(c)) * 255.0 + 0.5) as u8;
+                cloud.colors.extend(part.mesh.colors.iter().map(|c| c.map(byte)));
             }
         }
         return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));

@@ -309,3 +309,31 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn colours_after_normals_are_read_and_what_is_no_normal_or_colour_is_not() {
+    use CloudFormat::Xyz;
+    for (row, want, left_out) in [
+        ("1 2 3 0 0.6 0.8 0.176471 0.247059 1.0 0.5", Some([45, 63, 255]), "4 to 6 and 10"),
+        ("1,2,3,0,0.6,0.8,255,0,9", Some([255, 0, 9]), "4 to 6"),
+        ("1 2 3 0 0.6 0.8 7 8 9 1 2 3", Some([7, 8, 9]), "4 to 6 and 10 to 12"),
+        // No unit vector, no share of 255, out of range, not a number, columns missing.
+        ("1 2 3 0 0.6 0.9 255 0 9", None, "4 to 9"),
+        ("1 2 3 0 0.6 0.8 0.1 0.2 0.3", None, "4 to 9"),
+        ("1 2 3 0 0.6 0.8 256 0 9", None, "4 to 9"),
+        ("1 2 3 0 0.6 0.8 nan 0 9", None, "4 to 9"),
+        ("1 2 3 0 0.6 0.8", None, "4 to 6"),
+        ("1 2 3 0 0.6 0.8 1 1", None, "4 to 8"),
+    ] {
+        let mut report = Report::default();
+        let cloud = read_cloud(row.as_bytes(), Xyz, &ExportSpec::default(), &mut report).unwrap();
+        assert_eq!(cloud.colors.first().copied(), want, "{row}");
+        assert!(
+            report.warnings[0].to_string().contains(&format!("columns {left_out} were")),
+            "{row}: {report:?}"
+        );
+    }
+    // Later rows beyond the range have its ends.
+    let later = read(b"1 2 3 0 0 1 1 0 0.2\n1 2 3 0 0 0 7 -1 nan\n", Xyz).unwrap();
+    assert_eq!(later.colors, [[255, 0, 51], [255, 0, 0]]);
+}

@@ -59,20 +59,20 @@ fn decimal(word: &[u8]) -> Option<f64> {
     number(&word)
 }
 
-/// The first six numbers of a row.
+/// The first nine numbers of a row.
 struct Row<'a> {
-    numbers: [f64; 6],
+    numbers: [f64; 9],
     count: usize,
     /// The first of the first three words that is no number.
     broken: Option<&'a [u8]>,
 }
 
 fn row<'a>(words: impl Iterator<Item = &'a [u8]>, number: fn(&[u8]) -> Option<f64>) -> Row<'a> {
-    let mut row = Row { numbers: [0.0; 6], count: 0, broken: None };
+    let mut row = Row { numbers: [0.0; 9], count: 0, broken: None };
     for (k, word) in words.enumerate() {
         row.count = k + 1;
         match number(word) {
-            Some(x) if k < 6 => row.numbers[k] = x,
+            Some(x) if k < 9 => row.numbers[k] = x,
             None if k < 3 => row.broken = row.broken.or(Some(word)),
             _ => {}
         }
@@ -91,8 +91,56 @@ pub(super) fn starts(start: &[u8]) -> bool {
     !start.contains(&0) && lines.take(6).any(numbers)
 }
 
+/// What the first row shows of colours.
+struct Colours {
+    /// Before which column red stands.
+    at: usize,
+    /// What is 1 in bytes.
+    scale: f64,
+}
+
+impl Colours {
+    /// Whole numbers to 255 in the last three of six columns; or, after a normal (unit length), such numbers or shares of 255.
+    fn shown(row: &[f64; 9], count: usize) -> Option<Self> {
+        let bytes = |c: &[f64]| {
+            let byte = |x: &f64| (0.0..=255.0).contains(x) && x.fract() <= 0.0;
+            c.iter().all(byte) && c.iter().any(|x| *x > 1.0)
+        };
+        // Six digits of a share of 255 are this near to a whole number.
+        let share = |x: &f64| (0.0..=1.0).contains(x) && (x * 255.0 - (x * 255.0).round()).abs() < 1e-3;
+        let normal = row[3..6].iter().map(|x| x * x).sum::<f64>();
+        if count == 6 && bytes(&row[3..6]) {
+            return Some(Self { at: 3, scale: 1.0 });
+        }
+        if count < 9 || (normal - 1.0).abs() > 1e-3 {
+            return None;
+        }
+        let scale = if bytes(&row[6..]) { 1.0 } else { 255.0 };
+        (bytes(&row[6..]) || row[6..].iter().all(share)).then_some(Self { at: 6, scale })
+    }
+
+    /// Numbers beyond the range are its ends.
+    fn of(&self, row: &[f64; 9]) -> [u8; 3] {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is wanted")]
+        let byte = |x: f64| if self.scale > 1.0 { (x * self.scale).round() as u8 } else { x as u8 };
+        [0, 1, 2].map(|k| byte(row[self.at + k]))
+    }
+
+    /// Which columns are left out, of so many.
+    fn left_out(colours: Option<&Self>, count: usize) -> Option<String> {
+        let after =
+            |last: usize| if last == count { format!("{count}") } else { format!("{last} to {count}") };
+        match colours {
+            Some(c) if c.at == 3 => None,
+            Some(_) if count == 9 => Some("4 to 6".into()),
+            Some(_) => Some(format!("4 to 6 and {}", after(10))),
+            None => (count > 3).then(|| format!("4 to {count}")),
+        }
+    }
+}
+
 /// Three or more columns: x y z, then what the first row shows: normals (unit length) or colours (whole numbers
-/// to 255). Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
+/// to 255), or a normal and then colours, as such numbers or as shares of 1. Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
 pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result<(), CloudError> {
     let fail = |number: usize, what: String| {
         let advice =
@@ -103,7 +151,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
         return Err(fail(1, "it is not text".into()));
     }
     let mut columns: Option<usize> = None;
-    let mut colors = false;
+    let mut colours = None;
     let (mut style, mut points) = (None, false);
     for (index, line) in bytes.split(|&b| b == b'\n').enumerate() {
         let line = line.trim_ascii();
@@ -143,10 +191,9 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
         }
         if columns.is_none() {
             columns = Some(count);
-            let byte = |x: &f64| (0.0..=255.0).contains(x) && x.fract() <= 0.0;
-            colors = count == 6 && row[3..].iter().all(byte) && row[3..].iter().any(|x| *x > 1.0);
-            if count > 3 && !colors {
-                report.warn("scan-columns", format!("columns 4 to {count} were left out"));
+            colours = Colours::shown(&row, count);
+            if let Some(which) = Colours::left_out(colours.as_ref(), count) {
+                report.warn("scan-columns", format!("columns {which} were left out"));
             }
         } else if columns != Some(count) {
             let wanted = columns.unwrap_or(3);
@@ -155,8 +202,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
                 format!("there are {count} columns, the lines before have {wanted}"),
             ));
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is wanted")]
-        let color = colors.then(|| [row[3] as u8, row[4] as u8, row[5] as u8]);
+        let color = colours.as_ref().map(|c: &Colours| c.of(&row));
         if !sink.push([row[0], row[1], row[2]], color) {
             return Err(too_many(CloudFormat::Xyz));
         }

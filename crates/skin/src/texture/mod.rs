@@ -4,6 +4,8 @@ mod atlas;
 mod bark;
 mod blades;
 mod bodies;
+mod cloud;
+mod filled;
 mod foliage;
 mod noise;
 mod patterns;
@@ -16,6 +18,7 @@ use std::sync::{Arc, OnceLock};
 use base::{Executor, map_indexed};
 use mesh::Texture;
 
+pub use cloud::CloudColours;
 pub use patterns::swatch;
 pub use veins::{LeafColours, vein_texture};
 
