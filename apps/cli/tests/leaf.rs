@@ -66,6 +66,35 @@ fn growth_pose_and_plant_are_made() {
 }
 
 /// A feather of a leaf as a vein graph in pixels: midrib, six pairs of side veins.
+#[test]
+fn control_balls_are_moved_and_told_where_there_are_none() {
+    let at = folder("leaf-balls");
+    let leaf = fixture("leaf1.csv");
+    let length = |args: &[&str]| {
+        let text =
+            good(&at, &[&["leaf", &leaf, "-o", "leaf.glb", "--json", "--marks", "m.csv"], args].concat());
+        let report: Value = serde_json::from_str(&text).unwrap();
+        report["items"][0]["leaf"]["length_mm"].as_f64().unwrap()
+    };
+    let plain = length(&[]);
+    // The tip goes 50 mm on, in the direction of the leaf as a whole: its end hangs.
+    let longer = length(&["--ball", "0,1,0,0.05,0", "--surface", "nurbs"]);
+    assert!(longer > plain + 20.0 && longer <= plain + 50.0, "{plain} {longer}");
+    let marks = fs::read_to_string(at.join("m.csv")).unwrap();
+    // What is written is what was moved.
+    good(&at, &["leaf", "m.csv", "-o", "again.glb"]);
+    assert!(marks.contains("tip"), "{marks}");
+    assert!((length(&["--ball=0,1,0,0.03,0", "--ball=0,1,0,0.02,0"]) - longer).abs() < 1e-9, "moves add up");
+    let none = bad(&at, &["leaf", &leaf, "-o", "x.glb", "--ball", "11,1,0,0,0.1"]);
+    assert!(none.contains("no control ball 1 in row 11"), "{none}");
+    for (ball, why) in
+        [("1,1,0,0", "is not ROW,MARK"), ("1,1,0,0,99", "must be -10 to 10"), ("1,1,0,0,0,99", "0.05 to 20")]
+    {
+        let error = bad(&at, &["leaf", &leaf, "-o", "x.glb", "--ball", ball]);
+        assert!(error.contains(why), "{error}");
+    }
+}
+
 fn vein_graph() -> String {
     let (mut nodes, mut edges) = (Vec::new(), Vec::new());
     for k in 0..=50 {

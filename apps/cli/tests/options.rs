@@ -22,6 +22,7 @@ const VALUES: &[(&str, &str)] = &[
     ("attractors", "points.xyz"),
     ("azimuth", "90"),
     ("background", "white"),
+    ("ball", "2,3,0,0,0.02"),
     ("branch-depth", "paper"),
     ("classes", "classes.csv"),
     ("compare", "end.xyz"),

@@ -79,6 +79,17 @@ def test_leaves_are_those_of_the_command_line(cli, root):
     assert bg.leaf(path, seed=4).digest == cli("leaf", path, "--seed", 4, "--json")["digest"]
 
 
+def test_control_balls_of_a_leaf_are_moved_as_on_the_command_line(cli, root):
+    path = root / "fixtures/leaves/leaf1.csv"
+    ball = {"row": 5, "mark": 1, "by_m": [0, 0, 0.08], "thickness": 3}
+    made = bg.leaf(path, surface="approximate", balls=[ball, {"row": 0, "by_m": [0, 0.05, 0.02]}])
+    asked = ("--surface", "approximate", "--ball", "5,1,0,0,0.08,3", "--ball", "0,4,0,0.05,0.02")
+    assert made.digest == cli("leaf", path, *asked, "--json")["digest"]
+    assert made.digest != bg.leaf(path, surface="approximate").digest
+    with pytest.raises(bg.BurgeonError, match="no control ball 4 in row 11"):
+        bg.leaf(path, balls=[{"row": 11}])
+
+
 @pytest.mark.parametrize("word, more", [("palmate", {"veins": 7, "depth": 0.4}), ("parallel", {"length": 0.2})])
 def test_leaves_of_chief_veins_are_those_of_the_command_line(cli, word, more, tmp_path):
     args = [x for name, value in more.items() for x in (f"--{name}", value)]

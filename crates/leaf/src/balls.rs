@@ -32,7 +32,7 @@ pub struct BallMove {
 
 impl Default for BallMove {
     fn default() -> Self {
-        Self { row: 1, mark: MIDDLE as u32 + 1, by_m: [0.0; 3], thickness: 1.0 }
+        Self { row: 1, mark: 4, by_m: [0.0; 3], thickness: 1.0 }
     }
 }
 

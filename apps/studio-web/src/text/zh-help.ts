@@ -626,7 +626,7 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'preset.oak': '宽阔的夏栎，经三个生命周期竞争空间长成',
   'preset.birch': '垂枝桦：树皮白色，基部深色，小枝纤细下垂',
   'preset.lime': '椴树：树冠浓密圆整，叶心形',
-  'preset.maple': '秋天的槭树：树冠浓密卵形，叶掌状',
+  'preset.maple': '秋天的槭树：树冠为浓密的圆顶，叶掌状',
   'preset.spruce': '挪威云杉：浓密圆锥形，枝条垂及地面',
   'preset.willow': '垂柳：枝条如帘垂下',
   'preset.poplar': '钻天杨：枝条陡立，成柱形',
