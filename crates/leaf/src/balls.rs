@@ -1,12 +1,11 @@
 //! Control balls moved and rescaled by hand: the deformation of Wang et al. (2011), Fig 4.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::marks::{FullMarks, MARKS_A_ROW, MarksError};
 use crate::rays::{Rays, RaysError};
-use crate::spec::LeafSpec;
 
 /// One control ball moved and rescaled: the place of a mark and the thickness of the veins there.
 ///
@@ -67,85 +66,73 @@ impl Sides {
     }
 }
 
-impl LeafSpec {
-    /// The marks as they are laid out: balls moved by hand, then curl and wilt. The margin goes with them.
-    ///
-    /// # Errors
-    /// [`MarksError::NoBall`] for a ball that the leaf has not; what [`Marks::validate`](crate::Marks::validate) says of the moved ones.
-    pub fn shaped(&self, marks: &FullMarks) -> Result<FullMarks, MarksError> {
-        Ok(self.pose().apply(&self.moved(marks)?))
+/// The marks with balls moved by hand, one after another. The margin goes with them.
+///
+/// # Errors
+/// [`MarksError::NoBall`] for a ball that the leaf has not; what [`Marks::validate`](crate::Marks::validate) says of the moved
+/// ones.
+pub(crate) fn moved(balls: &[BallMove], marks: &FullMarks) -> Result<FullMarks, MarksError> {
+    let mut out = marks.clone();
+    if balls.is_empty() {
+        return Ok(out);
     }
-
-    /// As [`shaped`](Self::shaped), without curl and wilt.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn moved(&self, marks: &FullMarks) -> Result<FullMarks, MarksError> {
-        let mut out = marks.clone();
-        if self.balls.is_empty() {
-            return Ok(out);
-        }
-        let (sides, rows) = (Sides::of_marks(marks), marks.rows.len());
-        for ball in &self.balls {
-            let (row, mark) = (ball.row as usize, ball.mark as usize);
-            let way = sides.way(ball.by_m);
-            if row == 0 {
-                out.tip += way;
-                out.tip_thickness *= ball.thickness;
-            } else if let (Some(at), 1..=MARKS_A_ROW) = (out.rows.get_mut(row - 1), mark) {
-                at.points[mark - 1] += way;
-                at.thickness[mark - 1] *= ball.thickness;
-                if mark - 1 == MIDDLE {
-                    at.midrib *= ball.thickness;
-                }
-            } else {
-                return Err(MarksError::NoBall { row, mark, rows });
+    let (sides, rows) = (Sides::of_marks(marks), marks.rows.len());
+    for ball in balls {
+        let (row, mark) = (ball.row as usize, ball.mark as usize);
+        let way = sides.way(ball.by_m);
+        if row == 0 {
+            out.tip += way;
+            out.tip_thickness *= ball.thickness;
+        } else if let (Some(at), 1..=MARKS_A_ROW) = (out.rows.get_mut(row - 1), mark) {
+            at.points[mark - 1] += way;
+            at.thickness[mark - 1] *= ball.thickness;
+            if mark - 1 == MIDDLE {
+                at.midrib *= ball.thickness;
             }
-        }
-        match out.to_marks().validate().next() {
-            Some(fault) => Err(fault),
-            None => Ok(out),
+        } else {
+            return Err(MarksError::NoBall { row, mark, rows });
         }
     }
+    match out.to_marks().validate().next() {
+        Some(fault) => Err(fault),
+        None => Ok(out),
+    }
+}
 
-    /// As [`shaped`](Self::shaped), of chief veins that start together. A ball at the base, which all veins share, is moved
-    /// on all of them.
-    ///
-    /// # Errors
-    /// [`RaysError::NoBall`] for a ball that the leaf has not.
-    pub fn shaped_rays(&self, rays: &Rays) -> Result<Rays, RaysError> {
-        let mut out = rays.clone();
-        if let Some(sides) = Sides::of_rays(rays) {
-            for ball in &self.balls {
-                let (ray, mark) = (ball.row as usize, ball.mark as usize);
-                let at = ray.checked_sub(1).zip(mark.checked_sub(1));
-                let place = at.and_then(|(i, j)| rays.rays.get(i)?.points.get(j).copied());
-                let (Some((i, j)), Some(place)) = (at, place) else {
-                    let marks = rays.rays[0].points.len();
-                    return Err(RaysError::NoBall { ray, mark, rays: rays.rays.len(), marks });
-                };
-                let shared = |k: usize| k == i || rays.rays[k].points.get(j) == Some(&place);
-                for k in (0..rays.rays.len()).filter(|&k| shared(k)) {
-                    out.rays[k].points[j] += sides.way(ball.by_m);
-                }
-                if let Some(Some(thick)) = out.rays[i].thickness.get_mut(j) {
-                    *thick *= ball.thickness;
-                }
-            }
+/// As [`moved`], of chief veins that start together. A ball at the base, which all veins share, is moved on all of them.
+///
+/// # Errors
+/// [`RaysError::NoBall`] for a ball that the leaf has not.
+pub(crate) fn moved_rays(balls: &[BallMove], rays: &Rays) -> Result<Rays, RaysError> {
+    let mut out = rays.clone();
+    let Some(sides) = Sides::of_rays(rays) else { return Ok(out) };
+    for ball in balls {
+        let (ray, mark) = (ball.row as usize, ball.mark as usize);
+        let at = ray.checked_sub(1).zip(mark.checked_sub(1));
+        let place = at.and_then(|(i, j)| rays.rays.get(i)?.points.get(j).copied());
+        let (Some((i, j)), Some(place)) = (at, place) else {
+            let marks = rays.rays[0].points.len();
+            return Err(RaysError::NoBall { ray, mark, rays: rays.rays.len(), marks });
+        };
+        let shared = |k: usize| k == i || rays.rays[k].points.get(j) == Some(&place);
+        for k in (0..rays.rays.len()).filter(|&k| shared(k)) {
+            out.rays[k].points[j] += sides.way(ball.by_m);
         }
-        Ok(self.pose().apply_rays(&out))
+        if let Some(Some(thick)) = out.rays[i].thickness.get_mut(j) {
+            *thick *= ball.thickness;
+        }
     }
+    Ok(out)
+}
 
-    /// The directions of [`BallMove::by_m`] on a leaf, unit vectors.
-    pub fn ball_sides(marks: &FullMarks) -> [DVec3; 3] {
-        Sides::of_marks(marks).0
-    }
+/// The directions of [`BallMove::by_m`] on a leaf, unit vectors.
+pub fn ball_sides(marks: &FullMarks) -> [DVec3; 3] {
+    Sides::of_marks(marks).0
+}
 
-    /// As [`ball_sides`](Self::ball_sides), of chief veins.
-    pub fn ball_sides_of_rays(rays: &Rays) -> [DVec3; 3] {
-        Sides::of_rays(rays)
-            .map_or(DMat3::IDENTITY.to_cols_array_2d().map(DVec3::from_array), |sides| sides.0)
-    }
+/// As [`ball_sides`], of chief veins.
+pub fn ball_sides_of_rays(rays: &Rays) -> [DVec3; 3] {
+    Sides::of_rays(rays).map_or([DVec3::X, DVec3::Y, DVec3::Z], |sides| sides.0)
 }
 
 #[cfg(test)]
@@ -154,7 +141,7 @@ mod tests {
 
     use super::*;
     use crate::marks::tests::sample;
-    use crate::{Leaf, SurfaceKind};
+    use crate::{Leaf, LeafSpec, SurfaceKind};
 
     fn full() -> FullMarks {
         sample(9).complete(&mut Report::default()).unwrap()
@@ -194,7 +181,7 @@ mod tests {
         let spec = with(vec![ball, ball], SurfaceKind::Interpolate);
         let after = spec.moved(&full()).unwrap();
         let (from, to) = (full().rows[2].points[6], after.rows[2].points[6]);
-        let way = LeafSpec::ball_sides(&full()).map(|side| (side.dot(to - from) * 1e9).round());
+        let way = ball_sides(&full()).map(|side| (side.dot(to - from) * 1e9).round());
         assert_eq!(way, [-1e8, 4e7, 2e8]);
         let leaf = Leaf::new(&after, &spec).unwrap();
         let vein = &leaf.sides[6];
@@ -231,7 +218,7 @@ mod tests {
         assert_eq!(fault(10, 4, [0.0; 3]), MarksError::NoBall { row: 10, mark: 4, rows: 9 });
         assert_eq!(fault(2, 8, [0.0; 3]), MarksError::NoBall { row: 2, mark: 8, rows: 9 });
         let onto = full().rows[3].points[3] - full().rows[2].points[3];
-        let way = LeafSpec::ball_sides(&full()).map(|side| side.dot(onto));
+        let way = ball_sides(&full()).map(|side| side.dot(onto));
         assert_eq!(fault(3, 4, way), MarksError::SameRow(3));
     }
 }

@@ -38,7 +38,7 @@ mod scan;
 mod spec;
 mod thickness;
 
-pub use balls::BallMove;
+pub use balls::{BallMove, ball_sides, ball_sides_of_rays};
 pub use blade::Leaf;
 pub use form::LeafForm;
 pub use graph::{GraphError, VeinGraph};

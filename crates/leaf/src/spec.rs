@@ -4,9 +4,11 @@ use geom::RingRule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::balls::BallMove;
+use crate::balls::{self, BallMove};
 use crate::form::LeafForm;
+use crate::marks::{FullMarks, MarksError};
 use crate::pose::Pose;
+use crate::rays::{Rays, RaysError};
 use crate::thickness::ThicknessRule;
 
 /// Surface of a measured blade (Wang et al. 2011, section 2.2).
@@ -137,6 +139,32 @@ impl Default for LeafSpec {
 }
 
 impl LeafSpec {
+    /// The marks as they are laid out: balls moved by hand, then curl and wilt. The margin goes with them.
+    ///
+    /// # Errors
+    /// [`MarksError::NoBall`] for a ball that the leaf has not; what [`Marks::validate`](crate::Marks::validate) says of the
+    /// moved ones.
+    pub fn shaped(&self, marks: &FullMarks) -> Result<FullMarks, MarksError> {
+        Ok(self.pose().apply(&self.moved(marks)?))
+    }
+
+    /// As [`shaped`](Self::shaped), without curl and wilt.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn moved(&self, marks: &FullMarks) -> Result<FullMarks, MarksError> {
+        balls::moved(&self.balls, marks)
+    }
+
+    /// As [`shaped`](Self::shaped), of chief veins that start together. A ball at the base, which all veins share, is moved
+    /// on all of them.
+    ///
+    /// # Errors
+    /// [`RaysError::NoBall`] for a ball that the leaf has not.
+    pub fn shaped_rays(&self, rays: &Rays) -> Result<Rays, RaysError> {
+        Ok(self.pose().apply_rays(&balls::moved_rays(&self.balls, rays)?))
+    }
+
     /// Its curl and wilt, hanging down where it is limp.
     pub fn pose(&self) -> Pose {
         Pose { curl: self.curl, wilt: self.wilt, ..Pose::default() }

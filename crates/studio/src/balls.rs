@@ -56,7 +56,7 @@ fn of_marks(marks: &FullMarks, spec: &LeafSpec) -> Result<LeafBalls, LeafError> 
             balls.push(ball(i + 1, j + 1, at, if middle { thick.max(row.midrib) } else { thick }));
         }
     }
-    Ok(LeafBalls { balls, sides: LeafSpec::ball_sides(marks).map(|side| side.to_array()) })
+    Ok(LeafBalls { balls, sides: leaf::ball_sides(marks).map(|side| side.to_array()) })
 }
 
 fn of_rays(rays: &Rays, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
@@ -72,5 +72,5 @@ fn of_rays(rays: &Rays, spec: &LeafSpec) -> Result<LeafBalls, LeafError> {
             balls.push(LeafBall { row, mark, at: at.to_array(), radius_m: half * thick.unwrap_or(0.0) });
         }
     }
-    Ok(LeafBalls { balls, sides: LeafSpec::ball_sides_of_rays(rays).map(|side| side.to_array()) })
+    Ok(LeafBalls { balls, sides: leaf::ball_sides_of_rays(rays).map(|side| side.to_array()) })
 }
