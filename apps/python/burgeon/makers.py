@@ -156,8 +156,9 @@ def leaf(
     **fields: Any,
 ) -> Plant:
     """A leaf (``burgeon leaf``): of measured marks or chief veins (``.csv``), of a vein graph (``.json``), of a scan
-    (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres, or (points, 6) with red, green and blue
-    from 0 to 255), or of numbers. Of a scan, ``texture`` is ``scan`` (its colours, where it has some; the default) or ``plain``.
+    (``.xyz``, ``.ply``, ``.pcd``, ``.las`` in ``unit``, or an array (points, 3) in metres, or (points, 6) with red, green and
+    blue from 0 to 255), or of numbers. Of a scan, ``texture`` is ``scan`` (its colours, where it has some; the default) or
+    ``plain``.
 
     ``venation``: ``palmate`` or ``parallel``, a leaf of chief veins that start together: how many ``veins`` (odd),
     ``length`` in metres, of palmate leaves the ``depth`` of the notches (0 to 0.9), and ``side_veins`` (0 to 12);
