@@ -147,6 +147,18 @@ export type Arrangement =
     kind: "whorled";
   };
 
+/** One control ball moved and rescaled: the place of a mark and the thickness of the veins there. */
+export type BallMove = {
+  /** How far it is moved: to the right as one looks at the upper side with the tip up, towards the tip, and off the upper side; metres, -10 to 10. */
+  by_m?: [number, number, number];
+  /** Mark of the row from the right margin, 1 to 7, of which 4 is on the midrib; of chief veins the mark from the base. */
+  mark?: number;
+  /** Row of marks from the tip down, from 1, or 0 for the tip; of chief veins the vein from the right margin, from 1. */
+  row?: number;
+  /** The veins there are so many times as thick, 0.05 to 20, default 1. */
+  thickness?: number;
+};
+
 /** What the bark is like. */
 export type Bark =
   | /** Ridges and furrows along the trunk: oak, poplar, willow. */
@@ -741,6 +753,8 @@ export type LeafPaint =
 
 /** How a leaf is made of its marks (Wang et al. */
 export type LeafSpec = {
+  /** Control balls moved and rescaled by hand (Wang et al. */
+  balls?: BallMove[];
   /** Round ends on the veins; default false. */
   caps?: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
