@@ -400,6 +400,7 @@ export class MakerPanel {
             });
       const called = el('input', {
         class: 'f-name',
+        'data-path': `o${row}name`,
         'aria-label': t('tree.obstacle.name'),
         'data-obstacle-name': String(row),
         maxlength: '200',
