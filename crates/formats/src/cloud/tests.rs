@@ -314,7 +314,8 @@ proptest! {
 fn colours_after_normals_are_read_and_what_is_no_normal_or_colour_is_not() {
     use CloudFormat::Xyz;
     for (row, want, left_out) in [
-        ("1 2 3 0 0.6 0.8 0.176471 0.247059 1.0 0.5", Some([45, 63, 255]), "4 to 6 and 10"),
+        ("1 2 3 0 0.6 0.8 0.176471 0.247059 1.0 1", Some([45, 63, 255]), "4 to 6 and 10"),
+        ("1 2 3 0 0.6 0.8 0.176471 0.247059 1.0 0.498039", Some([117, 136, 255]), "4 to 6 and 10"),
         ("1,2,3,0,0.6,0.8,255,0,9", Some([255, 0, 9]), "4 to 6"),
         ("1 2 3 0 0.6 0.8 7 8 9 1 2 3", Some([7, 8, 9]), "4 to 6 and 10 to 12"),
         // No unit vector, no share of 255, out of range, not a number, columns missing.

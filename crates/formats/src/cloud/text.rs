@@ -59,20 +59,20 @@ fn decimal(word: &[u8]) -> Option<f64> {
     number(&word)
 }
 
-/// The first nine numbers of a row.
+/// The first ten numbers of a row.
 struct Row<'a> {
-    numbers: [f64; 9],
+    numbers: [f64; 10],
     count: usize,
     /// The first of the first three words that is no number.
     broken: Option<&'a [u8]>,
 }
 
 fn row<'a>(words: impl Iterator<Item = &'a [u8]>, number: fn(&[u8]) -> Option<f64>) -> Row<'a> {
-    let mut row = Row { numbers: [0.0; 9], count: 0, broken: None };
+    let mut row = Row { numbers: [0.0; 10], count: 0, broken: None };
     for (k, word) in words.enumerate() {
         row.count = k + 1;
         match number(word) {
-            Some(x) if k < 9 => row.numbers[k] = x,
+            Some(x) if k < 10 => row.numbers[k] = x,
             None if k < 3 => row.broken = row.broken.or(Some(word)),
             _ => {}
         }
@@ -91,17 +91,28 @@ pub(super) fn starts(start: &[u8]) -> bool {
     !start.contains(&0) && lines.take(6).any(numbers)
 }
 
+/// In what numbers a colour is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Coding {
+    /// sRGB, 0 to 255.
+    Byte,
+    /// sRGB, 0 to 1.
+    Share,
+    /// The share of light that is thrown back, 0 to 1, as multispectral scanners measure it; near infrared follows.
+    Reflectance,
+}
+
 /// What the first row shows of colours.
 struct Colours {
     /// Before which column red stands.
     at: usize,
-    /// What is 1 in bytes.
-    scale: f64,
+    coding: Coding,
 }
 
 impl Colours {
     /// Whole numbers to 255 in the last three of six columns; or, after a normal (unit length), such numbers or shares of 255.
-    fn shown(row: &[f64; 9], count: usize) -> Option<Self> {
+    /// Shares of four bands are reflectances.
+    fn shown(row: &[f64; 10], count: usize) -> Option<Self> {
         let bytes = |c: &[f64]| {
             let byte = |x: &f64| (0.0..=255.0).contains(x) && x.fract() <= 0.0;
             c.iter().all(byte) && c.iter().any(|x| *x > 1.0)
@@ -110,20 +121,33 @@ impl Colours {
         let share = |x: &f64| (0.0..=1.0).contains(x) && (x * 255.0 - (x * 255.0).round()).abs() < 1e-3;
         let normal = row[3..6].iter().map(|x| x * x).sum::<f64>();
         if count == 6 && bytes(&row[3..6]) {
-            return Some(Self { at: 3, scale: 1.0 });
+            return Some(Self { at: 3, coding: Coding::Byte });
         }
         if count < 9 || (normal - 1.0).abs() > 1e-3 {
             return None;
         }
-        let scale = if bytes(&row[6..]) { 1.0 } else { 255.0 };
-        (bytes(&row[6..]) || row[6..].iter().all(share)).then_some(Self { at: 6, scale })
+        let coding = if bytes(&row[6..9]) {
+            Coding::Byte
+        } else if !row[6..9].iter().all(share) {
+            return None;
+        } else if count == 10 && share(&row[9]) && row[9] < 1.0 {
+            // A fourth share that is 1 is an opacity.
+            Coding::Reflectance
+        } else {
+            Coding::Share
+        };
+        Some(Self { at: 6, coding })
     }
 
     /// Numbers beyond the range are its ends.
-    fn of(&self, row: &[f64; 9]) -> [u8; 3] {
+    fn of(&self, row: &[f64; 10]) -> [u8; 3] {
+        let srgb = |x: f64| match self.coding {
+            Coding::Byte => x.trunc(),
+            Coding::Share => (x * 255.0).round(),
+            Coding::Reflectance => (base::srgb_of_linear(x.clamp(0.0, 1.0)) * 255.0).round(),
+        };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is wanted")]
-        let byte = |x: f64| if self.scale > 1.0 { (x * self.scale).round() as u8 } else { x as u8 };
-        [0, 1, 2].map(|k| byte(row[self.at + k]))
+        [0, 1, 2].map(|k| srgb(row[self.at + k]) as u8)
     }
 
     /// Which columns are left out, of so many.
@@ -194,6 +218,10 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
             colours = Colours::shown(&row, count);
             if let Some(which) = Colours::left_out(colours.as_ref(), count) {
                 report.warn("scan-columns", format!("columns {which} were left out"));
+            }
+            if colours.as_ref().is_some_and(|c: &Colours| c.coding == Coding::Reflectance) {
+                let message = "columns 7 to 9 are taken for reflectances of red, green and blue, as near infrared follows";
+                report.warn("scan-reflectance", message);
             }
         } else if columns != Some(count) {
             let wanted = columns.unwrap_or(3);

@@ -34,8 +34,6 @@ const EVEN: f64 = 0.02;
 /// Reaches that are tried, in spacings of the dots, and dots that are left out in turn to try them.
 const REACHES: [f64; 8] = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6];
 const TRIALS: usize = 1500;
-/// A finer reach is taken if it is no more than this factor worse: of noise alone, a little is much.
-const AS_GOOD: f64 = 1.002;
 /// Farther than this many reaches a dot counts nothing.
 const CUT: f64 = 2.5;
 /// A place whose nearest dot is farther than this many spacings, or than the second number times as far as is usual, is in a hole.
@@ -105,8 +103,7 @@ impl CloudColours {
             weight: rows.iter().map(|&i| judged[i].1).collect(),
         };
         let wrong = map_indexed(executor, REACHES.len(), |k| inner.trial(REACHES[k] * spacing));
-        let least = wrong.iter().copied().fold(f64::INFINITY, f64::min);
-        let best = wrong.iter().position(|w| *w <= AS_GOOD * least).unwrap_or(0);
+        let best = coarsest(&wrong);
         Some(Self { places, light, inner, spacing, reach: REACHES[best] * spacing })
     }
 
@@ -203,21 +200,35 @@ impl Inner {
         weighted(near.into_iter().filter(|i| *i != but).map(|i| (self.light[i], bell(i))))
     }
 
-    /// How wrong dots are predicted by the others with a reach: the mean square over those that are tried.
-    fn trial(&self, reach: f64) -> f64 {
+    /// How wrong dots are predicted by the others with a reach: the square of the error of each that is tried, weighed.
+    fn trial(&self, reach: f64) -> Vec<f64> {
         let step = self.places.len().div_ceil(TRIALS).max(1);
-        let (mut sum, mut all) = (0.0, 0.0);
-        for i in (0..self.places.len()).step_by(step) {
+        let one = |i: usize| {
             let mut gaps = [0.0; 2];
             // The first is the dot itself.
             self.tree.nearest_distances(self.places[i], &mut gaps);
-            let Some(guess) = self.at((self.places[i], gaps[1]), reach, i) else { continue };
-            let off: f64 = tone(guess).iter().zip(tone(self.light[i])).map(|(a, b)| (a - b) * (a - b)).sum();
-            sum += self.weight[i] * off;
-            all += self.weight[i];
-        }
-        sum / f64::max(all, f64::MIN_POSITIVE)
+            let guess = self.at((self.places[i], gaps[1]), reach, i)?;
+            let off =
+                tone(guess).iter().zip(tone(self.light[i])).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+            Some(self.weight[i] * off)
+        };
+        (0..self.places.len()).step_by(step).map(|i| one(i).unwrap_or(0.0)).collect()
     }
+}
+
+/// The coarsest reach that predicts no worse than the best one beyond what chance does: by one standard error of the mean
+/// of their differences (Breiman et al. 1984, section 3.4.3).
+fn coarsest(wrong: &[Vec<f64>]) -> usize {
+    let sum = |k: usize| wrong[k].iter().sum::<f64>();
+    let best = (0..wrong.len()).fold(0, |best, k| if sum(k) < sum(best) { k } else { best });
+    let as_good = |k: &usize| {
+        let more = wrong[*k].iter().zip(&wrong[best]).map(|(a, b)| a - b);
+        let n = wrong[best].len() as f64;
+        let mean = more.clone().sum::<f64>() / n;
+        let variance = more.map(|m| (m - mean) * (m - mean)).sum::<f64>() / n;
+        mean <= (variance / n).sqrt()
+    };
+    (best..wrong.len()).rev().find(as_good).unwrap_or(best)
 }
 
 /// Usable points with their light, of many each cube's mean.
