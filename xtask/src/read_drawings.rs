@@ -21,10 +21,12 @@ use crate::made_drawings::{self, side_by_side};
 use crate::quickdraw::{drawing_of, json_lines, text_of};
 use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
 
-const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE] [--test]";
+const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE] [--hundred] [--test]";
 
 /// Sets of real drawings side by side.
 const SIDE_BY_SIDE: u64 = 60;
+/// Drawings that are looked at one by one.
+const HUNDRED: usize = 100;
 
 /// A part of the drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,19 +121,21 @@ struct Judged {
 /// Reads drawings by kind and number. With `--sheets`, writes contact sheets into `out/read`: each drawing beside what was
 /// read in it; with `--pictures`, beside the plant that the command makes of it. With `--changed`, says instead how many of
 /// people's drawings are read as something else when they are drawn in another way; with `--without`, how many are read rightly
-/// without a rule.
+/// without a rule. With `--hundred`, only of a hundred drawings by people, drawn by lot, the same ones each time.
 ///
 /// # Errors
 /// A sentence: a wrong option, or a file that cannot be read.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let mut folder = repository().join("../shared/data/sketches");
     let (mut part, mut sheets, mut pictures, mut again) = (Part::Choose, false, false, false);
+    let mut hundred = false;
     let mut wanted = args.iter();
     while let Some(arg) = wanted.next() {
         match arg.as_str() {
             "--test" => part = Part::Test,
             "--sheets" => sheets = true,
             "--changed" => again = true,
+            "--hundred" => hundred = true,
             "--without" => {
                 let name = wanted.next().ok_or_else(|| USAGE.to_owned())?;
                 say(&Chosen::of(&folder)?.told_without(name));
@@ -160,8 +164,10 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         say(&format!("{} drawings of people:\n\n{}", drawings.len(), changed::table(&drawings)));
         return Ok(());
     }
-    let mut cases = cases(&folder, part)?;
-    cases.extend(ways(part));
+    let mut cases = if hundred { by_lot(people(&folder, part)?) } else { cases(&folder, part)? };
+    if !hundred {
+        cases.extend(ways(part));
+    }
     let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
     // Called no plant: drawings by people, all others.
     let mut called = [0_usize; 2];
@@ -321,6 +327,21 @@ fn cases(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
     cases.extend(together);
     cases.extend(made(part));
     Ok(cases)
+}
+
+/// A hundred of them, drawn by lot, each set named after its place among four sheets.
+fn by_lot(mut all: Vec<Case>) -> Vec<Case> {
+    let r = &mut Seed::new(20).stream(Draw::Test);
+    for k in 0..all.len().min(HUNDRED) {
+        let other = k + r.below(all.len() - k);
+        all.swap(k, other);
+    }
+    all.truncate(HUNDRED);
+    for (k, case) in all.iter_mut().enumerate() {
+        case.drawing.name = format!("{} {}", case.set, case.drawing.name);
+        case.set = format!("hundred {}", 1 + 4 * k / HUNDRED);
+    }
+    all
 }
 
 /// The drawings of people of one part.

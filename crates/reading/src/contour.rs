@@ -98,6 +98,11 @@ fn waist(width: &[f64]) -> Option<(usize, f64)> {
 }
 
 pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
+    runs_at(outline, y).into_iter().map(|(from, to)| to - from).sum()
+}
+
+/// From where to where a level lies within an outline, from left to right.
+pub(crate) fn runs_at(outline: &[DVec2], y: f64) -> Vec<(f64, f64)> {
     let mut xs: Vec<f64> = outline
         .iter()
         .enumerate()
@@ -107,7 +112,7 @@ pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
         })
         .collect();
     base::sort_numbers(&mut xs);
-    xs.chunks_exact(2).map(|w| w[1] - w[0]).sum()
+    xs.chunks_exact(2).map(|w| (w[0], w[1])).collect()
 }
 
 #[cfg(test)]

@@ -44,6 +44,7 @@ mod rings;
 mod rows;
 mod rules;
 mod several;
+mod silhouette;
 mod steady;
 #[cfg(test)]
 mod tests;

@@ -12,9 +12,10 @@ use crate::rules::GREEN_LEAVES;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, inertia, kinds, outlines, pressed, rules, several, veins,
+    flowers, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
 };
-use geom::bounds;
+use geom::{bounds, convex_hull, signed_area};
+use glam::DVec2;
 
 /// Understands a drawing.
 ///
@@ -200,6 +201,10 @@ const MOST_STROKES: usize = 200;
 const MOST_JUDGED: usize = 1000;
 /// A blade on wood that is larger than this share of the drawing's diagonal is a crown: that is most of a tree (*geometry*).
 const CROWN_BLADE: f64 = 0.35;
+/// A tree of which the crowns are less than this share of the hull is read again, and that reading kept if its crowns are more
+/// than that, and so many times as much: bare trees have none.
+const POOR_CROWN: f64 = 0.25;
+const MORE_CROWN: f64 = 2.0;
 /// A palm has at least so many fronds where the whole is known to be one.
 const FEWEST_FRONDS: usize = 2;
 /// Readings that are told.
@@ -227,18 +232,19 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let own = group(&scores, s.kind);
         !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
     };
-    // The kind may be right, and still a crown be taken for a blade.
-    let half = built.is_like(Kind::Tree) && bears_its_crown_as_blade(&reading);
+    // The kind may be right, and still its crown be taken for a blade, or most of it for something else.
+    let half = built.is_like(Kind::Tree)
+        && (bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN);
     let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
     let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
     if let Some(wanted) = asked.kind {
-        (said, kind) = (Report::default(), wanted);
-        reading = attempt(asked, asked.kind, ink, classes, &mut said);
+        kind = wanted;
+        (reading, said) = taken_for(asked, wanted, ink, classes);
     } else if let Some(other) = other.filter(|_| !rooted && asked.is_free(ink, classes)) {
-        let mut again = Report::default();
-        let tried = attempt(asked, Some(other.kind), ink, classes, &mut again);
+        let (tried, again) = taken_for(asked, other.kind, ink, classes);
         // Only what can be built of the drawing explains it.
-        if is_built(other.kind, &tried) && !(half && bears_its_crown_as_blade(&tried)) {
+        let better = !other.kind.is_like(built) || is_whole_tree(ink, &reading, &tried);
+        if better && is_built(other.kind, &tried) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
         }
     }
@@ -292,11 +298,27 @@ fn is_built(kind: Kind, reading: &Reading) -> bool {
     kind.is_like(Kind::of(reading)) || (no_flower && needed)
 }
 
-/// Whether wood bears no crown, but a leaf or petal of the size of one.
-fn bears_its_crown_as_blade(reading: &Reading) -> bool {
+/// Whether a tree has a leaf or petal of the size of a crown, or of a trunk.
+fn bears_a_crown_as_blade(reading: &Reading) -> bool {
     let petals = reading.flowers.iter().flat_map(|f| &f.petals);
     let large = |b: &BladeReading| bounds(&b.outline).is_some_and(|(lo, hi)| lo.distance(hi) > CROWN_BLADE);
-    reading.woody && reading.regions.is_empty() && petals.chain(&reading.leaves).any(large)
+    petals.chain(&reading.leaves).any(large)
+}
+
+/// How much of the hull of a drawing its crowns are.
+fn crown_share(ink: &Ink, reading: &Reading) -> f64 {
+    let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
+    let crowns: f64 = reading.regions.iter().map(|r| signed_area(&r.outline)).sum();
+    crowns / signed_area(&convex_hull(&all)).max(f64::MIN_POSITIVE)
+}
+
+/// Whether a tree that was read again is more of one: it has no blade as large as a crown, and much more crown if it had little.
+fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
+    let more = || {
+        let share = crown_share(ink, again);
+        share > POOR_CROWN && share > MORE_CROWN * crown_share(ink, first)
+    };
+    !bears_a_crown_as_blade(again) && (bears_a_crown_as_blade(first) || more())
 }
 
 /// A fruit and a root are built alike: the model says which of them it is.
@@ -332,7 +354,25 @@ fn readings(kind: Kind, scores: &[Scored]) -> Vec<Scored> {
 
 /// A plant that is taken for one of these has leaves where another may have petals.
 const fn bears_no_flower(kind: Kind) -> bool {
-    matches!(kind, Kind::Grass | Kind::Stem | Kind::Palm | Kind::Leaf)
+    matches!(kind, Kind::Grass | Kind::Stem | Kind::Palm | Kind::Leaf | Kind::Fruit | Kind::Vegetable)
+}
+
+/// One reading of one plant that is taken for a kind; of a tree that would have hardly a crown by its silhouette, if no class
+/// was set by hand and that has a neck.
+fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -> (Reading, Report) {
+    let mut report = Report::default();
+    let reading = attempt(asked, Some(kind), ink, classes, &mut report);
+    if kind.is_like(Kind::Tree) && asked.is_free(ink, classes) && crown_share(ink, &reading) < POOR_CROWN {
+        let mut draft = Draft::new(ink, classes, asked.kept);
+        draft.kind = Some(kind);
+        if silhouette::read_silhouette(&mut draft) {
+            let hints = draft.hints(&[]);
+            draft.forest.grow(Vec::new(), &hints);
+            let bearers = outlines::bear_regions(&mut draft);
+            return (draft.finish(bearers, vec![], vec![], vec![], vec![]), Report::default());
+        }
+    }
+    (reading, report)
 }
 
 /// One reading of one plant, taken for a kind or for whatever its strokes say.

@@ -5,9 +5,10 @@
 use base::{Cancelled, Report, Run, Seed};
 use geom::contains;
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, NodeId, OrganKind, PipeModel, Plant, Shape, ShapeId, Taper, pipe_radii};
+use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
 use reading::{BladeReading, Reading, RegionKind};
 
+use crate::bodies::name_bodies;
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
     leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
@@ -140,7 +141,7 @@ pub fn build_again(
     let model = pipes(&plant, &plans, &ids, reading, spec, map);
     pipe_radii(&mut plant, &model);
     press(&mut plant, reading);
-    name_bodies(&mut plant);
+    name_bodies(&mut plant, reading);
     report.book("depth", run.clock.now_ms() - started);
     debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
     Ok(Built { plant, map, grown })
@@ -168,20 +169,6 @@ fn press(plant: &mut Plant, reading: &Reading) {
         let most = below.map_or(f64::INFINITY, |(_, radius)| radius);
         let factor = if base > most && base > 0.0 { by[i] * most / base } else { by[i] };
         plant.nodes.radius_m[rows].iter_mut().for_each(|r| *r *= factor);
-    }
-}
-
-/// What was read as a fruit and is a good part of its plant is a body: a cactus pad is, an apple is not.
-fn name_bodies(plant: &mut Plant) {
-    let Some((low, high)) = plant.extent() else { return };
-    let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
-    let tall = low.distance(high) * if thorny { 0.12 } else { 0.4 };
-    for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Fruit) {
-        let Some(Shape::Revolution { profile }) = plant.shapes.get(organ.shape.index()) else { continue };
-        let (low, high) = profile.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
-        if (high - low) * organ.scale > tall {
-            organ.kind = OrganKind::Body;
-        }
     }
 }
 

@@ -9,6 +9,7 @@
 //! | radii, plant | `build` | section 6, Eq 5 to 7 |
 //! | how true the plant is to the drawing | `fidelity` | |
 
+mod bodies;
 mod build;
 mod depth;
 mod fidelity;

@@ -48,6 +48,8 @@ const LEAFLET: f64 = 0.4;
 /// its skin.
 const BODY: f64 = 0.25;
 const SKIN: f64 = 0.7;
+/// What is smooth is the body under a tuft if its area is more than this share of the tuft's.
+const BESIDE_TUFT: f64 = 0.5;
 /// A pot drawn in lines, shares of the drawing: its lines begin below the first, one of them below the second and wider than
 /// the third.
 const POT_FOOT: f64 = 0.45;
@@ -225,13 +227,9 @@ fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
         found.extend(longest.map(|l| (l.stroke, StrokeClass::TrunkOutline)));
     }
     for p in fronds {
-        let points = &draft.ink.strokes[p.stroke].points;
-        let middle = p.lo.midpoint(p.hi);
-        let away: Vec<f64> = points.iter().map(|q| q.distance(middle)).collect();
-        let reach = away.iter().copied().fold(0.0, f64::max);
         let class = if p.is_level() && p.hi.y < all.0.y + LOW {
             StrokeClass::Ground
-        } else if dips(&away, FROND_DIP * reach).len() > FRONDS {
+        } else if is_tuft(draft, p) {
             StrokeClass::Corolla
         } else if p.open < MOUTH {
             StrokeClass::Blade
@@ -308,14 +306,31 @@ fn leaf(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     parts.iter().map(|p| (p.stroke, class(p))).collect()
 }
 
-/// The largest outline is the body, and so are others as large beside it; what lies in it is its skin.
+/// Points on all sides in one stroke: the fronds of a palm, the leaves on a pineapple.
+fn is_tuft(draft: &Draft<'_>, p: &Part) -> bool {
+    let middle = p.lo.midpoint(p.hi);
+    let away: Vec<f64> = draft.ink.strokes[p.stroke].points.iter().map(|q| q.distance(middle)).collect();
+    let reach = away.iter().copied().fold(0.0, f64::max);
+    dips(&away, FROND_DIP * reach).len() > FRONDS
+}
+
+/// The largest outline is the body, and so are others as large beside it; what lies in it is its skin, and what has points a
+/// tuft of leaves.
 fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
-    let largest = parts.iter().map(|p| p.area).fold(0.0, f64::max);
+    let by_area = |a: &&Part, b: &&Part| a.area.total_cmp(&b.area).then(b.stroke.cmp(&a.stroke));
+    let Some(widest) = parts.iter().max_by(by_area) else { return Vec::new() };
+    // A tuft may reach wider than the body under it.
+    let below = |p: &&Part| {
+        p.area > BESIDE_TUFT * widest.area && p.lo.midpoint(p.hi).y < widest.lo.y && !is_tuft(draft, p)
+    };
+    let under = parts.iter().filter(below).max_by(by_area).filter(|_| is_tuft(draft, widest));
+    let largest = under.unwrap_or(widest).area;
     // Where nothing large is closed, lines are sides of the body.
     let lines = !parts.iter().any(|p| p.open < 0.5 && p.area > 0.5 * largest);
+    let tuft = |p: &Part| (p.area < largest || under.is_some()) && is_tuft(draft, p);
     let bodies: Vec<&Part> = parts
         .iter()
-        .filter(|p| p.area > BODY * largest && (lines || p.open < 0.5 || p.area >= largest))
+        .filter(|p| p.area > BODY * largest && (lines || p.open < 0.5 || p.area >= largest) && !tuft(p))
         .collect();
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
@@ -331,6 +346,8 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
             StrokeClass::Other
         } else if body(p) {
             StrokeClass::Fruit
+        } else if tuft(p) {
+            StrokeClass::Corolla
         } else if p.open < MOUTH {
             StrokeClass::Blade
         } else {

@@ -1,6 +1,11 @@
 //! Drawings taken for a kind: what is then built of them.
 
+use std::cell::RefCell;
+
+use geom::signed_area;
+
 use super::*;
+use crate::draft::Draft;
 
 /// What is built of lines that are taken for a kind.
 fn taken(kind: Kind, lines: &[Vec<DVec2>]) -> Reading {
@@ -119,4 +124,60 @@ fn rows_of_grass_are_no_flower() {
     };
     let r = taken(Kind::Grass, &[row(0.0), row(3.4), row(6.6)]);
     assert_eq!((r.flowers.len(), r.axes.len(), r.leaves.len()), (0, 0, 9), "{:?}", r.strokes);
+}
+
+#[test]
+fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
+    let at = |c: (f64, f64), r: f64, a: f64| DVec2::new(c.0 + r * ops::cos(a), c.1 + r * ops::sin(a));
+    let arc = |c: (f64, f64), from: f64| -> Vec<DVec2> {
+        (0..=12).map(|i| at(c, 1.3, from - 1.3 + 2.6 * f64::from(i) / 12.0)).collect()
+    };
+    // Twelve arcs round a crown that meet nowhere, marks in it, two sides of a trunk, the ground.
+    let mut lines: Vec<Vec<DVec2>> = (0..12)
+        .map(|k| ops::TAU * (f64::from(k) + 0.5) / 12.0)
+        .map(|a| arc((3.6 * ops::cos(a), 8.0 + 3.0 * ops::sin(a)), a))
+        .collect();
+    lines.extend((0..4).map(|k| arc((-1.5 + f64::from(k), 7.0 + f64::from(k % 2)), 1.0)));
+    lines.push(path(&[(-0.8, 0.0), (-0.6, 2.0), (-0.7, 4.2)]));
+    lines.push(path(&[(0.9, 0.0), (0.6, 2.0), (0.7, 4.2)]));
+    lines.push(path(&[(-4.0, 0.1), (0.0, 0.0), (4.0, 0.1)]));
+    let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
+    let kept = RefCell::default();
+    let mut draft = Draft::new(&ink, &[], &kept);
+    assert!(crate::silhouette::read_silhouette(&mut draft));
+    let trunk = &draft.forest.axes[draft.bodies[0]];
+    let (foot, top) = (trunk.points[0], trunk.points[trunk.points.len() - 1]);
+    // Ink has diagonal 1; the trunk is a tenth as wide as it is high above the ground, and ends under the crown.
+    let scale = ink.map.scale;
+    assert!((foot.x - top.x).abs() < 0.4 * scale && (3.5..5.5).contains(&((top.y - foot.y) / scale)));
+    assert!(trunk.half_width.iter().all(|w| (0.4..1.6).contains(&(w / scale))), "{:?}", trunk.half_width);
+    let crown = signed_area(&draft.regions[0].outline) / (scale * scale);
+    assert!((50.0..75.0).contains(&crown), "{crown}: the ellipse has {:.1}", ops::PI * 4.9 * 4.3);
+    // A bare tree has no silhouette with a neck, and stays bare.
+    let bare: Vec<Vec<DVec2>> = (0..9)
+        .map(|k| at((0.0, 0.0), 6.0, 0.4 + 0.3 * f64::from(k)))
+        .map(|tip| vec![DVec2::ZERO, tip * 0.5, tip])
+        .chain([path(&[(0.0, -5.0), (0.0, 0.0)])])
+        .collect();
+    let ink = clean(&Drawing::from_polylines("bare", &bare), &mut Report::default());
+    assert!(!crate::silhouette::read_silhouette(&mut Draft::new(&ink, &[], &kept)));
+}
+
+#[test]
+fn the_tuft_on_a_fruit_is_leaves() {
+    let around = |a: f64, r: f64| DVec2::new(r * ops::cos(a), r * ops::sin(a));
+    let body: Vec<DVec2> =
+        (0..=40).map(|i| around(ops::TAU * f64::from(i) / 40.0, 3.0) * DVec2::new(0.7, 1.0)).collect();
+    // Five points in one stroke, from the top of the body and back to it.
+    let tuft: Vec<DVec2> = (0..=10)
+        .map(|i| (0.35 + 0.24 * f64::from(i), if i % 2 == 0 { 0.6 } else { 3.2 }))
+        .map(|(a, r)| DVec2::new(0.0, 3.0) + around(a, r))
+        .collect();
+    let ink = clean(&Drawing::from_polylines("pineapple", &[body, tuft]), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    for kind in [Kind::Fruit, Kind::Vegetable] {
+        let r = read_as(Some(kind), &ink, &classes, &mut Report::default());
+        assert_eq!((r.fruits.len(), r.flowers.len()), (1, 0), "{:?}", r.strokes);
+        assert!(r.leaves.len() >= 4, "{:?}", r.strokes);
+    }
 }
