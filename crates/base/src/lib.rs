@@ -16,7 +16,7 @@
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
-//! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`] |
+//! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`], [`light_of_byte`], [`byte_of_light`] |
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
@@ -47,7 +47,7 @@ pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use slip::Slip;
 pub use sort::{Set, first_of, map_of, median, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
-pub use srgb::{linear_of_srgb, srgb_of_linear};
+pub use srgb::{byte_of_light, light_of_byte, linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,
 };

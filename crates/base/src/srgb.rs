@@ -1,5 +1,7 @@
 //! The curve of sRGB (IEC 61966-2-1).
 
+use std::sync::OnceLock;
+
 use crate::ops;
 
 /// A share of light, 0 to 1, of an sRGB value from 0 to 1.
@@ -15,4 +17,24 @@ pub fn linear_of_srgb(srgb: f64) -> f64 {
 /// The sRGB value, 0 to 1, of a share of light from 0 to 1.
 pub fn srgb_of_linear(light: f64) -> f64 {
     if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * ops::powf(light, 1.0 / 2.4) - 0.055 }
+}
+
+/// The share of light of an sRGB byte: [`linear_of_srgb`] of it, of which there are but 256.
+#[inline]
+pub fn light_of_byte(byte: u8) -> f64 {
+    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
+    let of = |b: usize| linear_of_srgb(b as f64 / 255.0);
+    TABLE.get_or_init(|| core::array::from_fn(of))[usize::from(byte)]
+}
+
+/// The nearest sRGB byte of a share of light; what lies beyond 0 and 1 is taken for those, and what is no number for 0.
+///
+/// ```
+/// assert!((0..=255).all(|b| base::byte_of_light(base::light_of_byte(b)) == b));
+/// assert_eq!([-1.0, 2.0, f64::NAN].map(base::byte_of_light), [0, 255, 0]);
+/// ```
+pub fn byte_of_light(light: f64) -> u8 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte's range")]
+    let byte = (srgb_of_linear(light.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8;
+    byte
 }

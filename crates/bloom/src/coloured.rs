@@ -53,14 +53,8 @@ pub(crate) fn mixed([first, last]: &[Vec<[u8; 3]>; 2], share: f64) -> Vec<[u8; 3
     if first.is_empty() || share >= 1.0 {
         return last.clone();
     }
-    let light: Vec<f64> = (0..=255_u8).map(|b| base::linear_of_srgb(f64::from(b) / 255.0)).collect();
-    let mix = |(a, b): (&u8, &u8)| {
-        let mean = base::ops::lerp(light[usize::from(*a)], light[usize::from(*b)], share);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-        let byte = (base::srgb_of_linear(mean) * 255.0 + 0.5) as u8;
-        byte
-    };
-    let one = |(a, b): (&[u8; 3], &[u8; 3])| [0, 1, 2].map(|k| mix((&a[k], &b[k])));
+    let mix = |a: u8, b: u8| base::ops::lerp(base::light_of_byte(a), base::light_of_byte(b), share);
+    let one = |(a, b): (&[u8; 3], &[u8; 3])| [0, 1, 2].map(|k| base::byte_of_light(mix(a[k], b[k])));
     first.iter().zip(last).map(one).collect()
 }
 

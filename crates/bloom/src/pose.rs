@@ -279,7 +279,7 @@ impl Settled {
         for organ in &mut out {
             let new = !has(a, &organ.name);
             if let Some(whole) = b.organs.iter().find(|o| new && o.name == organ.name) {
-                let step = as_dense(&organ.points, &whole.points);
+                let step = stride(&organ.points, &whole.points);
                 organ.points = organ.points.iter().copied().step_by(step).collect();
                 organ.colors = organ.colors.iter().copied().step_by(step).collect();
             }
@@ -296,7 +296,7 @@ impl Settled {
 }
 
 /// Every which point of a smaller copy of an organ is to stay for as many a unit of area: as the square of its size allows.
-fn as_dense(small: &[DVec3], whole: &[DVec3]) -> usize {
+fn stride(small: &[DVec3], whole: &[DVec3]) -> usize {
     let share = (extent(small) / extent(whole).max(1e-12)).clamp(0.0, 1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the number of points")]
     let step = (1.0 / (share * share).max(1e-9)).min(small.len() as f64).max(1.0) as usize;

@@ -1,6 +1,6 @@
 //! Colour of fragments and of the background, tile by tile.
 
-use base::{Cancelled, Run, map_indexed, ops};
+use base::{Cancelled, Run, light_of_byte, map_indexed, ops};
 use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::raster::{Bins, Flat, NONE, TILE, Visible, pattern};
 use crate::scene::{Scene, Triangle, Vertex};
 use crate::spec::{Background, PictureSpec};
-use crate::texture::{Pyramid, linear, srgb};
+use crate::texture::{Pyramid, srgb};
 
 /// How much of the computed ground shadow is shown: full strength looks hard on a pale ground.
 const SHADOW_STRENGTH: f64 = 0.72;
@@ -160,7 +160,7 @@ impl Frame<'_> {
                 let alpha = 1.0 - (shade.x + shade.y + shade.z) / 3.0;
                 (DVec3::ZERO, if alpha < 0.004 { 0.0 } else { alpha })
             }
-            Background::Plain([r, g, b]) => (DVec3::new(linear(r), linear(g), linear(b)) * shade, 1.0),
+            Background::Plain([r, g, b]) => (DVec3::from_array([r, g, b].map(light_of_byte)) * shade, 1.0),
             Background::Sky => {
                 // From above there is only ground.
                 let level = 1.0 - self.camera.ray(at).1.y.abs();

@@ -5,20 +5,13 @@ use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3, DVec4};
 
-/// Linear value of an sRGB byte.
-pub(crate) fn linear(byte: u8) -> f64 {
-    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
-    TABLE.get_or_init(|| core::array::from_fn(|i| base::linear_of_srgb(i as f64 / 255.0)))[byte as usize]
-}
-
 const STEPS: usize = 1 << 14;
 
 /// sRGB byte of a linear value; 0 for NaN.
 pub(crate) fn srgb(x: f64) -> u8 {
     static TABLE: OnceLock<Vec<u8>> = OnceLock::new();
-    let table = TABLE.get_or_init(|| {
-        (0..=STEPS).map(|i| (base::srgb_of_linear(i as f64 / STEPS as f64) * 255.0 + 0.5) as u8).collect()
-    });
+    let table =
+        TABLE.get_or_init(|| (0..=STEPS).map(|i| base::byte_of_light(i as f64 / STEPS as f64)).collect());
     table[((x.clamp(0.0, 1.0) * STEPS as f64 + 0.5) as usize).min(STEPS)]
 }
 
@@ -39,7 +32,7 @@ pub(crate) struct Pyramid {
 impl Pyramid {
     /// Of an sRGB picture. `None` for a texture without pixels or with too few bytes.
     pub(crate) fn new(texture: &mesh::Texture) -> Option<Self> {
-        Self::of(texture, linear)
+        Self::of(texture, base::light_of_byte)
     }
 
     /// Of numbers: normals, roughness.
@@ -140,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_srgb_byte_survives_the_round_trip() {
-        assert!((0..=255).all(|b| srgb(linear(b)) == b));
+        assert!((0..=255).all(|b| srgb(base::light_of_byte(b)) == b));
         assert_eq!((srgb(f64::NAN), srgb(-1.0), srgb(9.0)), (0, 0, 255));
     }
 

@@ -335,12 +335,10 @@ impl Cloth {
 /// The mean of what is seen of a texture, linear.
 fn mean(texture: &Texture) -> [f32; 3] {
     let seen = || texture.pixels.chunks_exact(4).filter(|p| p[3] >= 128);
-    // The curve of each byte once.
-    let light: Vec<f64> = (0..=255_u8).map(|b| base::linear_of_srgb(f64::from(b) / 255.0)).collect();
     #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
     let count = seen().count().max(1) as f64;
     #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-    [0, 1, 2].map(|k| (seen().map(|p| light[usize::from(p[k])]).sum::<f64>() / count) as f32)
+    [0, 1, 2].map(|k| (seen().map(|p| base::light_of_byte(p[k])).sum::<f64>() / count) as f32)
 }
 
 /// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `executor`, if wanted. Also

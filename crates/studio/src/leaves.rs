@@ -228,7 +228,7 @@ impl LeafOptions {
 
 #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in materials")]
 pub(crate) fn linear_of(byte: u8) -> f32 {
-    base::linear_of_srgb(f64::from(byte) / 255.0) as f32
+    base::light_of_byte(byte) as f32
 }
 
 fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &LeafOptions) -> LeafReport {

@@ -140,7 +140,7 @@ fn write_one(
                 let color = color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8);
                 cloud.colors.resize(cloud.points.len(), color);
             } else {
-                let byte = |c: f32| (burgeon::srgb_of_linear(f64::from(c)) * 255.0 + 0.5) as u8;
+                let byte = |c: f32| burgeon::byte_of_light(f64::from(c));
                 cloud.colors.extend(part.mesh.colors.iter().map(|c| c.map(byte)));
             }
         }

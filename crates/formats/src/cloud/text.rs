@@ -144,7 +144,7 @@ impl Colours {
         let srgb = |x: f64| match self.coding {
             Coding::Byte => x.trunc(),
             Coding::Share => (x * 255.0).round(),
-            Coding::Reflectance => (base::srgb_of_linear(x.clamp(0.0, 1.0)) * 255.0).round(),
+            Coding::Reflectance => f64::from(base::byte_of_light(x)),
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is wanted")]
         [0, 1, 2].map(|k| srgb(row[self.at + k]) as u8)

@@ -125,7 +125,7 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = Option<[u8; 3]>> + Clone
 
 /// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.
 pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
-    let light = color.map(|byte| base::linear_of_srgb(f64::from(byte) / 255.0));
+    let light = color.map(base::light_of_byte);
     // Of the darkest ink nobody sees the hue.
     (is_coloured(color) && light.into_iter().any(|x| x > 0.04)).then_some(light)
 }

@@ -139,7 +139,7 @@ impl CloudColours {
         let mean = weighted(self.light.iter().map(|l| (*l, 1.0))).unwrap_or_default();
         let mut pixels = Vec::with_capacity(4 * count);
         for cell in whole {
-            let [r, g, b] = cell.unwrap_or(mean).map(|x| super::byte(base::srgb_of_linear(x)));
+            let [r, g, b] = cell.unwrap_or(mean).map(base::byte_of_light);
             pixels.extend([r, g, b, 255]);
         }
         Texture { width, height, pixels }
@@ -233,11 +233,10 @@ fn coarsest(wrong: &[Vec<f64>]) -> usize {
 
 /// Usable points with their light, of many each cube's mean.
 fn dots(points: &[DVec3], colors: &[[u8; 3]]) -> Option<(Vec<DVec3>, Vec<Light>)> {
-    let curve: Vec<f64> = (0..=255_u8).map(|b| base::linear_of_srgb(f64::from(b) / 255.0)).collect();
     let usable = |row: &(&DVec3, &[u8; 3])| row.0.is_finite() && *row.1 != [0; 3];
     let kept = points.iter().zip(colors).filter(usable);
     let (places, light): (Vec<DVec3>, Vec<Light>) =
-        kept.map(|(p, c)| (*p, c.map(|b| curve[usize::from(b)]))).unzip();
+        kept.map(|(p, c)| (*p, c.map(base::light_of_byte))).unzip();
     if places.len() < FEWEST_DOTS {
         return None;
     }
