@@ -8,6 +8,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whole_flower, whole_tree};
+use crate::built::pointed;
 use crate::contour::neck;
 use crate::corolla::dips;
 use crate::draft::Draft;
@@ -194,9 +195,12 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
     found
 }
 
-/// An outline with hollows and no neck goes round a trunk and its limbs.
+/// An outline with hollows and no neck goes round a trunk and its limbs, unless it is that of a fir.
 fn is_limbs(draft: &Draft<'_>, p: &Part) -> bool {
     let outline = draft.ink.strokes[p.stroke].outline();
+    if outline.is_some_and(pointed) {
+        return false;
+    }
     let hollow = outline.is_none_or(|o| signed_area(o) < HOLLOW * p.area);
     hollow && outline.is_none_or(|o| neck(o, true).is_none())
 }
