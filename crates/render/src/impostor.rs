@@ -43,7 +43,7 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
     if points.is_empty() {
         return Ok(None);
     }
-    let centre = middle(&scene, &points);
+    let centre = middle(&scene);
     let radius = ROOM * points.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
     if !(radius.is_finite() && radius > 0.0) {
         return Ok(None);
@@ -102,14 +102,25 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
 }
 
 /// Above the foot of what stands there, halfway up: pictures that cross in its stem do not show it side by side.
-fn middle(scene: &Scene, points: &[DVec3]) -> DVec3 {
+fn middle(scene: &Scene) -> DVec3 {
     let (low, high) = (scene.bounds.min.y, scene.bounds.max.y);
     let low = if low < 0.0 && high > 0.0 { 0.0 } else { low };
-    let foot = || points.iter().filter(|p| p.y <= low + FOOT * (high - low));
-    let count = foot().count();
-    let mean = foot().sum::<DVec3>() / count.max(1) as f64;
-    let over = if count > 0 { mean } else { (scene.bounds.min + scene.bounds.max) * 0.5 };
-    DVec3::new(over.x, 0.5 * (scene.bounds.min.y + high), over.z)
+    let top = low + FOOT * (high - low);
+    let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
+    for triangle in &scene.triangles {
+        let corners = triangle.corners.map(|i| scene.vertices[i as usize].at);
+        let [a, b, c] = corners;
+        let lowest = corners.into_iter().fold(a, |least, p| if p.y < least.y { p } else { least });
+        if lowest.y <= top {
+            // Square metres, squared: of shoots that hang to the ground around a stem many triangles are there, but small ones.
+            let area = (b - a).cross(c - a).length_squared();
+            sum += lowest * area;
+            weight += area;
+        }
+    }
+    let middle = (scene.bounds.min + scene.bounds.max) * 0.5;
+    let over = if weight > 0.0 && sum.is_finite() { sum / weight } else { middle };
+    DVec3::new(over.x, middle.y, over.z)
 }
 
 /// Where a view is seen from: see [`Impostor`].
@@ -192,17 +203,7 @@ fn bytes(sums: &[Sum], size: usize, radius: f64) -> View {
     });
     // Where nothing is, the mean of all: coarser copies of the atlas have no dark seam.
     let mean = if whole.alpha > 0.0 { whole.color / whole.alpha } else { DVec3::splat(0.2) };
-    // The alpha at which as many pixels are cut out as are covered on the whole.
-    let mut alphas: Vec<f64> = sums.iter().map(|s| s.alpha).filter(|a| *a > 0.0).collect();
-    base::sort_by(&mut alphas, |a, b| b.total_cmp(a));
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "at most the number of pixels"
-    )]
-    let kept = whole.alpha.round() as usize;
-    let cut = alphas.get(kept.saturating_sub(1)).copied().unwrap_or(0.5).clamp(0.02, 0.98);
-    let sharp = |a: f64| if a < cut { 0.49 * a / cut } else { 0.51 + 0.49 * (a - cut) / (1.0 - cut) };
+    let cut = cut(&sums.iter().map(|s| s.alpha).collect::<Vec<_>>(), size);
     let mut view = View {
         color: Vec::with_capacity(4 * sums.len()),
         normal: Vec::with_capacity(4 * sums.len()),
@@ -212,7 +213,7 @@ fn bytes(sums: &[Sum], size: usize, radius: f64) -> View {
         let seen = sum.alpha > 0.0;
         let color = if seen { sum.color / sum.alpha } else { mean };
         view.color.extend(color.to_array().map(srgb));
-        view.color.push(if seen { byte(sharp(sum.alpha)) } else { 0 });
+        view.color.push(if seen { byte(sharp(sum.alpha, cut)) } else { 0 });
         let normal = if seen { sum.normal.normalize_or(DVec3::Z) } else { DVec3::Z };
         view.normal.extend(normal.to_array().map(|n| byte(0.5 + 0.5 * n)));
         view.normal.push(byte(0.5 + if seen { 0.5 * sum.depth / sum.alpha / radius } else { 0.0 }));
@@ -223,6 +224,47 @@ fn bytes(sums: &[Sum], size: usize, radius: f64) -> View {
         }
     }
     view
+}
+
+/// An alpha that is a half at the cut, and rises from there as steeply as before it: thin things stay as wide as a pixel.
+fn sharp(alpha: f64, cut: f64) -> f64 {
+    let steep = (0.5 * alpha / cut).min(1.0);
+    if alpha < cut { steep } else { steep.max(0.5 + 0.5 * (alpha - cut) / (1.0 - cut)) }
+}
+
+/// The alpha at which as much is cut out as is covered on the whole. Programs cut between pixels, too, and many pixels have
+/// the same alpha: the half that is kept is therefore measured between them.
+fn cut(alphas: &[f64], size: usize) -> f64 {
+    let covered = alphas.iter().sum::<f64>();
+    let [mut low, mut high] = [0.02, 0.98];
+    // 0.96 / 2^10 is less than a step of a byte.
+    for _ in 0..10 {
+        let middle = 0.5 * (low + high);
+        if kept(alphas, size, middle) > covered {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    // Samples are few, so that what is kept may leap there.
+    let [more, less] = [low, high].map(|c| (kept(alphas, size, c) - covered).abs());
+    if more < less { low } else { high }
+}
+
+/// How many pixels are kept at a cut, of four places in each, between which alpha is linear.
+fn kept(alphas: &[f64], size: usize, cut: f64) -> f64 {
+    let sharpened: Vec<f64> = alphas.iter().map(|a| sharp(*a, cut)).collect();
+    let at = |x: usize, y: usize| sharpened[y * size + x];
+    let beside = |k: usize, after: bool| if after { (k + 1).min(size - 1) } else { k.saturating_sub(1) };
+    let mut places = 0_u32;
+    for (y, x) in (0..size).flat_map(|y| (0..size).map(move |x| (y, x))) {
+        for (right, below) in [(false, false), (true, false), (false, true), (true, true)] {
+            let (x1, y1) = (beside(x, right), beside(y, below));
+            let alpha = 0.5625 * at(x, y) + 0.1875 * (at(x1, y) + at(x, y1)) + 0.0625 * at(x1, y1);
+            places += u32::from(alpha > 0.5);
+        }
+    }
+    0.25 * f64::from(places)
 }
 
 #[cfg(test)]
@@ -284,6 +326,46 @@ mod tests {
         let middle = 4 * (32_usize * 512 + 7 * 64 + 32 - 20);
         let n = &normals.pixels[middle..middle + 4];
         assert!(n[2] > 230 && n[3] > 140, "{n:?}");
+    }
+
+    /// As the shoots of a willow: nothing fills a pixel.
+    #[test]
+    fn thin_shoots_cover_no_more_than_they_do() {
+        for (size, width, gap) in [(64_usize, 0.3, 2.3), (64, 0.7, 3.1), (128, 1.4, 5.7)] {
+            // Samples of a third of a pixel, as views have them.
+            let hit = |x: f64, y: f64| (x + 0.17 * y) % gap < width;
+            let third = |s: u32, k: usize| k as f64 + f64::from(s) / 3.0;
+            let of_pixel = |k: usize| {
+                let hits = (0..9).filter(|s| hit(third(s % 3, k % size), third(s / 3, k / size)));
+                hits.count() as f64 / 9.0
+            };
+            let alphas: Vec<f64> = (0..size * size).map(of_pixel).collect();
+            let (covered, kept) = (alphas.iter().sum::<f64>(), kept(&alphas, size, cut(&alphas, size)));
+            assert!((kept / covered - 1.0).abs() < 0.1, "{width} of {gap}: {kept} instead of {covered}");
+        }
+    }
+
+    /// As a willow's, on one side of its stem only.
+    #[test]
+    fn what_hangs_to_the_ground_does_not_move_the_middle() {
+        let mut model = two();
+        model.parts.truncate(1);
+        for p in &mut model.parts[0].mesh.positions {
+            p[1] = if p[1] < 1.0 { 0.0 } else { 4.0 };
+        }
+        let mut shoots = TriMesh::default();
+        for k in 0..200_u16 {
+            let x = 2.0 + 0.01 * f32::from(k);
+            for corner in [[x, -0.2, 0.0], [x + 0.02, -0.2, 0.0], [x, 0.1, 0.02]] {
+                shoots.positions.push(corner);
+            }
+            let first = 3 * u32::from(k);
+            shoots.triangles.push([first, first + 1, first + 2]);
+        }
+        shoots.compute_normals();
+        model.parts.push(Part { name: "shoots".into(), material: MaterialId::new(0), mesh: shoots });
+        let at = middle(&Scene::new(&model));
+        assert!(at.x.abs() < 0.15 && (at.y - 1.9).abs() < 1e-6, "{at}");
     }
 
     #[test]

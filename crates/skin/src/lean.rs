@@ -13,6 +13,9 @@ use crate::sleeve::{drop_flat, narrow2};
 /// spray of needles. Others are at most [`plant::DRAWN_WIDER`].
 pub(crate) const COPIED_WIDER: f64 = 6.0;
 
+/// How much wider than its outline a blade of a coarser copy is drawn before its bays are closed instead.
+const WIDE: f64 = 1.5;
+
 /// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
 /// its outline has, up to `widest` times.
 ///
@@ -31,11 +34,23 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
     let bent = pairs >= 2.0;
     let sides = base::ops::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
-    let (kept, tip) = corners(outline, tip, 2 * sides + 2);
-    let mut points: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
+    let (kept, end) = corners(outline, (0..outline.len()).collect(), tip, 2 * sides + 2);
+    let at = |kept: &[usize]| -> Vec<DVec2> { kept.iter().map(|&i| outline[i]).collect() };
+    let (mut points, mut tip_at) = (at(&kept), end);
     // What the lost corners enclosed is made up for in width: a crown of such leaves is as full as it was.
-    let lost = geom::signed_area(outline) / geom::signed_area(&points).max(f64::MIN_POSITIVE);
-    let wider = DVec2::new(lost.clamp(1.0, widest), 1.0);
+    let lost =
+        |points: &[DVec2]| geom::signed_area(outline) / geom::signed_area(points).max(f64::MIN_POSITIVE);
+    let mut wider = lost(&points).clamp(1.0, widest);
+    // Of deep lobes only their tips would be left, and drawn wide they would be spikes: their bays are closed instead.
+    if widest > WIDE && wider * half_width(&points) > WIDE * half_width(outline) {
+        let (kept, end) = corners(outline, without_bays(outline, tip), tip, 2 * sides + 2);
+        let closed = at(&kept);
+        let narrower = lost(&closed).clamp(1.0 / widest, widest);
+        if narrower * half_width(&closed) < wider * half_width(&points) {
+            (points, tip_at, wider) = (closed, end, narrower);
+        }
+    }
+    let (tip, wider) = (tip_at, DVec2::new(wider, 1.0));
     if tip == 0 || geom::signed_area(&points) <= 0.0 || geom::self_crossings(&points) > 0 {
         return None;
     }
@@ -71,7 +86,7 @@ pub(crate) fn fewer_corners(blade: &Blade, most: usize) -> Option<Vec<DVec2>> {
         return None;
     }
     let tip = nearest(outline, *blade.midrib.last()?)?;
-    let (kept, _) = corners(outline, tip, most);
+    let (kept, _) = corners(outline, (0..outline.len()).collect(), tip, most);
     let fewer: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
     (geom::signed_area(&fewer) > 0.0 && geom::self_crossings(&fewer) == 0).then_some(fewer)
 }
@@ -84,9 +99,31 @@ fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
     (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
-/// The corners that stay, as indices, and which of them is the tip; the root is the first.
-fn corners(outline: &[DVec2], tip: usize, wanted: usize) -> (Vec<usize>, usize) {
-    let mut kept: Vec<usize> = (0..outline.len()).collect();
+/// Half the width of what lies on both sides of the midrib.
+fn half_width(points: &[DVec2]) -> f64 {
+    points.iter().map(|p| p.x.abs()).fold(0.0, f64::max)
+}
+
+/// The corners of a margin, as indices, without its bays: no other than root and tip lie inwards of their neighbours.
+fn without_bays(outline: &[DVec2], tip: usize) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::with_capacity(outline.len() + 1);
+    // Round once, the root at both ends (Andrew's scan of a chain): whatever turns inwards goes.
+    for i in (0..outline.len()).chain([0]) {
+        while let [.., a, b] = kept[..] {
+            let inwards = (outline[b] - outline[a]).perp_dot(outline[i] - outline[a]) <= 0.0;
+            if !inwards || b == tip {
+                break;
+            }
+            kept.pop();
+        }
+        kept.push(i);
+    }
+    kept.pop();
+    kept
+}
+
+/// The corners that stay of those in `kept`, as indices, and which of them is the tip; the root is the first.
+fn corners(outline: &[DVec2], mut kept: Vec<usize>, tip: usize, wanted: usize) -> (Vec<usize>, usize) {
     while kept.len() > wanted.max(4) {
         let n = kept.len();
         let area = |k: usize| {
