@@ -234,6 +234,17 @@ mod tests {
         assert!((area / whole - 1.0).abs() < 0.05, "{area} of {whole}");
     }
 
+    /// As a fig's.
+    #[test]
+    fn deep_lobes_are_no_spikes() {
+        let fingers = blade(&[(0.5, 0.1), (0.52, 0.15), (0.06, 0.3), (0.45, 0.6), (0.43, 0.66), (0.05, 0.5)]);
+        for wish in [2.0, 4.0, 6.0] {
+            let mesh = lean_mesh(&fingers, wish, COPIED_WIDER).expect("a simple outline");
+            let wide = mesh.positions.iter().map(|p| f64::from(p[0].abs())).fold(0.0, f64::max);
+            assert!(wide <= WIDE * half_width(&fingers.outline), "{wish}: {wide}");
+        }
+    }
+
     #[test]
     fn the_smallest_blade_is_two_triangles() {
         let mesh =
