@@ -10,12 +10,12 @@
 use base::{Draw, Seed, Stream, ops};
 
 /// Networks whose mean is taken, and units of each.
-const NETWORKS: usize = 3;
-const OWN_UNITS: usize = 40;
+const NETWORKS: usize = 5;
+const OWN_UNITS: usize = 24;
 /// Units of the mean.
 pub(super) const UNITS: usize = NETWORKS * OWN_UNITS;
 /// Times that each row is looked at, on the average.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 14;
 const BATCH: usize = 256;
 /// Length of the first step; later ones are shorter, along half a cosine.
 const RATE: f64 = 2e-3;
