@@ -67,7 +67,7 @@ pub(crate) const COUNT: usize = {
 
 /// Cells along the longer side: of a fine grid, and of a wide one in which small gaps close.
 const FINE: usize = 44;
-const WIDE: usize = 18;
+pub(crate) const WIDE: usize = 18;
 // Where the numbers are cut. The model learns what each is worth, so how they are cut matters little; all that depends on the
 // cuts is learnt anew when one is changed (`cargo xtask train-kinds`).
 

@@ -233,14 +233,16 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
     };
     // The kind may be right, and still its crown be taken for a blade, or most of it for something else.
-    let half = built.is_like(Kind::Tree)
+    let free = asked.is_free(ink, classes);
+    let half = free
+        && built.is_like(Kind::Tree)
         && (bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN);
     let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
     let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
     if let Some(wanted) = asked.kind {
         kind = wanted;
         (reading, said) = taken_for(asked, wanted, ink, classes);
-    } else if let Some(other) = other.filter(|_| !rooted && asked.is_free(ink, classes)) {
+    } else if let Some(other) = other.filter(|_| !rooted && free) {
         let (tried, again) = taken_for(asked, other.kind, ink, classes);
         // Only what can be built of the drawing explains it.
         let better = !other.kind.is_like(built) || is_whole_tree(ink, &reading, &tried);
@@ -307,7 +309,8 @@ fn bears_a_crown_as_blade(reading: &Reading) -> bool {
 
 /// How much of the hull of a drawing its crowns are.
 fn crown_share(ink: &Ink, reading: &Reading) -> f64 {
-    let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
+    // Of few points: each stroke keeps its hull.
+    let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.hull().iter().copied()).collect();
     let crowns: f64 = reading.regions.iter().map(|r| signed_area(&r.outline)).sum();
     crowns / signed_area(&convex_hull(&all)).max(f64::MIN_POSITIVE)
 }

@@ -12,15 +12,15 @@ use crate::body::Limb;
 use crate::contour::{neck, runs_at};
 use crate::draft::Draft;
 use crate::grid::Grid;
+use crate::look::WIDE;
 use crate::{OrganWord, RegionKind};
 
 /// Gaps twice as wide are closed, shares of the drawing's diagonal: the first that gives a shape with a neck.
 const CLOSED: [f64; 4] = [0.02, 0.04, 0.07, 0.11];
 /// The shape fills more than this share of its hull; bare branches fill less.
 const FULL: f64 = 0.5;
-/// Its lines enclose more than this share of its box, on a grid of so many cells; bare branches enclose next to nothing.
+/// Its lines enclose more than this share of its box, on the wider grid of a look; bare branches enclose next to nothing.
 const ENCLOSED: f64 = 0.1;
-const CELLS: usize = 18;
 /// In fewer strokes it is an outline, which is read as such.
 const FEWEST: usize = 6;
 /// A level line below this share of the height is the ground; it rises by less than that share of its width.
@@ -100,7 +100,7 @@ fn is_ground(ink: &Ink, stroke: usize, (low, high): (DVec2, DVec2)) -> bool {
 
 /// How much of the box of a drawing its lines enclose, where gaps of a cell are closed.
 fn enclosed(ink: &Ink) -> f64 {
-    Grid::new(ink, CELLS).holes.iter().map(|h| h.area).sum()
+    Grid::new(ink, WIDE).holes.iter().map(|h| h.area).sum()
 }
 
 /// The alpha shape of all that is drawn ([`AlphaShape`]), cut at its neck.

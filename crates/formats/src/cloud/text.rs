@@ -164,7 +164,7 @@ impl Colours {
 }
 
 /// Three or more columns: x y z, then what the first row shows: normals (unit length) or colours (whole numbers
-/// to 255), or a normal and then colours, as such numbers or as shares of 1. Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
+/// to 255), or a normal and then colours, as such numbers, as shares of 1, or as reflectances of four bands. Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
 pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result<(), CloudError> {
     let fail = |number: usize, what: String| {
         let advice =
