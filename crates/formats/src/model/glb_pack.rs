@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::glb_write::{Encoded, Level, Writer, check_levels, row};
 use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
 use super::meshopt::{encode_attributes, encode_triangles};
+use super::meshopt_filter::octahedral;
 use super::picture::{WEBP_TYPE, webp};
 use super::{PngCache, share, unit};
 use crate::error::WriteError;
@@ -17,7 +18,15 @@ use crate::error::WriteError;
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 const TRANSFORM: &str = "KHR_texture_transform";
 pub(super) const COMPRESSION: &str = "EXT_meshopt_compression";
+const OCTAHEDRAL: &str = "OCTAHEDRAL";
 
+/// Steps of compressed positions, metres, and least steps within the size of a model; steps of compressed coordinates
+/// within a texture. Finer ones are not seen and do not compress.
+const STEP_M: f64 = 0.0005;
+const STEPS: f64 = 16_384.0;
+const STEPS_OF_TEXTURE: f32 = 4096.0;
+/// What sixteen bits count to.
+const MOST: f64 = 65_535.0;
 /// Of JPEG textures: differences are hardly seen beside the picture.
 const QUALITY: u8 = 88;
 
@@ -27,7 +36,8 @@ pub enum Packing {
     /// Columns in few bits (`KHR_mesh_quantization`): positions to a 65,535th of the model's size, normals to a degree,
     /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
     Quantized,
-    /// Those, compressed (`EXT_meshopt_compression`), and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
+    /// Those, compressed (`EXT_meshopt_compression`), with positions to half a millimetre or a 16,384th of the model's size,
+    /// whichever is finer, texture coordinates to a 4,096th of a texture if they are within 16 of it, and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
     /// without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
     /// Blender does not.
     Compressed,
@@ -108,7 +118,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(level: &Level<'_>, material: usize) -> Self {
+    fn of(level: &Level<'_>, material: usize, packing: Packing) -> Self {
         let parts = level.model.parts.iter().map(|p| (p.material, &p.mesh));
         let all = parts.chain(level.copies.iter().map(|c| (c.material, &c.mesh)));
         let own = all.filter(|(m, _)| m.index() == material);
@@ -118,7 +128,8 @@ impl Frame {
                 (low[k], high[k]) = (low[k].min(uv[k]), high[k].max(uv[k]));
             }
         }
-        Self { low, size: [0, 1].map(|k| high[k] - low[k]) }
+        let least = if packing == Packing::Compressed { MOST as f32 / STEPS_OF_TEXTURE } else { 0.0 };
+        Self { low, size: [0, 1].map(|k| (high[k] - low[k]).max(least)) }
     }
 
     /// Puts coordinates from 0 to 1 back into the frame.
@@ -162,7 +173,7 @@ fn used(mesh: &TriMesh) -> TriMesh {
 /// 0 to 1 in sixteen bits.
 fn fine(x: f64) -> [u8; 2] {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65,535")]
-    let n = (x.clamp(0.0, 1.0) * 65_535.0).round() as u16;
+    let n = (x.clamp(0.0, 1.0) * MOST).round() as u16;
     n.to_le_bytes()
 }
 
@@ -179,23 +190,30 @@ struct Layout {
     shape: &'static str,
     stride: usize,
     bounds: Option<[Vec<f64>; 2]>,
+    /// How compressed bytes store it, by the word of the extension.
+    filter: Option<&'static str>,
 }
 
 impl Packer {
     /// Materials and meshes of a level, below a node.
     fn level(&mut self, level: &Level<'_>, under: u32, cache: &mut PngCache) -> Result<(), WriteError> {
         let model = level.model;
-        let frames: Vec<Frame> = (0..model.materials.len()).map(|m| Frame::of(level, m)).collect();
+        let frames: Vec<Frame> =
+            (0..model.materials.len()).map(|m| Frame::of(level, m, self.packing)).collect();
         self.w.placed = frames.iter().map(Frame::transform).collect();
         if self.w.placed.iter().any(Option::is_some) {
             self.w.needs(TRANSFORM);
         }
         let first = self.w.materials(model, cache)?;
+        let packing = self.packing;
         let cube = |bounds: mesh::Bounds| {
             if bounds.is_empty() {
-                (DVec3::ZERO, 1.0)
-            } else {
-                (bounds.min, bounds.size().max_element().max(1e-9))
+                return (DVec3::ZERO, 1.0);
+            }
+            let size = bounds.size().max_element().max(1e-9);
+            match packing {
+                Packing::Quantized => (bounds.min, size),
+                Packing::Compressed => (bounds.min, size.max(MOST * STEP_M.min(size / STEPS))),
             }
         };
         let whole = cube(model.bounds());
@@ -239,15 +257,20 @@ impl Packer {
         let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - origin) / size;
         let mut attributes =
             Attributes { position: Some(self.positions(mesh, &local)?), ..Default::default() };
-        let column = |kind, shape, stride| Layout { kind, shape, stride, bounds: None };
+        let column = |kind, shape, stride| Layout { kind, shape, stride, bounds: None, filter: None };
         if !mesh.normals.is_empty() {
             #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
             let byte = |x: f32| ((x.clamp(-1.0, 1.0) * 127.0).round() as i8).to_le_bytes()[0];
             let bytes = mesh.normals.iter().flat_map(|&n| {
+                if self.packing == Packing::Compressed {
+                    return octahedral(unit(n));
+                }
                 let [x, y, z] = unit(n).map(byte);
                 [x, y, z, 0]
             });
-            attributes.normal = Some(self.column(&bytes.collect::<Vec<u8>>(), column(I8, "VEC3", 4))?);
+            let bytes: Vec<u8> = bytes.collect();
+            attributes.normal =
+                Some(self.column(&bytes, Layout { filter: Some(OCTAHEDRAL), ..column(I8, "VEC3", 4) })?);
         }
         if !mesh.uvs.is_empty() {
             let bytes = mesh.uvs.iter().flat_map(|uv| {
@@ -297,11 +320,14 @@ impl Packer {
             .collect();
         // Of normalised integers the integers themselves.
         let bounds = [low, high].map(|b| b.map(f64::from).to_vec());
-        self.column(&bytes, Layout { kind: U16, shape: "VEC3", stride: 8, bounds: Some(bounds) })
+        self.column(
+            &bytes,
+            Layout { kind: U16, shape: "VEC3", stride: 8, bounds: Some(bounds), filter: None },
+        )
     }
 
     fn column(&mut self, bytes: &[u8], layout: Layout) -> Result<u32, WriteError> {
-        let Layout { kind, shape, stride, bounds } = layout;
+        let Layout { kind, shape, stride, bounds, filter } = layout;
         let view = match self.packing {
             Packing::Quantized => {
                 let view =
@@ -311,7 +337,7 @@ impl Packer {
             }
             Packing::Compressed => {
                 let stream = encode_attributes(bytes, stride);
-                self.compressed(&stream, bytes.len(), (stride, "ATTRIBUTES"))?
+                self.compressed(&stream, bytes.len(), (stride, "ATTRIBUTES", filter))?
             }
         };
         let [min, max] = bounds.map_or([None, None], |b| b.map(Some));
@@ -335,7 +361,8 @@ impl Packer {
         let small = mesh.positions.len() < 65_536;
         let stride = if small { 2 } else { 4 };
         let stream = encode_triangles(&mesh.triangles);
-        let view = self.compressed(&stream, 3 * mesh.triangles.len() * stride, (stride, "TRIANGLES"))?;
+        let view =
+            self.compressed(&stream, 3 * mesh.triangles.len() * stride, (stride, "TRIANGLES", None))?;
         self.w.root.accessors.push(Accessor {
             buffer_view: Some(view),
             component_type: if small { U16 } else { U32 },
@@ -351,12 +378,23 @@ impl Packer {
         &mut self,
         stream: &[u8],
         length: usize,
-        (stride, mode): (usize, &str),
+        (stride, mode, filter): (usize, &str, Option<&str>),
     ) -> Result<u32, WriteError> {
         let start = self.w.bin.len();
         self.w.bin.extend_from_slice(stream);
         self.w.bin.resize(self.w.bin.len().next_multiple_of(4), 0);
         let indices = mode == "TRIANGLES";
+        let mut packed = json!({
+            "buffer": 0,
+            "byteOffset": start,
+            "byteLength": stream.len(),
+            "byteStride": stride,
+            "count": length / stride,
+            "mode": mode,
+        });
+        if let Some(filter) = filter {
+            packed["filter"] = filter.into();
+        }
         self.w.root.buffer_views.push(View {
             // The buffer of what is not there without the extension.
             buffer: 1,
@@ -368,14 +406,7 @@ impl Packer {
             } else {
                 super::glb_write::ARRAY_BUFFER
             }),
-            extensions: Some(json!({ COMPRESSION: {
-                "buffer": 0,
-                "byteOffset": start,
-                "byteLength": stream.len(),
-                "byteStride": stride,
-                "count": length / stride,
-                "mode": mode,
-            } })),
+            extensions: Some(json!({ COMPRESSION: packed })),
         });
         self.fallback = (self.fallback + length).next_multiple_of(4);
         row(self.w.root.buffer_views.len() - 1)

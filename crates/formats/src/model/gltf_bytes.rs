@@ -6,6 +6,7 @@ use super::Resolver;
 use super::glb_pack::COMPRESSION;
 use super::gltf::{Accessor, FLOAT, I8, I16, Root, U8, U16, U32, View};
 use super::meshopt::{decode_attributes, decode_triangles};
+use super::meshopt_filter::Filter;
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
@@ -124,14 +125,18 @@ impl<'a> Bytes<'a> {
         let stream = stream.ok_or_else(|| broken(place(), "its stream reaches beyond its buffer"))?;
         let whole = (count as u64).checked_mul(stride as u64).filter(|&whole| whole <= *room);
         *room -= whole.ok_or_else(|| broken(place(), "it would hold too much"))?;
-        if filter != "NONE" {
+        let known = Filter::of(&filter);
+        if filter != "NONE" && (known.is_none() || mode != "ATTRIBUTES") {
             return Err(unsupported(
                 place(),
                 format!("the filter {} of compressed data", base::quoted(&filter)),
             ));
         }
         let held = match (mode.as_str(), stride) {
-            ("ATTRIBUTES", _) => decode_attributes(stream, count, stride),
+            ("ATTRIBUTES", _) => decode_attributes(stream, count, stride).and_then(|mut all| {
+                known.map_or(Some(()), |filter| filter.decode(&mut all, stride))?;
+                Some(all)
+            }),
             ("TRIANGLES", 2 | 4) => decode_triangles(stream, count)
                 .map(|all| all.iter().flat_map(|i| i.to_le_bytes().into_iter().take(stride)).collect()),
             _ => {

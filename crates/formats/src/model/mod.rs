@@ -8,6 +8,7 @@ mod gltf;
 mod gltf_bytes;
 mod gltf_look;
 mod meshopt;
+mod meshopt_filter;
 mod obj_read;
 mod obj_write;
 mod picture;

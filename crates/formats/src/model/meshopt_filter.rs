@@ -1,0 +1,161 @@
+//! The filters of `EXT_meshopt_compression`: elements that are stored in another form than programs draw them.
+//!
+//! Each undoes in place what a stream holds, as the extension's text says (decoding is defined there; how to encode is not).
+
+/// How the elements of a stream of attributes are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Filter {
+    /// Unit vectors as two coordinates on an octahedron; 4 or 8 bytes an element.
+    Octahedral,
+    /// Unit quaternions as their three lesser numbers; 8 bytes an element.
+    Quaternion,
+    /// Floats as a whole number of 24 bits times a power of 2; 4 bytes each.
+    Exponential,
+}
+
+impl Filter {
+    /// `None` of a word that the extension does not have.
+    pub(super) fn of(word: &str) -> Option<Self> {
+        match word {
+            "OCTAHEDRAL" => Some(Self::Octahedral),
+            "QUATERNION" => Some(Self::Quaternion),
+            "EXPONENTIAL" => Some(Self::Exponential),
+            _ => None,
+        }
+    }
+
+    /// From what is stored to what it means, in place; `None` if elements of `stride` bytes cannot be so.
+    pub(super) fn decode(self, bytes: &mut [u8], stride: usize) -> Option<()> {
+        match (self, stride) {
+            (Self::Octahedral, 4) => bytes.chunks_exact_mut(4).for_each(|e| {
+                let [x, y, one, w] = [0, 1, 2, 3].map(|k| i8::from_le_bytes([e[k]]));
+                let [x, y, z] = on_sphere([x, y, one].map(f64::from), 127.0);
+                #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
+                let whole = [x as i8, y as i8, z as i8, w];
+                e.copy_from_slice(&whole.map(|v| v.to_le_bytes()[0]));
+            }),
+            (Self::Octahedral, 8) => bytes.chunks_exact_mut(8).for_each(|e| {
+                let [x, y, one, w] = words(e);
+                let [x, y, z] = on_sphere([x, y, one].map(f64::from), 32_767.0);
+                #[expect(clippy::cast_possible_truncation, reason = "-32,767 to 32,767")]
+                put(e, [x as i16, y as i16, z as i16, w]);
+            }),
+            (Self::Quaternion, 8) => bytes.chunks_exact_mut(8).for_each(|e| {
+                let [x, y, z, scale] = words(e);
+                let (one, largest) = (f64::from(scale | 3), usize::try_from(scale & 3).unwrap_or(0));
+                let [x, y, z] = [x, y, z].map(|v| f64::from(v) / one * core::f64::consts::FRAC_1_SQRT_2);
+                let w = (1.0 - x * x - y * y - z * z).max(0.0).sqrt();
+                #[expect(clippy::cast_possible_truncation, reason = "clamped by the cast itself")]
+                let whole = [w, x, y, z].map(|v| (v * 32_767.0).round() as i16);
+                let mut turned = [0; 4];
+                (0..4).for_each(|k| turned[(largest + k) % 4] = whole[k]);
+                put(e, turned);
+            }),
+            (Self::Exponential, _) if stride.is_multiple_of(4) => bytes.chunks_exact_mut(4).for_each(|e| {
+                let stored = i32::from_le_bytes([e[0], e[1], e[2], e[3]]);
+                let (power, whole) = (stored >> 24, stored << 8 >> 8);
+                let two = f64::from_bits(u64::from((1023 + power).unsigned_abs()) << 52);
+                #[expect(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
+                let value = (f64::from(whole) * two) as f32;
+                e.copy_from_slice(&value.to_le_bytes());
+            }),
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+fn words(element: &[u8]) -> [i16; 4] {
+    [0, 2, 4, 6].map(|k| i16::from_le_bytes([element[k], element[k + 1]]))
+}
+
+fn put(element: &mut [u8], words: [i16; 4]) {
+    for (to, word) in element.chunks_exact_mut(2).zip(words) {
+        to.copy_from_slice(&word.to_le_bytes());
+    }
+}
+
+/// Two coordinates on an octahedron with its half axis `one` -> a vector of length `most`, in whole numbers.
+fn on_sphere([x, y, one]: [f64; 3], most: f64) -> [f64; 3] {
+    let one = if one == 0.0 { most } else { one };
+    let (mut x, mut y) = (x / one, y / one);
+    let z = 1.0 - x.abs() - y.abs();
+    let below = z.min(0.0);
+    x += if x >= 0.0 { below } else { -below };
+    y += if y >= 0.0 { below } else { -below };
+    let length = (x * x + y * y + z * z).sqrt();
+    [x, y, z].map(|v| (v / length * most).round())
+}
+
+/// A unit vector as [`Filter::Octahedral`] stores it in four bytes: of the four pairs of whole numbers around it the one
+/// that comes back nearest.
+pub(super) fn octahedral(n: [f32; 3]) -> [u8; 4] {
+    const ONE: f64 = 127.0;
+    let [x, y, z] = n.map(f64::from);
+    let sum = (x.abs() + y.abs() + z.abs()).max(f64::MIN_POSITIVE);
+    let (mut u, mut v) = (x / sum, y / sum);
+    if z < 0.0 {
+        let sign = |a: f64| if a >= 0.0 { 1.0 } else { -1.0 };
+        (u, v) = ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v));
+    }
+    let (low_u, low_v) = ((u * ONE).floor(), (v * ONE).floor());
+    let off = |[u, v]: [f64; 2]| {
+        let [a, b, c] = on_sphere([u, v, ONE], ONE);
+        (a - ONE * x) * (a - ONE * x) + (b - ONE * y) * (b - ONE * y) + (c - ONE * z) * (c - ONE * z)
+    };
+    let all = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let all = all.map(|[a, b]| [(low_u + a).clamp(-ONE, ONE), (low_v + b).clamp(-ONE, ONE)]);
+    let best = all.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or_default();
+    #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
+    let byte = |x: f64| (x as i8).to_le_bytes()[0];
+    [byte(best[0]), byte(best[1]), 127, 0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_come_back_to_a_degree() {
+        let mut worst: f64 = 0.0;
+        for i in 0..2000 {
+            let (height, turn) = (1.0 - f64::from(i) / 999.5, f64::from(i) * 2.4);
+            let wide = (1.0 - height * height).max(0.0).sqrt();
+            let n = [wide * base::ops::cos(turn), wide * base::ops::sin(turn), height];
+            #[expect(clippy::cast_possible_truncation, reason = "-1 to 1")]
+            let mut stored = octahedral(n.map(|x| x as f32));
+            assert_eq!(stored[2..], [127, 0]);
+            Filter::Octahedral.decode(&mut stored, 4).expect("four bytes");
+            let back = glam::DVec3::from([0, 1, 2].map(|k| f64::from(i8::from_le_bytes([stored[k]]))));
+            worst = worst.max(back.angle_between(n.into()).to_degrees());
+        }
+        assert!(worst < 1.0, "{worst} degrees");
+    }
+
+    #[test]
+    fn what_other_programs_store_is_what_the_extension_says() {
+        // The axes; 16 bits.
+        let mut stored = [0_u8; 8];
+        put(&mut stored, [0, 0, 2047, 5]);
+        Filter::Octahedral.decode(&mut stored, 8).expect("eight bytes");
+        assert_eq!(words(&stored), [0, 0, 32_767, 5]);
+        // No turn: three zeros, the largest is the fourth.
+        put(&mut stored, [0, 0, 0, 2047]);
+        Filter::Quaternion.decode(&mut stored, 8).expect("eight bytes");
+        assert_eq!(words(&stored), [0, 0, 0, 32_767]);
+        // A quarter turn about the first axis: the largest is the first, equal to the fourth.
+        put(&mut stored, [0, 0, 2047, 2044]);
+        Filter::Quaternion.decode(&mut stored, 8).expect("eight bytes");
+        assert_eq!(words(&stored), [23_170, 0, 0, 23_170]);
+        let mut float = (-3_i32 << 24 | 12).to_le_bytes();
+        Filter::Exponential.decode(&mut float, 4).expect("four bytes");
+        assert_eq!(f32::from_le_bytes(float), 1.5);
+        // Never a panic.
+        for e in [[0_u8; 4], [255; 4], [128; 4], [127, 129, 0, 1]] {
+            Filter::Octahedral.decode(&mut e.clone(), 4).expect("four bytes");
+            Filter::Exponential.decode(&mut e.clone(), 4).expect("four bytes");
+        }
+        assert_eq!(Filter::Quaternion.decode(&mut [0; 4], 4), None);
+        assert_eq!(Filter::of("WRONG"), None);
+    }
+}
