@@ -2,7 +2,7 @@
 //!
 //! `Plant, Model -> what is seen from the front -> stems and outlines, or limbs and the outline of the crown`
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use base::{Cancelled, Run, ops};
@@ -25,6 +25,10 @@ const THICK: f64 = 0.12;
 const FINEST_LIMB: u32 = 2;
 /// A limb is drawn of which more than this share is seen.
 const BARE: f64 = 0.5;
+/// Foliage that covers more than this share of its outline hides what is in it.
+const DENSE: f64 = 0.4;
+/// Of the height of the foliage: so far a trunk goes on into it.
+const BEHIND: f64 = 0.1;
 /// Of the picture: what is smaller is a detail that nobody draws.
 const LARGE: f64 = 0.0003;
 /// Of the plant's size: wood that is wider is drawn by its two edges.
@@ -85,8 +89,8 @@ pub struct DrawnLine {
 /// A plant from the front, as a line drawing, in the order in which a person draws: wood and stems, then organs from behind.
 ///
 /// Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
-/// outlines; of a plant that shows many, trunk and those limbs that foliage does not hide are drawn, and around the foliage
-/// the outline of the crown. `layout`: of this model.
+/// outlines; of a plant that shows many, trunk and limbs are drawn as far as foliage does not hide them, and around the
+/// foliage the outline of the crown. `layout`: of this model.
 ///
 /// Guaranteed: the same bits for any executor. Not guaranteed: that the program reads the same plant out of it. Cost: as a
 /// picture of 768 x 768 pixels.
@@ -105,7 +109,10 @@ pub fn drawn(
         supersample: 1,
         ..PictureSpec::default()
     };
+    let framed = f64::from(PIXELS) * (1.0 - 2.0 * front.margin);
     let hits = render::hits(model, &[front], run)?;
+    let size = size(model);
+    let sheet = Sheet { plant, size, fine: FINE * size, pixel: size / framed };
     let (mut organs, mut wood) = (BTreeMap::new(), BTreeMap::new());
     for hit in hits.iter().flatten() {
         let label = labels.get(hit.part as usize).and_then(|part| part.get(hit.triangle as usize));
@@ -115,18 +122,19 @@ pub fn drawn(
             _ => {}
         }
     }
-    let size = size(model);
-    let sheet = Sheet { plant, size, fine: FINE * size, pixel: size / f64::from(PIXELS) };
     let all: u32 = organs.values().sum();
     organs.retain(|_, count| f64::from(*count) >= LARGE * f64::from(PIXELS * PIXELS));
     if organs.len() <= MOST_ORGANS && 2 * organs.values().sum::<u32>() >= all {
-        let stems: Vec<i32> = wood.keys().copied().collect();
+        let stems: Vec<(i32, f64)> = wood.keys().map(|axis| (*axis, f64::INFINITY)).collect();
         let mut lines = sheet.stems(&stems);
         lines.extend(sheet.organs(model, &labels, &organs));
         return Ok(lines);
     }
-    let mut lines = sheet.stems(&sheet.limbs(&wood));
-    lines.push(DrawnLine { kind: DrawnKind::Crown, points: crown(plant), row: NOTHING });
+    let crown = crown(plant);
+    let covered = f64::from(all) * sheet.pixel * sheet.pixel;
+    let hidden = (covered > DENSE * geom::signed_area(&crown).abs()).then_some(&*crown);
+    let mut lines = sheet.stems(&sheet.limbs(&wood, hidden));
+    lines.push(DrawnLine { kind: DrawnKind::Crown, points: crown, row: NOTHING });
     Ok(lines)
 }
 
@@ -169,45 +177,65 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Axes as lines from where they are borne to their tips; around those that are thick.
-    fn stems(&self, rows: &[i32]) -> Vec<DrawnLine> {
-        let line = |&row: &i32| {
+    /// Axes as lines from where they are borne to their tips, or to the height beside them; around those that are thick.
+    fn stems(&self, rows: &[(i32, f64)]) -> Vec<DrawnLine> {
+        let line = |&(row, end): &(i32, f64)| {
             let axis = self.plant.axes.get(usize::try_from(row).ok()?)?;
-            let nodes: Vec<NodeId> = axis.bearer.into_iter().chain(axis.node_ids()).collect();
-            let radius = |node: &NodeId| self.plant.nodes.radius_m[node.index()];
-            let mut points: Vec<DVec2> =
-                nodes.iter().map(|n| self.plant.nodes.position[n.index()].truncate()).collect();
+            let nodes = axis.bearer.into_iter().chain(axis.node_ids());
+            let (whole, radii): (Vec<DVec2>, Vec<f64>) = nodes
+                .map(|n| {
+                    (self.plant.nodes.position[n.index()].truncate(), self.plant.nodes.radius_m[n.index()])
+                })
+                .unzip();
+            let mut points: Vec<DVec2> = whole.iter().copied().take_while(|p| p.y <= end).collect();
+            let cut = points.len();
+            if let (Some(last), Some(next)) = (points.last().copied(), whole.get(cut)) {
+                points.push(last.lerp(*next, (end - last.y) / (next.y - last.y)));
+            }
             if points.len() < 2 || extent(&points).max_element() <= self.fine {
                 return None;
             }
-            let thick =
-                axis.kind == AxisKind::Branch && 2.0 * radius(&nodes[nodes.len() / 4]) > WIDE * self.size;
-            if thick {
+            let is_thick = axis.kind == AxisKind::Branch && 2.0 * radii[points.len() / 4] > WIDE * self.size;
+            if is_thick {
                 let beside: Vec<DVec2> = (0..points.len())
                     .map(|k| {
                         let (before, after) = (k.saturating_sub(1), (k + 1).min(points.len() - 1));
                         let along = points[after] - points[before];
-                        along.try_normalize().unwrap_or_default().perp() * radius(&nodes[k])
+                        along.try_normalize().unwrap_or_default().perp() * radii[k]
                     })
                     .collect();
                 let left = points.iter().zip(&beside).map(|(p, b)| *p + *b);
-                let right = points.iter().zip(&beside).rev().map(|(p, b)| *p - *b);
-                points = left.chain(right).collect();
+                let right = points.iter().zip(&beside).map(|(p, b)| *p - *b);
+                // What goes on behind foliage is open at its upper end, else at its foot.
+                points = if cut < whole.len() {
+                    left.rev().chain(right).collect()
+                } else {
+                    left.chain(right.rev()).collect()
+                };
             }
             Some(DrawnLine { kind: DrawnKind::Axis, points: geom::simplify(&points, self.fine), row })
         };
         rows.iter().filter_map(line).collect()
     }
 
-    /// Trunks, and the longest of the thick limbs that foliage does not hide; `seen`: pixels of each axis.
-    fn limbs(&self, seen: &BTreeMap<i32, u32>) -> Vec<i32> {
+    /// Trunks, and the longest of the thick limbs that foliage does not hide, with the heights where they end: a trunk a
+    /// little above the edge of the foliage that hides it. `seen`: pixels of each axis.
+    fn limbs(&self, seen: &BTreeMap<i32, u32>, foliage: Option<&[DVec2]>) -> Vec<(i32, f64)> {
         let (axes, nodes) = (&self.plant.axes, &self.plant.nodes);
         let foot = |axis: &plant::Axis| nodes.radius_m.get(axis.nodes.start as usize).copied().unwrap_or(0.0);
         let thick = THICK * axes.iter().filter(|a| a.order == 0).map(foot).fold(0.0, f64::max);
-        let (mut trunks, mut limbs) = (Vec::new(), Vec::new());
+        let (mut trunks, mut limbs, mut hidden) = (Vec::new(), Vec::new(), BTreeSet::new());
         for (row, axis) in (0_i32..).zip(axes) {
             if axis.order == 0 {
-                trunks.push(row);
+                let place = |n: NodeId| nodes.position[n.index()].truncate();
+                let inside = |crown| axis.node_ids().map(place).find(|p| geom::contains(crown, *p));
+                let edge = foliage.and_then(|crown| Some(inside(crown)?.y + BEHIND * extent(crown).y));
+                let end = edge.unwrap_or(f64::INFINITY);
+                hidden.extend(axis.node_ids().filter(|n| place(*n).y > end));
+                trunks.push((row, end));
+                continue;
+            }
+            if axis.bearer.is_some_and(|b| hidden.contains(&b)) {
                 continue;
             }
             if axis.order > FINEST_LIMB || foot(axis) < thick {
@@ -224,7 +252,18 @@ impl Sheet<'_> {
             }
         }
         base::sort_by(&mut limbs, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        trunks.into_iter().chain(limbs.into_iter().map(|(_, row)| row).take(MOST_LIMBS)).collect()
+        limbs.truncate(MOST_LIMBS);
+        // A limb without the one that bears it would hang in the air.
+        let mut drawn: BTreeSet<usize> = trunks.iter().filter_map(|t| usize::try_from(t.0).ok()).collect();
+        base::sort_by_key(&mut limbs, |limb| limb.1);
+        limbs.retain(|&(_, row)| {
+            let axis = usize::try_from(row).ok();
+            let bearer = axis.and_then(|row| axes[row].bearer).map(|n| nodes.axis[n.index()].index());
+            let held = bearer.is_some_and(|b| drawn.contains(&b));
+            drawn.extend(axis.filter(|_| held));
+            held
+        });
+        trunks.into_iter().chain(limbs.into_iter().map(|(_, row)| (row, f64::INFINITY))).collect()
     }
 
     /// The organs that are seen, those behind first; `seen`: pixels of each.
