@@ -17,6 +17,7 @@ const INKS: Record<string, Ink> = {
   thorn: { light: '#6b5b95', dark: '#c5b5f0' },
   root: { light: '#8a6d3b', dark: '#e0c48f' },
   stamen: { light: '#8f6a00', dark: '#f3dc7a' },
+  pot: { light: '#a04a2a', dark: '#f0a884' },
   ignored: { light: '#7b8088', dark: '#9aa1ab' },
 };
 

@@ -13,6 +13,7 @@
 //! The feature `training` adds what trains the classifier; programs that make plants do without it.
 
 mod again;
+mod beds;
 mod class;
 mod classify;
 mod clean;

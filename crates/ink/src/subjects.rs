@@ -7,6 +7,7 @@
 //! are several plants. Lines by themselves are no plants: they are grass, or belong to the plant beside them. Distances
 //! are shares of the sizes of what they lie between, so neither the sheet nor the order of drawing matters.
 
+use crate::beds::{Stroke, bed};
 use geom::{Spoke, convex_hull, signed_area, wheels};
 use glam::DVec2;
 
@@ -72,7 +73,7 @@ pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
     }
     let sheet = Sheet::new(strokes);
     let ground = sheet.grounds();
-    let mut groups = sheet.touching(&ground);
+    let mut groups = sheet.touching(&ground, &sheet.bed(&ground));
     if groups.len() < 2 || groups.len() > MOST_GROUPS {
         return Subjects::one(count);
     }
@@ -114,6 +115,8 @@ struct Group {
     strokes: Vec<usize>,
     lo: DVec2,
     hi: DVec2,
+    /// A plant of a bed: with none other it is one.
+    of_bed: bool,
 }
 
 impl Group {
@@ -155,8 +158,21 @@ impl Sheet {
         (0..self.lines.len()).filter(|&k| flat(&self.lines[k])).collect()
     }
 
-    /// Groups of strokes that touch one another.
-    fn touching(&self, ground: &[usize]) -> Vec<Group> {
+    /// The plant of each stroke in a bed; empty if it is none.
+    fn bed(&self, ground: &[usize]) -> Vec<Option<usize>> {
+        let strokes = self.lines.iter().enumerate().map(|(k, l)| Stroke {
+            points: &l.points,
+            lo: l.lo,
+            hi: l.hi,
+            closed: l.closed,
+            straight: l.straight,
+            ground: ground.contains(&k),
+        });
+        bed(&strokes.collect::<Vec<_>>(), &self.wheels())
+    }
+
+    /// Groups of strokes that touch one another; `beds`: what is of other plants does not, even if it does.
+    fn touching(&self, ground: &[usize], beds: &[Option<usize>]) -> Vec<Group> {
         let reach = TOUCH * self.height().max(0.05);
         let mut cells: Vec<((i64, i64), usize, DVec2)> = Vec::new();
         let key = |p: DVec2| {
@@ -176,7 +192,7 @@ impl Sheet {
             cells.extend(line.points.last().map(|&p| (key(p), k, p)));
         }
         base::sort_by(&mut cells, |a, b| (a.0, a.1).cmp(&(b.0, b.1)));
-        let mut sets = Sets::new(self.lines.len());
+        let mut sets = Sets::new(self.lines.len(), beds);
         let row = |cell: (i64, i64)| {
             let from = cells.partition_point(|c| c.0 < cell);
             cells[from..].iter().take_while(move |c| c.0 == cell)
@@ -195,11 +211,19 @@ impl Sheet {
         for k in (0..self.lines.len()).filter(|k| !ground.contains(k)) {
             groups.entry(sets.top(k)).or_default().push(k);
         }
-        groups.into_iter().map(|(_, strokes)| self.group(strokes)).collect()
+        let of_bed = |strokes: &[usize]| strokes.iter().any(|&k| beds.get(k).is_some_and(Option::is_some));
+        groups.into_iter().map(|(_, s)| Group { of_bed: of_bed(&s), ..self.group(s) }).collect()
     }
 
     /// Joins outlines that point away from one place all round it: petals, whether or not they touch.
     fn petals(&self, sets: &mut Sets) {
+        for wheel in self.wheels() {
+            wheel.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+        }
+    }
+
+    /// Outlines all round one place.
+    fn wheels(&self) -> Vec<Vec<usize>> {
         let closed: Vec<usize> = (0..self.lines.len()).filter(|&k| self.lines[k].closed).collect();
         let spoke = |&k: &usize| {
             let line = &self.lines[k];
@@ -208,18 +232,15 @@ impl Sheet {
             let middle = line.points.iter().sum::<DVec2>() / line.points.len().max(1) as f64;
             Spoke { gap: ends.unwrap_or(middle), middle, size: line.lo.distance(line.hi) }
         };
-        for wheel in wheels(&closed.iter().map(spoke).collect::<Vec<_>>()) {
-            for pair in wheel.spokes.windows(2) {
-                sets.join(closed[pair[0]], closed[pair[1]]);
-            }
-        }
+        let found = wheels(&closed.iter().map(spoke).collect::<Vec<_>>());
+        found.into_iter().map(|wheel| wheel.spokes.into_iter().map(|k| closed[k]).collect()).collect()
     }
 
     fn group(&self, strokes: Vec<usize>) -> Group {
         let (lo, hi) = strokes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &k| {
             (lo.min(self.lines[k].lo), hi.max(self.lines[k].hi))
         });
-        Group { strokes, lo, hi }
+        Group { strokes, lo, hi, of_bed: false }
     }
 
     /// Joins what belongs together, the nearest first.
@@ -245,7 +266,8 @@ impl Sheet {
                 row.remove(a);
             });
             let strokes = [core::mem::take(&mut groups[b].strokes), other.strokes].concat();
-            groups[b] = self.group(strokes);
+            let of_bed = groups[b].of_bed || other.of_bed;
+            groups[b] = Group { of_bed, ..self.group(strokes) };
             for k in 0..groups.len() {
                 match k.cmp(&b) {
                     core::cmp::Ordering::Less => costs[b][k] = cost(&groups[b], &groups[k]),
@@ -281,6 +303,9 @@ impl Sheet {
 
     /// How far two groups are from being one plant, where they are; the lower the surer.
     fn belongs(&self, a: &Group, b: &Group) -> Option<f64> {
+        if a.of_bed && b.of_bed {
+            return None;
+        }
         let (small, large) = if a.size() < b.size() { (a, b) } else { (b, a) };
         let gap = self.gap(small, large, 0.5 * large.size())?;
         let (stand_a, stand_b) = (self.stands(small), self.stands(large));
@@ -444,24 +469,37 @@ fn inside(small: &Group, large: &Group) -> f64 {
 }
 
 /// Sets of strokes that are joined one after another.
-struct Sets(Vec<usize>);
+struct Sets {
+    above: Vec<usize>,
+    /// The plant of a bed that a set belongs to, at its top.
+    plant: Vec<Option<usize>>,
+}
 
 impl Sets {
-    fn new(n: usize) -> Self {
-        Self((0..n).collect())
+    /// What is of one plant of a bed is one set from the beginning.
+    fn new(n: usize, beds: &[Option<usize>]) -> Self {
+        let plant: Vec<Option<usize>> = (0..n).map(|k| beds.get(k).copied().flatten()).collect();
+        let first =
+            |k: usize| plant[k].and_then(|own| plant.iter().position(|p| *p == Some(own))).unwrap_or(k);
+        Self { above: (0..n).map(first).collect(), plant }
     }
 
     fn top(&mut self, mut k: usize) -> usize {
-        while self.0[k] != k {
-            self.0[k] = self.0[self.0[k]];
-            k = self.0[k];
+        while self.above[k] != k {
+            self.above[k] = self.above[self.above[k]];
+            k = self.above[k];
         }
         k
     }
 
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.top(a), self.top(b));
-        self.0[a.max(b)] = a.min(b);
+        if self.plant[a].is_some() && self.plant[b].is_some() {
+            return;
+        }
+        let plant = self.plant[a].or(self.plant[b]);
+        self.above[a.max(b)] = a.min(b);
+        self.plant[a.min(b)] = plant;
     }
 }
 

@@ -36,6 +36,8 @@ pub enum OrganKind {
     Floret,
     /// A green body, such as a cactus's: what stands for stem and leaves in one.
     Body,
+    /// The pot that the plant stands in, or its soil: no part of the plant, but what belongs under it.
+    Pot,
 }
 
 /// What the colour of an organ is, as its maker knows it. Linear RGB.

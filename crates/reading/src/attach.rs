@@ -3,7 +3,7 @@
 use base::ops;
 use geom::{bounds, contains, point_at, polyline_length};
 use glam::DVec2;
-use ink::StrokeClass;
+use ink::{Ink, StrokeClass};
 use plant::AxisKind;
 
 use crate::blade::{Sheetlet, found_midrib, midrib, tip};
@@ -12,6 +12,7 @@ use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
 use crate::kept::{alike, same_bits};
 use crate::near::Near;
+use crate::overlap::layers;
 use crate::rules::STAMENS;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{VeinLine, Veins, choose_midrib};
@@ -419,6 +420,7 @@ pub(crate) fn organs(
         }
         let rings = whorls(draft, &flower, &petals);
         petals.iter_mut().zip(rings).for_each(|(petal, whorl)| petal.whorl = whorl);
+        order(&mut petals, draft.ink);
         if let Some(disc) = flower.disc {
             draft.set_organ(disc.source, OrganWord::Disc);
         }
@@ -443,7 +445,14 @@ pub(crate) fn organs(
             leaves.push(leaf);
         }
     }
+    order(&mut leaves, draft.ink);
     (read, leaves)
+}
+
+/// Which of them lies in front.
+fn order(blades: &mut [BladeReading], ink: &Ink) {
+    let layers = layers(blades, ink);
+    blades.iter_mut().zip(layers).for_each(|(blade, layer)| blade.front = layer);
 }
 
 fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
@@ -480,6 +489,7 @@ fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReadin
         veins,
         bearer: None,
         whorl: 0,
+        front: None,
         source: None,
         color: None,
     }

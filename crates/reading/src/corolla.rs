@@ -13,6 +13,9 @@ const MOST: usize = 400;
 const OPEN_END: f64 = 0.3;
 /// A corolla whose ends are nearer than this share of its diagonal is closed.
 const SHUT: f64 = 0.12;
+/// The rim of a cup dips no deeper than this share of its reach from its foot, and its points lie farther than the second.
+const CUP_DEPTH: f64 = 0.35;
+const CUP_TIP: f64 = 0.75;
 /// A piece shorter than this share of the reach is a remnant at an open end.
 const REMNANT: f64 = 0.3;
 /// Ends nearer to the root than this share of the reach are at it.
@@ -132,6 +135,25 @@ pub(crate) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
         }
     }
     pieces
+}
+
+/// Whether a stroke goes round petals that are seen from the side: from `foot` up one side, over two points or more with a dip
+/// between them, and down the other. Its points are about as far from the foot as one another, unlike those of a ring.
+pub(crate) fn is_cup(points: &[DVec2], foot: DVec2) -> bool {
+    let first = points.first().zip(points.last()).zip(bounds(points));
+    if !first.is_some_and(|((a, b), (lo, hi))| a.distance(*b) < SHUT * lo.distance(hi)) {
+        return false;
+    }
+    let away = |k: &usize| points[*k].distance(foot);
+    let start = (0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
+    let distance: Vec<f64> = (start..points.len()).chain(0..=start).map(|k| away(&k)).collect();
+    let reach = distance.iter().copied().fold(0.0, f64::max);
+    let cuts = dips(&distance, DIP * reach);
+    let between = cuts.get(1..cuts.len().saturating_sub(1)).unwrap_or_default();
+    let tip = |w: &[usize]| distance[w[0]..=w[1]].iter().copied().fold(0.0, f64::max);
+    !between.is_empty()
+        && between.iter().all(|&k| distance[k] > CUP_DEPTH * reach)
+        && cuts.windows(2).all(|w| tip(w) > CUP_TIP * reach)
 }
 
 /// Both ends and every low place with at least `depth` of rise on both sides before the next one.

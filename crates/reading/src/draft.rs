@@ -16,11 +16,13 @@ use crate::steady::steady;
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
-    Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
+    PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
 pub(crate) const MOST_REGIONS: usize = 200;
+/// A pot begins within this share of the height from the foot of the drawing.
+const FOOT: f64 = 0.25;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
 /// A thin outline is a petal seen from its edge where two others begin nearer than this share of their size.
@@ -480,6 +482,7 @@ impl<'a> Draft<'a> {
         fruits: Vec<FruitReading>,
         thorns: Vec<Thorn>,
     ) -> Reading {
+        let pots = self.pots();
         let mut strokes: Vec<StrokeReading> = (0..self.class.len()).map(|k| self.stroke(k)).collect();
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
         let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
@@ -521,11 +524,39 @@ impl<'a> Draft<'a> {
             leaves,
             regions,
             fruits,
+            pots,
             thorns,
             woody,
             pressed: Vec::new(),
             plants: Vec::new(),
         }
+    }
+
+    /// What it stands in: strokes of pots above one another are of one pot.
+    fn pots(&mut self) -> Vec<PotReading> {
+        let mut found: Vec<([f64; 2], PotReading)> = Vec::new();
+        let all = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
+        let (floor, top) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let tall = top - floor;
+        for k in self.of_class(StrokeClass::Pot) {
+            let s = &self.ink.strokes[k];
+            let Some((low, high)) = bounds(&s.points) else { continue };
+            // Its foot is the foot of the drawing.
+            if low.y > floor + FOOT * tall {
+                continue;
+            }
+            self.organ[k] = OrganWord::Pot;
+            let lines = vec![s.points.clone()];
+            let mut all =
+                vec![([low.x, high.x], PotReading { lines, source: Some(s.index), color: s.color })];
+            all.splice(0..0, found.extract_if(.., |(x, _)| x[0] <= high.x && low.x <= x[1]));
+            // All that it meets become one, named after the first.
+            found.extend(all.into_iter().reduce(|(x, mut one), (y, other)| {
+                one.lines.extend(other.lines);
+                ([x[0].min(y[0]), x[1].max(y[1])], one)
+            }));
+        }
+        found.into_iter().map(|p| p.1).collect()
     }
 
     /// Length of the longest line or axis.

@@ -16,7 +16,7 @@ use ink::StrokeClass;
 use crate::blade::{Sheetlet, tip};
 use crate::body;
 use crate::contour::{neck, width_at};
-use crate::corolla::{Core, split, visits, winding};
+use crate::corolla::{Core, is_cup, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::Near;
 use crate::rings::Ring;
@@ -44,6 +44,12 @@ const AT_DISC: f64 = 1.3;
 /// A corolla touches a stem where it comes nearer than this share of its size. Every so many points are looked at, and a
 /// stem that it stands along is touched by more than one of so many of them, and longer than that share of its size.
 const TOUCHES: f64 = 0.07;
+/// Ends of two lines meet within this share of the first one's length.
+const MEETS: f64 = 0.08;
+/// A line is open if its ends are farther apart than this share of its length.
+const APART: f64 = 0.2;
+/// The cosine of the angle within which what lies ahead of the foot of a cup is its middle.
+const AHEAD: f64 = 0.95;
 const STRIDE: usize = 6;
 const ALONG: usize = 3;
 const LONG_STEM: f64 = 0.4;
@@ -130,8 +136,21 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
             points = top;
             points.extend(points.first().copied());
         }
+        if let Some((other, whole)) = closed_by_another(draft, k) {
+            draft.organ[other] = OrganWord::Petal;
+            points = whole;
+        }
         let core = core_of(draft, &points, discs, &centres, &axes);
         let mut pieces = split(&points, &core, k);
+        if let ([_, _], Core::Point(foot, _)) = (&pieces[..], &core)
+            && is_cup(&points, *foot)
+        {
+            let foot = *foot;
+            let front = Sheetlet::new(&front_of_cup(&points, foot), k);
+            let front =
+                front.map(|p| Sheetlet { root: Some(foot), gap: foot, gap_width: 0.0, leaf: false, ..p });
+            pieces.extend(front);
+        }
         if pieces.is_empty() {
             pieces.extend(Sheetlet::new(&points, k));
         }
@@ -141,6 +160,41 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         draft.organ[k] = if pieces.is_empty() { OrganWord::Ignored } else { OrganWord::Leaf };
         draft.blades.extend(pieces);
     }
+}
+
+/// The corolla and a line that leads from one of its ends to the other, such as the round lower half of a cup under its points:
+/// that line, and both as one.
+fn closed_by_another(draft: &Draft<'_>, k: usize) -> Option<(usize, Vec<DVec2>)> {
+    let other = draft.of_class(StrokeClass::Other).into_iter();
+    other.map(|other| (other, together(draft, k, other))).find_map(|(other, whole)| Some((other, whole?)))
+}
+
+/// Two open strokes that meet at both ends, as one outline.
+pub(crate) fn together(draft: &Draft<'_>, first: usize, second: usize) -> Option<Vec<DVec2>> {
+    let line = |k: usize| {
+        let s = draft.ink.strokes.get(k)?;
+        let [a, b] = [*s.points.first()?, *s.points.last()?];
+        (a.distance(b) > APART * s.length).then_some((s, a, b))
+    };
+    let ((one, a, b), (other, from, to)) = (line(first)?, line(second)?);
+    let near = MEETS * one.length;
+    let mut points = other.points.clone();
+    if b.distance(to) < near && a.distance(from) < near {
+        points.reverse();
+    } else if b.distance(from) >= near || a.distance(to) >= near {
+        return None;
+    }
+    Some([&one.points[..], &points].concat())
+}
+
+/// Between the two points of a cup a third petal stands in front, as high as the dip between them.
+fn front_of_cup(points: &[DVec2], foot: DVec2) -> Vec<DVec2> {
+    let reach = points.iter().map(|p| p.distance(foot)).fold(0.0, f64::max);
+    let middle = points.iter().map(|p| *p - foot).sum::<DVec2>().normalize_or_zero();
+    let ahead =
+        |p: &&DVec2| (**p - foot).normalize_or_zero().dot(middle) > AHEAD && p.distance(foot) > 0.2 * reach;
+    let dip = points.iter().filter(ahead).map(|p| p.distance(foot)).fold(reach, f64::min);
+    points.iter().copied().filter(|p| p.distance(foot) <= dip * 1.01).collect()
 }
 
 /// A lower part that is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
@@ -213,7 +267,8 @@ fn core_of(
     let around = winding(points, middle) > AROUND;
     for line in axes.iter().take(200) {
         for end in [line[0], line[line.len() - 1]] {
-            if visits(points, end, near) >= 2 {
+            let stands = visits(points, end, near);
+            if stands >= 2 || (stands == 1 && is_cup(points, end)) {
                 return Core::Point(end, 0.0);
             }
         }

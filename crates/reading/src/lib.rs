@@ -11,6 +11,7 @@
 //! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
+//! | `overlap` | which of the blades that overlap lies in front | beyond |
 //! | `steady`, `pressed` | lines without tremor, and how boldly they were drawn | beyond |
 //! | `attach` | what bears what | beyond |
 //! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
@@ -38,6 +39,7 @@ mod kinds;
 mod look;
 mod near;
 mod outlines;
+mod overlap;
 mod pressed;
 mod read;
 mod rings;
@@ -60,7 +62,7 @@ pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
 pub use read::{UNLIKE_A_PLANT, kind_row, read, read_again, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
-    Reading, RegionKind, RegionReading, StrokeReading,
+    PotReading, Reading, RegionKind, RegionReading, StrokeReading,
 };
 pub use rules::{READ_AS, RULES, Rule};
 pub use validate::ReadingFault;

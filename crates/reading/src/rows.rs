@@ -38,6 +38,8 @@ pub enum OrganWord {
     Root,
     /// Stamens or a pistil.
     Stamen,
+    /// Part of the pot that it stands in.
+    Pot,
     /// Recognised and left out.
     Ignored,
 }
@@ -58,6 +60,7 @@ impl OrganWord {
             Self::Thorn => "thorn",
             Self::Root => "root",
             Self::Stamen => "stamen",
+            Self::Pot => "pot",
             Self::Ignored => "ignored",
         }
     }
@@ -120,6 +123,8 @@ pub struct BladeReading {
     pub bearer: Option<Attachment>,
     /// Ring of the flower, 0 outermost (petals only).
     pub whorl: u32,
+    /// Where it lies among those that it overlaps: -1 behind all of them, 1 in front of all; `None` if it overlaps none.
+    pub front: Option<f64>,
     /// The stroke it came from.
     pub source: Option<u32>,
     /// Its drawn colour.
@@ -192,6 +197,17 @@ pub struct FruitReading {
     pub color: Option<[u8; 3]>,
 }
 
+/// The pot or vase that a plant stands in, of all strokes that were drawn for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PotReading {
+    /// Its lines, ink coordinates: outlines, sides, a rim.
+    pub lines: Vec<Vec<DVec2>>,
+    /// The first of the strokes that it came from.
+    pub source: Option<u32>,
+    /// Its drawn colour.
+    pub color: Option<[u8; 3]>,
+}
+
 /// What the drawing was understood as.
 ///
 /// Ink coordinates: y up, the drawing's bounding box has diagonal 1 and its lower left corner at the origin.
@@ -209,6 +225,8 @@ pub struct Reading {
     pub regions: Vec<RegionReading>,
     /// Fruits.
     pub fruits: Vec<FruitReading>,
+    /// Pots.
+    pub pots: Vec<PotReading>,
     /// Thorns: root and tip, with what bears them.
     pub thorns: Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)>,
     /// It is a woody plant (trunk outline, crown, several orders of branches) rather than a herb.

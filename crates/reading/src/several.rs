@@ -169,6 +169,7 @@ impl Back {
             self.line(&mut fruit.outline);
             self.bearer(&mut fruit.bearer, first);
         }
+        one.pots.iter_mut().flat_map(|p| &mut p.lines).for_each(|l| self.line(l));
         for (points, bearer, _) in &mut one.thorns {
             self.line(points);
             self.bearer(bearer, first);
@@ -180,6 +181,7 @@ impl Back {
         all.leaves.append(&mut one.leaves);
         all.regions.append(&mut one.regions);
         all.fruits.append(&mut one.fruits);
+        all.pots.append(&mut one.pots);
         all.thorns.append(&mut one.thorns);
         all.plants.append(&mut one.plants);
         all.woody |= one.woody;

@@ -11,7 +11,7 @@ use reading::{BladeReading, Reading, RegionKind};
 use crate::bodies::name_bodies;
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
-    leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
+    leaf_shape, place_flower, place_fruit, place_leaf, place_pot, place_thorn,
 };
 use crate::fill::{FillContext, GrownContour, KeptBodies, fill};
 use crate::front::Front;
@@ -120,6 +120,7 @@ pub fn build_again(
     for (i, fruit) in reading.fruits.iter().enumerate().filter(|(_, f)| !crowned.holds(middle(&f.outline))) {
         place_fruit(&mut plant, &scene, fruit, i, None);
     }
+    reading.pots.iter().for_each(|pot| place_pot(&mut plant, &scene, pot));
     report.book("depth", run.clock.now_ms() - started);
     run.cancel.check()?;
 
@@ -204,8 +205,11 @@ fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     }
     let ground = reading.axes.iter().filter(standing).filter_map(foot).map(|p| p.y);
     let ground = ground.reduce(f64::min).unwrap_or(low.y);
-    let origin_ink = DVec2::new(main.and_then(foot).map_or(0.5 * (low.x + high.x), |p| p.x), ground);
     let tall = high.y - ground;
+    // A pot stands on the ground, and the plant on its soil.
+    let pots = reading.pots.iter().flat_map(|p| &p.lines).flatten().filter(|p| sound(p));
+    let floor = pots.map(|p| p.y).fold(ground, f64::min);
+    let origin_ink = DVec2::new(main.and_then(foot).map_or(0.5 * (low.x + high.x), |p| p.x), floor);
     // A plant that lies flat on the ground line has its breadth instead of a height.
     let extent = if tall > 1e-3 { tall } else { (high - low).max_element() };
     let extent = if extent > 1e-6 { extent } else { 1.0 };

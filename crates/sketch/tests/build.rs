@@ -48,6 +48,7 @@ fn blade(root: DVec2, tip: DVec2, width: f64, source: u32) -> BladeReading {
         veins: vec![],
         bearer: None,
         whorl: 0,
+        front: None,
         source: Some(source),
         color: None,
     }
@@ -547,6 +548,7 @@ fn any_blade() -> impl Strategy<Value = BladeReading> {
             midrib,
             bearer,
             whorl,
+            front: None,
             source,
             color: None,
         })

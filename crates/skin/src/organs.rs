@@ -507,6 +507,7 @@ impl<'a> Ground<'a> {
             OrganKind::Body if coat == Coat::Natural => Slot::Body,
             OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
             OrganKind::Stamen | OrganKind::Anther | OrganKind::Pistil => Slot::Stamen(coat),
+            OrganKind::Pot => Slot::Pot,
             OrganKind::Thorn => Slot::Thorn,
             OrganKind::Pedicel => Slot::Stem,
             _ if matches!(shape, Shape::Blade(b) if b.needles.is_some()) => Slot::Needles(coat),

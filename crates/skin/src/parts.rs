@@ -36,6 +36,8 @@ pub(crate) enum Slot {
     Disc(Coat),
     Fruit(Coat),
     Body,
+    /// In the colour of its clay.
+    Pot,
     Stamen(Coat),
     Thorn,
     /// In the colours of the photograph that it was traced over.
@@ -90,6 +92,7 @@ impl Slot {
             Self::Disc(_) => MaterialKind::Disc,
             Self::Fruit(_) => MaterialKind::Fruit,
             Self::Stamen(_) => MaterialKind::Stamen,
+            Self::Pot => MaterialKind::Other,
         }
     }
 
@@ -121,6 +124,7 @@ impl Slot {
             Self::Fruit(Coat::Drawn) => ("fruits-drawn", "fruit-drawn".into()),
             Self::Fruit(_) => ("fruits", "fruit".into()),
             Self::Body => ("bodies", "body".into()),
+            Self::Pot => ("pots", "pot".into()),
             Self::Stamen(_) => ("stamens", "stamen".into()),
             Self::Thorn => ("thorns", "thorn".into()),
             Self::Traced(kind) => {
@@ -156,6 +160,7 @@ impl Slot {
             Self::Fruit(Coat::Natural) => Motif::Fruit,
             Self::Fruit(_) => Motif::PaleFruit,
             Self::Body => Motif::Body,
+            Self::Pot => Motif::Clay,
             Self::Stamen(_) => Motif::Stamen,
             Self::Thorn => Motif::Thorn,
         })
@@ -228,6 +233,7 @@ impl Slot {
             | Self::Stamen(_)
             | Self::Disc(_)
             | Self::Fruit(_)
+            | Self::Pot
             | Self::Worn(..)
             | Self::Traced(_) => [1.0; 3],
         }

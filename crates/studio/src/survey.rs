@@ -77,9 +77,9 @@ base::coded!(SurveyError {} wraps {
 });
 
 /// What a point lies on, by the row that is its label.
-pub const PARTS: [&str; 17] = [
+pub const PARTS: [&str; 18] = [
     "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
-    "thorn", "pedicel", "sepal", "anther", "floret", "body",
+    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot",
 ];
 
 /// The row of [`PARTS`] of an axis.
@@ -107,6 +107,7 @@ pub const fn part_of_organ(kind: OrganKind) -> u8 {
         OrganKind::Sepal => 13,
         OrganKind::Anther => 14,
         OrganKind::Floret => 15,
+        OrganKind::Pot => 17,
         _ => 16,
     }
 }

@@ -149,8 +149,13 @@ impl Case {
             }
             features.extend(rim);
         }
-        let ignored: Vec<u32> =
-            self.reading.strokes.iter().filter(|s| s.organ == OrganWord::Ignored).map(|s| s.index).collect();
+        let ignored: Vec<u32> = self
+            .reading
+            .strokes
+            .iter()
+            .filter(|s| matches!(s.organ, OrganWord::Ignored | OrganWord::Pot))
+            .map(|s| s.index)
+            .collect();
         let filled: Vec<u32> = (self.reading.strokes.iter())
             .filter(|s| matches!(s.organ, OrganWord::LeafContour | OrganWord::TwigContour))
             .map(|s| s.index)

@@ -662,3 +662,69 @@ pub(super) fn other_stem(r: &mut Stream) -> Lines {
     }
     lines
 }
+
+/// A cup with points above, and leaves as tall as the stem.
+pub(super) fn tall_tulip(r: &mut Stream) -> Lines {
+    let (half, low) = (r.range(0.1, 0.2), r.range(0.6, 0.72));
+    let points = 2 + r.below(3);
+    let tip = |k: usize| v(half * (2.0 * k as f64 / (points - 1) as f64 - 1.0), r.range(0.94, 1.0));
+    let tips: Vec<DVec2> = (0..points).map(tip).collect();
+    let mut rim = vec![tips[0]];
+    for w in tips.windows(2) {
+        rim.extend([w[0].midpoint(w[1]) - v(0.0, r.range(0.07, 0.16)), w[1]]);
+    }
+    let cup =
+        [v(1.05 * half, low + 0.12), v(0.5 * half, low), v(-0.5 * half, low), v(-1.05 * half, low + 0.12)];
+    let mut lines = match r.below(3) {
+        0 => {
+            let outline: Vec<DVec2> = rim.iter().copied().chain(cup).chain([rim[0]]).collect();
+            vec![pen(&outline, r)]
+        }
+        1 => {
+            let round: Vec<DVec2> = [tips[points - 1]].into_iter().chain(cup).chain([tips[0]]).collect();
+            vec![soft(&round, r), pen(&rim, r)]
+        }
+        _ => {
+            let outline: Vec<DVec2> = rim.iter().copied().chain(cup).chain([rim[0]]).collect();
+            vec![soft(&outline, r)]
+        }
+    };
+    let stem = pen(&[v(0.0, low), v(r.range(-0.05, 0.05), 0.0)], r);
+    if r.chance(0.5) {
+        lines.insert(0, stem)
+    } else {
+        lines.push(stem)
+    }
+    for s in [-1.0, 1.0] {
+        if r.chance(0.85) {
+            let way = v(s * r.range(0.08, 0.3), r.range(0.3, 0.65));
+            lines.push(leafy_blade(v(0.0, r.range(0.0, 0.12)), way, r.range(0.03, 0.08), r));
+        }
+    }
+    lines
+}
+
+/// Several flowers of petals or cups out of one vase, their heads close together.
+pub(super) fn bouquet(r: &mut Stream) -> Lines {
+    let (neck, belly, tall) = (r.range(0.07, 0.18), r.range(0.15, 0.3), r.range(0.3, 0.6));
+    let half = [v(-neck, 0.0), v(-r.range(0.6, 1.0) * neck, -0.2 * tall), v(-belly, -0.6 * tall)];
+    let foot = v(-r.range(0.5, 0.9) * belly, -tall);
+    let mut corners: Vec<DVec2> = half.into_iter().chain([foot]).collect();
+    let right: Vec<DVec2> = corners.iter().rev().map(|p| v(-p.x, p.y)).collect();
+    corners.extend(right);
+    corners.push(corners[0]);
+    let mut lines = vec![if r.chance(0.5) { soft(&corners, r) } else { pen(&corners, r) }];
+    let n = 2 + r.below(5);
+    for k in 0..n {
+        let t = (k as f64 + 0.5) / n as f64 - 0.5;
+        let head = if r.chance(0.7) { flower(r).0 } else { tall_tulip(r) };
+        let (scale, turn) = (r.range(0.6, 1.0), -1.3 * t + r.range(-0.1, 0.1));
+        let (s, c) = ops::sin_cos(turn);
+        lines.extend(head.into_iter().map(|line| {
+            line.into_iter()
+                .map(|p| v(p.x * c - p.y * s, p.x * s + p.y * c) * scale + v(1.2 * t * neck, 0.0))
+                .collect()
+        }));
+    }
+    lines
+}

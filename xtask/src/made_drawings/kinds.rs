@@ -12,7 +12,7 @@ use super::{Lines, flower, food, grass, herbs, leafy, things, trees};
 type Making = fn(&mut Stream) -> Lines;
 
 /// What is made: a word for it, its kind, how it is made.
-const MAKERS: [(&str, Kind, Making); 68] = [
+const MAKERS: [(&str, Kind, Making); 71] = [
     ("tree, crown open below", Kind::Tree, trees::open_tree),
     ("tree, crown open below again", Kind::Tree, trees::open_tree),
     ("tree in one line", Kind::Tree, trees::one_line_tree),
@@ -81,6 +81,9 @@ const MAKERS: [(&str, Kind, Making); 68] = [
     ("leaf of another form", Kind::Leaf, herbs::other_leaf),
     ("bush of arcs and scribbles", Kind::Bush, herbs::other_bush),
     ("frond", Kind::Stem, herbs::other_stem),
+    ("tree, trunk behind its crown", Kind::Tree, trees::hidden_trunk),
+    ("tulip with tall leaves", Kind::Flower, herbs::tall_tulip),
+    ("bouquet", Kind::HousePlant, herbs::bouquet),
 ];
 
 /// Things that are no plants: a word, how it is made.

@@ -584,3 +584,48 @@ pub(super) fn pointed_tree(r: &mut Stream) -> Lines {
     }
     lines
 }
+
+/// A crown as an uneven outline without lobes, and a trunk that goes on a little behind it, with limbs in the gaps.
+pub(super) fn hidden_trunk(r: &mut Stream) -> Lines {
+    let low = r.range(0.05, 0.5);
+    let (half, into) = (r.range(0.015, 0.06), low + (1.0 - low) * r.range(0.05, 0.35));
+    let size = v(r.range(0.2, 0.5), 0.5 * (1.0 - low));
+    let centre = v(r.range(-0.08, 0.08), low + size.y);
+    let (lean, waves) = (r.range(-0.06, 0.06), 3 + r.below(6));
+    let uneven: Vec<(f64, f64)> =
+        (0..waves).map(|k| (r.range(0.0, TAU), r.range(0.0, 0.3) / (1.0 + k as f64))).collect();
+    let shoulder = r.range(-0.25, 0.35);
+    let n = 24 + r.below(40);
+    let from = r.range(0.0, TAU);
+    let crown: Vec<DVec2> = (0..=n)
+        .map(|k| {
+            let way = direction(from + TAU * k as f64 / n as f64);
+            let angle = ops::atan2(way.y, way.x);
+            let mut reach = 1.0;
+            for (wave, (phase, depth)) in (1_u32..).zip(&uneven) {
+                reach += depth * ops::sin(f64::from(wave) * angle + phase);
+            }
+            // Broader below than above, or the other way round.
+            let broad = 1.0 - shoulder * way.y;
+            centre + way * size * reach.clamp(0.5, 1.4) * v(broad, 1.0)
+        })
+        .collect();
+    let tip = v(lean, into);
+    let wood = match r.below(5) {
+        0 => pen(&[v(0.0, 0.0), tip], r),
+        1 => pen(&[v(-half, 0.0), tip - v(half, 0.0), tip + v(half, 0.0), v(half, 0.0)], r),
+        _ => pen(&[tip - v(half, 0.0), v(-1.2 * half, 0.0), v(1.2 * half, 0.0), tip + v(half, 0.0)], r),
+    };
+    let mut lines = vec![wood];
+    for _ in 0..r.below(6) {
+        let at = v(lean * 0.9, into * r.range(0.85, 1.0));
+        let way = direction(r.range(0.0, PI)) * size * r.range(0.3, 0.9);
+        lines.push(soft(&[at, at + way * 0.5 + v(0.0, r.range(-0.05, 0.05)), at + way], r));
+    }
+    if r.chance(0.6) {
+        lines.push(crown);
+    } else {
+        lines.insert(0, crown);
+    }
+    lines
+}

@@ -213,6 +213,7 @@ export const en = {
   'organ.thorn': 'thorn',
   'organ.root': 'root',
   'organ.stamen': 'stamen',
+  'organ.pot': 'pot',
   'organ.ignored': 'left out',
   'status.strokes': 'Strokes {count}',
   'status.flowers': 'Flowers {count}',

@@ -214,6 +214,7 @@ export const zh: Record<TextKey, string> = {
   'organ.thorn': '刺',
   'organ.root': '根',
   'organ.stamen': '雄蕊',
+  'organ.pot': '花盆',
   'organ.ignored': '忽略',
   'status.strokes': '{count} 笔',
   'status.flowers': '{count} 朵花',

@@ -234,6 +234,7 @@ impl<W: Write> Writer<'_, W> {
             OrganKind::Anther => ('H', "anther"),
             OrganKind::Floret => ('F', "floret"),
             OrganKind::Body => ('B', "body"),
+            OrganKind::Pot => ('O', "pot"),
             OrganKind::Thorn => ('T', "thorn"),
             OrganKind::Pedicel => ('Q', "pedicel"),
             _ => ('L', "leaf"),

@@ -82,6 +82,7 @@ fn organ_class(kind: OrganKind) -> (&'static str, &'static str, [f64; 3]) {
         OrganKind::Anther => ("Anther", "anther", [0.8, 0.6, 0.2]),
         OrganKind::Floret => ("Floret", "floret", [0.8, 0.65, 0.2]),
         OrganKind::Body => ("Body", "body", GREEN),
+        OrganKind::Pot => ("Pot", "pot", [0.6, 0.3, 0.2]),
         OrganKind::Thorn => ("Thorn", "thorn", [0.5, 0.35, 0.25]),
         OrganKind::Pedicel => ("Pedicel", "pedicel", GREEN),
         _ => ("Leaf", "leaf", GREEN),

@@ -30,7 +30,7 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
         }
     }
     let margins: Vec<Vec<DVec3>> = plant.shapes.iter().map(margin).collect();
-    for organ in &plant.organs {
+    for organ in plant.organs.iter().filter(|o| o.kind != OrganKind::Pot) {
         let places = margins[organ.shape.index()].iter().map(|&p| organ.frame.place(p, organ.scale));
         height_m = places.fold(height_m, |h, p| h.max(p.y));
     }

@@ -7,11 +7,13 @@ use geom::{bounds, contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
+use super::whole_flower::{is_cup_on_stem, stem_ends};
 use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whole_flower, whole_tree};
 use crate::built::pointed;
 use crate::contour::neck;
 use crate::corolla::dips;
 use crate::draft::Draft;
+use crate::flowers::together;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
 use crate::{Kind, READ_AS};
@@ -42,6 +44,10 @@ const ARM: f64 = 0.25;
 /// A row of grass: dips of this share of the stroke's height, both ends among them, at least so many.
 const GRASS_DIP: f64 = 0.3;
 const GRASS_DIPS: usize = 4;
+/// The head of a flower begins above this share of its height.
+const HEAD: f64 = 0.35;
+/// Of more pieces of heads each with each is not looked at.
+const MOST_HEADS: usize = 40;
 /// A vein lies in its leaf with this share of its points; a leaflet beside it has more than that share of its area.
 const VEIN: f64 = 0.6;
 const LEAFLET: f64 = 0.4;
@@ -246,13 +252,33 @@ fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
 }
 
 /// Stems and blades.
+/// `flower`: what may be petals is, not leaves.
 fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
-    use StrokeClass::{Axis, Blade, Corolla, Crown, Fruit, TrunkOutline, Vein};
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Fruit, Other, Pot, TrunkOutline, Vein};
+    let low = parts.iter().map(|p| p.lo.y).fold(f64::INFINITY, f64::min);
+    let high = parts.iter().map(|p| p.hi.y).fold(f64::NEG_INFINITY, f64::max);
+    let upright = flower || draft.kind == Some(Kind::HousePlant);
+    let is_head = |p: &Part| p.lo.y > low + HEAD * (high - low);
+    let stems = stem_ends(draft);
+    let is_tulip = |p: &Part| is_head(p) && is_cup_on_stem(&draft.ink.strokes[p.stroke].points, &stems);
+    // Its points and its round lower half as two strokes: both, the points first.
+    let heads: Vec<&Part> = parts.iter().filter(|p| upright && is_head(p)).take(MOST_HEADS).collect();
+    let cups: Vec<(usize, usize)> = (heads.iter())
+        .flat_map(|upper| heads.iter().map(move |lower| (upper, lower)))
+        .filter(|(upper, lower)| upper.lo.y > lower.lo.y)
+        .map(|(upper, lower)| (upper.stroke, lower.stroke))
+        .filter(|&(a, b)| together(draft, a, b).is_some_and(|all| is_cup_on_stem(&all, &stems)))
+        .collect();
     let class = |p: &Part| match draft.class[p.stroke] {
+        _ if cups.iter().any(|c| c.0 == p.stroke) => Some(Corolla),
+        _ if cups.iter().any(|c| c.1 == p.stroke) => Some(Other),
         TrunkOutline | Vein if p.open > MOUTH => Some(Axis),
+        TrunkOutline | Crown | Fruit | Blade | Pot if flower && is_tulip(p) => Some(Corolla),
+        // The lower half of a cup.
+        Pot if flower && is_head(p) => Some(Other),
         Crown if flower => Some(Corolla),
         TrunkOutline | Crown | Fruit => Some(Blade),
-        Corolla if !flower => Some(Blade),
+        Corolla if !flower && !(upright && is_tulip(p)) => Some(Blade),
         _ => None,
     };
     parts.iter().filter_map(|p| Some((p.stroke, class(p)?))).collect()

@@ -3,13 +3,13 @@
 //! As in the rule about a whole tree, only shapes and places count.
 
 use base::ops;
-use geom::{bounds, contains, signed_area};
+use geom::{bounds, contains, distance_to_polyline, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{Findings, SHUT, openness, unsure};
 use crate::Kind;
-use crate::corolla::dips;
+use crate::corolla::{dips, is_cup};
 use crate::draft::Draft;
 use crate::thresholds::STRAIGHT;
 
@@ -48,6 +48,9 @@ const LARGEST_DISC: f64 = 2.5;
 const CENTRAL: f64 = 0.25;
 const SIZED: core::ops::Range<f64> = 0.1..0.7;
 const LOBE: f64 = 0.12;
+
+/// A stem ends within this share of the size of a cup from it.
+const STEM_AT: f64 = 0.1;
 
 struct Loop {
     stroke: usize,
@@ -89,6 +92,15 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
         found.settle(loops[disc].stroke, StrokeClass::Disc);
         flowers += 1;
     }
+    // Beside other flowers, and over a pot.
+    if flowers > 0 || draft.class.contains(&StrokeClass::Pot) {
+        let stems = stem_ends(draft);
+        let cups = (0..loops.len()).filter(|&i| !taken[i]).map(|i| loops[i].stroke);
+        for k in cups.filter(|&k| is_cup_on_stem(&draft.ink.strokes[k].points, &stems)) {
+            found.settle(k, StrokeClass::Corolla);
+            flowers += 1;
+        }
+    }
     if flowers == 0 {
         return found;
     }
@@ -101,6 +113,21 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
         found.settle(stem, StrokeClass::Axis);
     }
     found
+}
+
+/// Both ends of all lines that are rather straight.
+pub(super) fn stem_ends(draft: &Draft<'_>) -> Vec<DVec2> {
+    let lines = draft.ink.strokes.iter().filter(|s| openness(s) > STRAIGHT);
+    lines.flat_map(|s| [s.points.first(), s.points.last()]).flatten().copied().collect()
+}
+
+/// Petals seen from the side, in one outline on the end of a stem, as a tulip is drawn.
+pub(super) fn is_cup_on_stem(points: &[DVec2], stems: &[DVec2]) -> bool {
+    let Some((low, high)) = bounds(points) else { return false };
+    let near = STEM_AT * low.distance(high);
+    let about = |end: &&DVec2| end.cmpge(low - near).all() && end.cmple(high + near).all();
+    let on = |end: &&DVec2| distance_to_polyline(points, **end).is_some_and(|d| d < near);
+    stems.iter().filter(about).filter(on).any(|foot| is_cup(points, *foot))
 }
 
 fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {

@@ -185,6 +185,7 @@ pub(crate) enum Part {
     Fruit = 7,
     Thorn = 8,
     Link = 9,
+    Pot = 10,
 }
 
 /// A key that is stable under edits of other parts: by the stroke for what was drawn, else by bearer and rank.

@@ -207,14 +207,17 @@ impl Organs<'_, '_> {
             corolla.fit.height * if ring == 0 { 1.0 } else { (reach / corolla.reach).clamp(0.1, 1.0) };
         for (rank, &(_, i, petal)) in petals.iter().enumerate() {
             let tip = corolla.centre + (petal.tip - flower.centre) * s;
+            // What the drawing says, or every other one.
             let even = rank.abs_diff(front).is_multiple_of(2);
+            let even = petal.front.map_or(even, |f| f >= 0.0);
             let sheet = if corolla.fit.cone.axis.z.abs() < SIDEWAYS {
                 if even { ConeSheet::Near } else { ConeSheet::Far }
             } else {
                 cone.sheet_for_tip(tip, height)
             };
             let last_odd = count % 2 == 1 && count > 1 && rank + 1 == count;
-            let step = if last_odd { 2.0 } else { f64::from(u8::from(!even)) };
+            let by_turns = if last_odd { 2.0 } else { f64::from(u8::from(!even)) };
+            let step = petal.front.map_or(by_turns, |f| 1.0 + sane(f, 1.0) * corolla.facing);
             let lift = step * APART * corolla.petal;
             let rank = flower.petals[..i].iter().filter(|p| p.source == petal.source).count();
             let key = key_of(Part::Petal, petal.source, rank as u64, self.key);

@@ -89,7 +89,7 @@ pub(crate) fn leaf_shape(
     let relief = &scene.spec.relief;
     let mut curl = seed.stream(Draw::Curl);
     let drawn = scene.spec.leaf_depth == LeafDepth::Drawn;
-    let lift = if drawn { Lift::Tilt { slope: tilt(scene, key) } } else { Lift::Flat };
+    let lift = if drawn { Lift::Tilt { slope: tilt(scene, leaf, key) } } else { Lift::Flat };
     let relief = Relief {
         bend_a: sane(relief.leaf_bend_a, 1.0) * around_one(curl.uniform(), 0.4),
         bend_b: sane(relief.leaf_bend_b, 1.0) * around_one(curl.uniform(), 0.4),
@@ -109,10 +109,12 @@ pub(crate) fn leaf_shape(
     Some((plant.add_shape(Shape::Blade(blade)), local))
 }
 
-fn tilt(scene: &Scene<'_>, key: u64) -> DVec2 {
+/// Towards the viewer or away from him: as the drawing says, or by chance where it does not.
+fn tilt(scene: &Scene<'_>, leaf: &BladeReading, key: u64) -> DVec2 {
     let mut s = scene.seed.child(key).stream(Draw::LeafAngle);
     let sign = if s.chance(0.5) { 1.0 } else { -1.0 };
-    let along = sign * s.range(TILT_LEAST, TILT_ALONG);
+    let by_chance = sign * s.range(TILT_LEAST, TILT_ALONG);
+    let along = leaf.front.map_or(by_chance, |front| sane(front, 1.0).clamp(-1.0, 1.0) * TILT_ALONG);
     let across = s.range(-TILT_ACROSS, TILT_ACROSS);
     DVec2::new(ops::tan(across), ops::tan(along))
 }
@@ -140,8 +142,10 @@ pub(crate) fn place_leaf(
             let mut s = scene.seed.child(key).stream(Draw::LeafAngle);
             let disturbed = DVec2::new(s.range(-DISTURBED, DISTURBED), s.range(-DISTURBED, DISTURBED));
             let turned = match mode {
-                LeafDepth::Signed if s.chance(0.5) => Turned::ToFront,
-                LeafDepth::Signed => Turned::ToBack,
+                LeafDepth::Signed => {
+                    let by_chance = s.chance(0.5);
+                    if leaf.front.map_or(by_chance, |f| f > 0.0) { Turned::ToFront } else { Turned::ToBack }
+                }
                 _ => Turned::AsPrinted,
             };
             light_frame(seat, local.along, bearer_along, disturbed, turned)
@@ -236,6 +240,7 @@ mod tests {
             veins: vec![],
             bearer: None,
             whorl: 0,
+            front: None,
             source: None,
             color: None,
         };

@@ -14,4 +14,4 @@ pub(crate) use branch::{bend_by_light_and_weight, branch_depths};
 pub(crate) use flower::place_flower;
 pub(crate) use leaf::{LocalBlade, blade_key, leaf_shape, place_leaf};
 pub(crate) use scene::{Bearing, Scene, coloured, drawn_light};
-pub(crate) use solid::{place_fruit, place_thorn};
+pub(crate) use solid::{place_fruit, place_pot, place_thorn};

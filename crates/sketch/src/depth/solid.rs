@@ -1,14 +1,25 @@
-//! Fruits as bodies of revolution, thorns as strands.
+//! Fruits and pots as bodies of revolution, thorns as strands.
 
 use base::{Draw, ops};
 use geom::{Pca2, pca2};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Paint, Plant, Shape};
-use reading::{Attachment, FruitReading};
+use reading::{Attachment, FruitReading, PotReading};
 
 use super::axes::{Part, key_of};
-use super::scene::{Bearing, Scene, usable};
+use super::scene::{Bearing, Scene, drawn_light, usable};
 
+/// Rings of the wall of a pot.
+const POT_RINGS: usize = 13;
+/// Of a pot's height: so near to its floor and its rim lines are theirs.
+const FLAT: f64 = 0.04;
+/// Of its largest half width: how thick the wall is.
+const THICK_WALL: f64 = 0.09;
+/// Of its height: how far the soil lies below the rim.
+const SOIL_BELOW: f64 = 0.12;
+/// Linear red, green and blue of fired clay and of soil.
+const CLAY: [f32; 3] = [0.48, 0.16, 0.07];
+const EARTH: [f32; 3] = [0.06, 0.04, 0.025];
 /// Rings of a fruit from pole to pole.
 const RINGS: usize = 13;
 
@@ -92,6 +103,82 @@ fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<(Vec<DVec2>
         rings.push(DVec2::new(radius, y - low));
     }
     rings.iter().any(|r| r.x > 0.0).then_some((rings, low))
+}
+
+/// Adds a drawn pot: open above, its wall as wide as was drawn, with soil a little below its rim.
+pub(crate) fn place_pot(plant: &mut Plant, scene: &Scene<'_>, pot: &PotReading) {
+    let Some((centre, low, wall)) = wall(pot) else { return };
+    let s = scene.map.metres_per_ink;
+    let wall: Vec<DVec2> = wall.into_iter().map(|p| p * s).collect();
+    let (rim, wide) = (wall[wall.len() - 1], wall.iter().map(|p| p.x).fold(0.0, f64::max));
+    let thick = (THICK_WALL * wide).min(0.4 * rim.x);
+    let soil = rim.y - (SOIL_BELOW * rim.y).min(wide);
+    let inner = |y: f64| {
+        let above = wall.windows(2).find(|w| w[1].y >= y).map_or(rim.x, |w| {
+            let t = (y - w[0].y) / (w[1].y - w[0].y).max(1e-12);
+            ops::lerp(w[0].x, w[1].x, t.clamp(0.0, 1.0))
+        });
+        (above - thick).max(0.2 * above)
+    };
+    let mut outside = vec![DVec2::new(0.0, 0.0)];
+    outside.extend(&wall);
+    outside.extend([DVec2::new(rim.x - thick, rim.y), DVec2::new(inner(soil), soil)]);
+    let level = DVec2::new(0.0, soil);
+    let earth =
+        vec![level - DVec2::Y * thick, DVec2::new(inner(soil), soil), level + DVec2::Y * (0.1 * thick)];
+    let at = scene.map.plant_from_ink(DVec2::new(centre, low)).extend(0.0);
+    let drawn = pot.color.filter(|_| scene.coloured).and_then(drawn_light);
+    #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+    let clay = drawn.map_or(Paint::Tinted(CLAY), |c| Paint::Drawn(c.map(|x| x as f32)));
+    for (rank, profile, paint) in [(0, outside, clay), (1, earth, Paint::Tinted(EARTH))] {
+        let shape = plant.add_shape(Shape::Revolution { profile });
+        plant.organs.push(Organ {
+            kind: OrganKind::Pot,
+            bearer: None,
+            flower: None,
+            shape,
+            frame: Frame::looking(at, DVec3::Y, DVec3::Z),
+            scale: 1.0,
+            paint,
+            key: key_of(Part::Pot, pot.source, rank, 0),
+            source: pot.source,
+        });
+    }
+}
+
+/// The middle of a pot, its foot, and the line of its wall from the foot to the rim, `(half width, height)`, ink units.
+fn wall(pot: &PotReading) -> Option<(f64, f64, Vec<DVec2>)> {
+    let points = || pot.lines.iter().flatten().copied().filter(|&p| usable(p));
+    let (low, high) = geom::bounds(&points().collect::<Vec<_>>())?;
+    let tall = high.y - low.y;
+    if tall < 1e-3 || high.x - low.x < 1e-3 {
+        return None;
+    }
+    let edges = || pot.lines.iter().flat_map(|l| l.windows(2)).filter(|w| usable(w[0]) && usable(w[1]));
+    let mut line = Vec::with_capacity(POT_RINGS);
+    for k in 0..POT_RINGS {
+        #[expect(clippy::cast_precision_loss, reason = "rings are few")]
+        let share = k as f64 / (POT_RINGS - 1) as f64;
+        // Its floor and its rim are lines: a little inside of both.
+        let y = low.y + tall * share.clamp(FLAT, 1.0 - FLAT);
+        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+        for w in edges().filter(|w| (w[0].y - y) * (w[1].y - y) <= 0.0 && w[0].y != w[1].y) {
+            let x = ops::lerp(w[0].x, w[1].x, ((y - w[0].y) / (w[1].y - w[0].y)).clamp(0.0, 1.0));
+            (left, right) = (left.min(x), right.max(x));
+        }
+        // One side alone tells nothing.
+        if right - left > 0.1 * (high.x - low.x) {
+            line.push(DVec2::new(0.5 * (right - left), tall * share));
+        }
+    }
+    if line.is_empty() {
+        line = vec![DVec2::new(0.4 * (high.x - low.x), 0.0), DVec2::new(0.5 * (high.x - low.x), tall)];
+    }
+    let (first, last) = (line[0].x, line[line.len() - 1].x);
+    line.insert(0, DVec2::new(first, 0.0));
+    line.push(DVec2::new(last, tall));
+    line.dedup();
+    Some((0.5 * (low.x + high.x), low.y, line))
 }
 
 /// Adds a drawn thorn: a strand that thins to a point, standing off a bearer that was drawn thick.

@@ -142,7 +142,9 @@ struct Wanted {
 impl Wanted {
     fn new(built: &Built, reading: &Reading) -> Self {
         let turned = built.plant.organs.iter().filter(|o| !lies_as_drawn(o)).filter_map(|o| o.source);
-        let ignored = reading.strokes.iter().filter(|s| s.organ == OrganWord::Ignored).map(|s| s.index);
+        let ignored =
+            reading.strokes.iter().filter(|s| matches!(s.organ, OrganWord::Ignored | OrganWord::Pot));
+        let ignored = ignored.map(|s| s.index);
         let contour = |o| matches!(o, OrganWord::LeafContour | OrganWord::TwigContour);
         let filled = reading.strokes.iter().filter(|s| contour(s.organ)).map(|s| s.index);
         let outline =
@@ -231,6 +233,7 @@ mod tests {
             veins: vec![],
             bearer: None,
             whorl: 0,
+            front: None,
             source: Some(1),
             color: None,
         };

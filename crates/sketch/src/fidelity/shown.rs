@@ -46,7 +46,12 @@ pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
 
 /// Whether the front view of an organ is meant to be its drawing.
 pub(super) fn lies_as_drawn(organ: &Organ) -> bool {
-    organ.kind != OrganKind::Leaf || organ.frame.normal.z.abs() > 1.0 - 1e-9
+    match organ.kind {
+        OrganKind::Leaf => organ.frame.normal.z.abs() > 1.0 - 1e-9,
+        // Evened out: as wide on both sides.
+        OrganKind::Pot => false,
+        _ => true,
+    }
 }
 
 /// One line around a tube: left edge, over the tip, right edge.

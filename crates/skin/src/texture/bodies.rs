@@ -116,6 +116,15 @@ pub(super) fn ribbed(u: f64, v: f64) -> Paint {
     mix(skin, WOOL, 0.9 * line(ops::hypot(across, along), 0.20))
 }
 
+/// Pale fired clay: grains, and faint rings of the wheel around it.
+pub(super) fn clay(u: f64, v: f64) -> Paint {
+    let patch = octaves(4.0 * u, 3.0 * v, (4, 3), 6, 4);
+    let grain = gradient(48.0 * u, 48.0 * v, (48, 48), 7);
+    let ring = gradient(2.0 * u, 40.0 * v, (2, 40), 8);
+    let light = 0.9 + 0.1 * patch + 0.06 * grain + 0.04 * ring;
+    [light; 3].map(|x| x.clamp(0.6, 1.0))
+}
+
 /// Upper half (v below one half): the anther's pollen; lower half: the filament, pale at its foot.
 pub(super) fn stamen(u: f64, v: f64) -> Paint {
     const POLLEN: Paint = [0.93, 0.70, 0.16];

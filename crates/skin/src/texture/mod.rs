@@ -49,11 +49,13 @@ pub(crate) enum Motif {
     PaleFruit,
     /// A green, ribbed body, such as a cactus's.
     Body,
+    /// Of pots and of soil, without a hue.
+    Clay,
     Stamen,
     Thorn,
 }
 
-const MOTIFS: usize = 9;
+const MOTIFS: usize = 10;
 
 impl Motif {
     /// The texture, painted on first use (up to about 10 ms on one thread) and kept for the life of the process.
@@ -72,6 +74,7 @@ impl Motif {
             Self::Fruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
             Self::PaleFruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::PALE_FRUIT, u, v)),
             Self::Body => canvas(256, 128, &bodies::ribbed),
+            Self::Clay => canvas(128, 128, &bodies::clay),
             Self::Stamen => canvas(64, 64, &bodies::stamen),
             Self::Thorn => canvas(32, 64, &bodies::thorn),
         }
@@ -133,7 +136,18 @@ mod tests {
 
     fn every() -> [Motif; MOTIFS] {
         use Motif as M;
-        [M::Stem, M::Root, M::Disc, M::PaleDisc, M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]
+        [
+            M::Stem,
+            M::Root,
+            M::Disc,
+            M::PaleDisc,
+            M::Fruit,
+            M::PaleFruit,
+            M::Body,
+            M::Clay,
+            M::Stamen,
+            M::Thorn,
+        ]
     }
 
     #[test]

@@ -1,0 +1,173 @@
+//! Beds: many plants of one stem each, in rows that overlap.
+//!
+//! `lines -> the plant of each`
+
+use base::ops;
+use geom::distance_to_polyline;
+use glam::DVec2;
+
+/// Fewer are told apart by their places alone.
+const FEWEST: usize = 4;
+/// More lines are no bed.
+const MOST: usize = 600;
+/// A stem is taller than so many of its widths.
+const UPRIGHT: f64 = 1.2;
+/// Shares of a stem's length: its foot is so far from all other open lines, its head so near to its top, of at least that size.
+const FREE: f64 = 0.15;
+const AT_TOP: f64 = 0.12;
+const HEAD: f64 = 0.15;
+/// The middle of a head lies beyond this share of its stem.
+const BEYOND: f64 = 0.85;
+/// What touches so many feet bears them: a box, a pot, a branch. Of the stem's length.
+const COMMON: usize = 3;
+const TOUCHES: f64 = 0.06;
+/// A head reaches so many times its half size around its middle.
+const REACH: f64 = 1.2;
+/// What is farther from all stems than this share of their length is of none.
+const FAR: f64 = 0.4;
+
+/// Of a disc the shorter side over the longer one; sizes of petals over its own; how near to its middle they begin, in radii;
+/// and the widest gap between two of them, radians.
+const ROUND: f64 = 0.75;
+const PETAL: core::ops::Range<f64> = 0.5..4.0;
+const AT_DISC: f64 = 1.35;
+const GAP: f64 = 2.2;
+
+/// One stroke.
+pub(super) struct Stroke<'a> {
+    pub(super) points: &'a [DVec2],
+    pub(super) lo: DVec2,
+    pub(super) hi: DVec2,
+    pub(super) closed: bool,
+    pub(super) straight: bool,
+    /// A line along the foot of the drawing.
+    pub(super) ground: bool,
+}
+
+impl Stroke<'_> {
+    fn middle(&self) -> DVec2 {
+        self.lo.midpoint(self.hi)
+    }
+
+    fn size(&self) -> f64 {
+        self.lo.distance(self.hi)
+    }
+
+    fn near(&self, p: DVec2, reach: f64) -> bool {
+        let about = p.cmpge(self.lo - reach).all() && p.cmple(self.hi + reach).all();
+        about && distance_to_polyline(self.points, p).is_some_and(|d| d < reach)
+    }
+}
+
+struct Stem {
+    stroke: usize,
+    foot: DVec2,
+    top: DVec2,
+    length: f64,
+}
+
+/// The plant of each stroke, by its stem; `None` of what is of no stem. Empty if this is no bed.
+///
+/// A stem is an upright line with a free foot and a head on its top. What lies about its top is its head, what touches it is its
+/// leaf, even if it touches a neighbour's head or stem as well. `wheels`: petals round one place, which stay together. Cost:
+/// stems by strokes.
+pub(super) fn bed(strokes: &[Stroke<'_>], wheels: &[Vec<usize>]) -> Vec<Option<usize>> {
+    if strokes.len() > MOST {
+        return Vec::new();
+    }
+    let lines: Vec<Stem> = (0..strokes.len()).filter_map(|k| stem(strokes, k)).collect();
+    let open = |k: &usize| !strokes[*k].closed && !strokes[*k].ground;
+    let free = |s: &&Stem| {
+        let mut others = (0..strokes.len()).filter(open).filter(|&k| k != s.stroke);
+        others.all(|k| !strokes[k].near(s.foot, FREE * s.length))
+    };
+    let headed = |s: &&Stem| {
+        let along = (s.top - s.foot) / s.length;
+        strokes.iter().any(|o| {
+            o.closed
+                && o.size() > HEAD * s.length
+                && (o.middle() - s.foot).dot(along) > BEYOND * s.length
+                && o.near(s.top, AT_TOP * s.length)
+        })
+    };
+    let stems: Vec<&Stem> = lines.iter().filter(free).filter(headed).collect();
+    let bears = |k: usize| {
+        let on = |s: &&&Stem| s.stroke != k && strokes[k].near(s.foot, TOUCHES * s.length);
+        !strokes[k].ground && stems.iter().filter(on).count() >= COMMON
+    };
+    if stems.len() < FEWEST || (0..strokes.len()).any(bears) {
+        return Vec::new();
+    }
+    let owner = |stroke: &Stroke<'_>| {
+        let costs = stems.iter().map(|s| cost(stroke, s)).enumerate();
+        let best = costs.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cost)| *cost < FAR);
+        best.map(|(own, _)| own).filter(|_| !stroke.ground)
+    };
+    let mut owners: Vec<Option<usize>> = (0..strokes.len())
+        .map(|k| stems.iter().position(|s| s.stroke == k).or_else(|| owner(&strokes[k])))
+        .collect();
+    let mut held = vec![false; strokes.len()];
+    for wheel in rings(strokes).iter().chain(wheels) {
+        let points: Vec<DVec2> = wheel.iter().flat_map(|&k| strokes[k].points).copied().collect();
+        let Some((lo, hi)) = geom::bounds(&points) else { continue };
+        let whole = owner(&Stroke { points: &points, lo, hi, closed: true, straight: false, ground: false });
+        // A ring of petals round a disc says more than the directions of petals.
+        if !wheel.iter().any(|&k| held[k]) {
+            wheel.iter().for_each(|&k| (owners[k], held[k]) = (whole, true));
+        }
+    }
+    owners
+}
+
+/// Round outlines with others all round them: discs with their petals, those with the most first.
+fn rings(strokes: &[Stroke<'_>]) -> Vec<Vec<usize>> {
+    let closed: Vec<usize> = (0..strokes.len()).filter(|&k| strokes[k].closed).collect();
+    let is_round = |k: usize| {
+        let size = strokes[k].hi - strokes[k].lo;
+        size.min_element() > ROUND * size.max_element()
+    };
+    let ring = |d: usize| {
+        let (middle, radius) = (strokes[d].middle(), 0.25 * (strokes[d].hi - strokes[d].lo).element_sum());
+        let beside = |k: &usize| {
+            let other = &strokes[*k];
+            let away = other.points.iter().map(|p| p.distance(middle)).fold(f64::INFINITY, f64::min);
+            *k != d
+                && PETAL.contains(&(other.size() / strokes[d].size()))
+                && away < AT_DISC * radius
+                && other.middle().distance(middle) > radius
+        };
+        let mut all: Vec<usize> = closed.iter().copied().filter(beside).collect();
+        let mut angles: Vec<f64> =
+            all.iter().map(|&k| strokes[k].middle() - middle).map(|v| ops::atan2(v.y, v.x)).collect();
+        base::sort_numbers(&mut angles);
+        let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
+        let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max);
+        all.push(d);
+        (all.len() > FEWEST && widest < GAP).then_some(all)
+    };
+    let mut found: Vec<Vec<usize>> =
+        closed.iter().copied().filter(|&k| is_round(k)).filter_map(ring).collect();
+    base::sort_by_key(&mut found, |ring| core::cmp::Reverse(ring.len()));
+    found
+}
+
+fn stem(strokes: &[Stroke<'_>], k: usize) -> Option<Stem> {
+    let s = &strokes[k];
+    let [a, b] = [*s.points.first()?, *s.points.last()?];
+    let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
+    let stands = top.y - foot.y > UPRIGHT * (s.hi.x - s.lo.x) && s.straight && !s.closed && !s.ground;
+    stands.then(|| Stem { stroke: k, foot, top, length: foot.distance(top) })
+}
+
+/// How far a stroke is from being the head of a stem, or a leaf on it; shares of the stem's length.
+fn cost(stroke: &Stroke<'_>, stem: &Stem) -> f64 {
+    /// A head comes before a leaf.
+    const LEAF: f64 = 0.02;
+    let as_head = (stroke.middle().distance(stem.top) - 0.5 * REACH * stroke.size()).max(0.0) / stem.length;
+    let line = [stem.foot, stem.top];
+    let on_stem = stroke.points.iter().filter_map(|p| distance_to_polyline(&line, *p));
+    let as_leaf = on_stem.fold(f64::INFINITY, f64::min) / stem.length + LEAF;
+    // Of two stems beside a head the one that it is over.
+    let aside = LEAF * (stroke.middle().distance(stem.top) / stem.length).min(0.9);
+    as_head.min(as_leaf) + aside
+}
