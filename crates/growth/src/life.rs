@@ -5,12 +5,12 @@
 //! The leader, the way to the highest joint, rises by the law of Chapman and Richards. A branch has reached the share of its
 //! length that its bearer has reached of what it has beyond that branch, so that a crown is a cone below its tip, in leaf
 //! nearly from its foot on, at each age. Limbs that reach far aside wait for the leader to get ahead of them and catch up
-//! later (apical control, which fades with age: Wilson, American Journal of Botany 87, 2000), and twigs are whole after few
+//! later (apical control: Wilson, American Journal of Botany 87, 2000), and twigs are whole after few
 //! years.
 //!
-//! Joints of large axes come early and move apart; those of twigs come one by one. So a leader has most of its limbs early,
-//! as those that a tree sheds at its foot while new ones grow at the top look the same at each age, though in a wood they
-//! are not the same ones. Stretches that bear nothing in the whole tree, the bole and the inner halves of limbs, lengthen
+//! Joints of large axes come early and move apart; those of twigs come one by one. So a leader has most of its limbs early:
+//! in a wood the lowest die while new ones grow at the top, which looks the same at each age, though there they are not the
+//! same ones. Stretches that bear nothing in the whole tree, the bole and the inner halves of limbs, lengthen
 //! with their axis.
 
 use base::ops;
@@ -86,7 +86,7 @@ pub(crate) fn younger(
     }
     let there = |j: usize| {
         let Some(p) = full.parent[j].map(JointId::index) else { return true };
-        own[j] >= 1.0 || (own[j] >= BEGUN && (own[p] >= 1.0))
+        own[j] >= 1.0 || (own[j] >= BEGUN && own[p] >= 1.0)
     };
     let (mut young, ids) = full.keep_mapped(there);
     for (id, at) in ids.iter().zip(&place) {
@@ -313,5 +313,31 @@ mod tests {
         // A third of its life makes about two fifths of its height, with limbs of its own.
         let (young, _) = younger(&full, &wood, 0.33, 40);
         assert!((0.33..0.6).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
+    }
+
+    #[test]
+    fn nothing_jumps_as_a_tree_grows() {
+        let spec = CompetitionSpec { points: 600, ..CompetitionSpec::default() };
+        let (run, none) = (Run::plain(), Obstacles::none());
+        let full = compete(&[DVec3::ZERO], &none, &spec, Seed::new(2), &run, &mut Report::default());
+        let (full, wood) = (full.expect("sound").skeleton, WoodSpec::default());
+        let at = |i: u32| younger(&full, &wood, f64::from(i) / 250.0, 40);
+        let mut last = at(24);
+        for i in 25..250 {
+            let now = at(i);
+            for (a, b) in last.1.iter().zip(&now.1) {
+                if let (Some(a), Some(b)) = (a, b) {
+                    let moved = last.0.position[a.index()].distance(now.0.position[b.index()]);
+                    assert!(moved < 0.03 * full.size(), "{i}: {moved} m of {} m", full.size());
+                }
+            }
+            last = now;
+        }
+        // The end of the way is the whole tree.
+        let (nearly, ids) = younger(&full, &wood, 1.0 - 1e-9, 40);
+        for (j, id) in ids.iter().enumerate() {
+            let off = id.map_or(0.0, |id| nearly.position[id.index()].distance(full.position[j]));
+            assert!(off < 1e-5, "{j}: {off}");
+        }
     }
 }
