@@ -28,8 +28,6 @@ const RATE: [f64; 2] = [1.6, 6.0];
 /// How far a leader is above a limb under full apical control, over how far that limb reaches aside. Crowns of young trees
 /// are about half as wide as they are high.
 const CONTROL: f64 = 4.0;
-/// The power by which limbs that waited make up for it.
-const CATCH_UP: i32 = 3;
 /// How far the bearer of the shortest twig is beyond it when it is whole, over its length.
 const WHOLE_AT: f64 = 1.2;
 /// How much a leader grows by the lengthening of all of its internodes rather than by new ones at its tip, 0 to 1; shorter
@@ -224,12 +222,13 @@ impl Axes {
         let now = (bearer * self.whole[b] - foot).max(0.0);
         let t = self.tree[h] as usize;
         let length = self.whole[h];
-        let small = (1.0 - length / self.limb[t]).max(0.05).powi(2);
-        let needed = (WHOLE_AT * length / small).min(beyond).max(1e-12);
+        let small = (1.0 - length / self.limb[t]).max(0.05);
+        let needed = (WHOLE_AT * length / (small * small)).min(beyond).max(1e-12);
         let control = 1.0 + (CONTROL - 1.0) * (self.whole[b] / self.leader[t]).min(1.0);
         let free = (needed / (control * self.aside[h]).max(1e-12)).min(1.0);
         let share = (now / needed).min(1.0);
-        free * share + (1.0 - free) * share.powi(CATCH_UP)
+        // Limbs that waited make up for it by the third power.
+        share * (free + (1.0 - free) * share * share)
     }
 }
 
