@@ -19,6 +19,7 @@ use reading::Kind;
 
 /// How many drawings of each set.
 const ROWS: u64 = 40;
+const BEDS: u64 = 12;
 /// Trees of each way to draw one.
 const TREES: u64 = 12;
 
@@ -51,6 +52,7 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
         all.push(scene(&mut stream(5, k)));
         all.push(beside(&mut stream(6, k)));
     }
+    all.extend((0..BEDS).map(|k| bed(&mut stream(7, k))));
     for (number, (set, trunk, first)) in TREE_WAYS.into_iter().enumerate() {
         for k in 0..TREES {
             let r = &mut stream(10 + number as u64, k);
@@ -382,6 +384,28 @@ fn row(set: &'static str, r: &mut Stream, kind: Kind, make: Making) -> Shown {
         (0..n).map(|_| if kind == Kind::None { any[r.below(4)](r) } else { make(r) }).collect();
     let (drawings, plants) = made.into_iter().unzip();
     Shown { set, lines: side_by_side(r, drawings), plants, own: usize::MAX }
+}
+
+/// Eight to thirty flowers and tulips in one to three rows above one another, which may overlap.
+fn bed(r: &mut Stream) -> Shown {
+    let (rows, apart, high) = (1 + r.below(3), r.range(0.6, 0.9), r.range(0.55, 1.4));
+    let each = (8 / rows + r.below(23)).min(30 / rows);
+    let mut drawings: Vec<Lines> = Vec::new();
+    for row in (0..rows).rev() {
+        for k in 0..each {
+            let one = if r.chance(0.7) { flower(r).0 } else { herbs::tulip(r) };
+            let x = apart * (k as f64 + 0.5 * (row % 2) as f64) + r.range(-0.06, 0.06);
+            let to = DVec2::new(x, high * row as f64 + r.range(-0.04, 0.04));
+            drawings.push(moved(one, r.range(0.8, 1.0), to));
+        }
+    }
+    let plants = vec![Kind::Flower; drawings.len()];
+    let mut lines: Lines = drawings.into_iter().flatten().collect();
+    if r.chance(0.5) {
+        let (lo, hi) = extent(&lines);
+        lines.push(hand(r, &[DVec2::new(lo.x - 0.1, 0.0), DVec2::new(hi.x + 0.1, 0.0)]));
+    }
+    Shown { set: "beds of flowers", lines, plants, own: usize::MAX }
 }
 
 /// A tree among bushes and grass.

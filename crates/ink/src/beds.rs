@@ -18,14 +18,15 @@ const AT_TOP: f64 = 0.12;
 const HEAD: f64 = 0.15;
 /// The middle of a head lies beyond this share of its stem.
 const BEYOND: f64 = 0.85;
+/// Two stems nearer to one another than this share of their length, whose heads overlap, are the sides of a trunk.
+const BESIDE: f64 = 0.5;
 /// What touches so many feet bears them: a box, a pot, a branch. Of the stem's length.
 const COMMON: usize = 3;
 const TOUCHES: f64 = 0.06;
 /// A head reaches so many times its half size around its middle.
 const REACH: f64 = 1.2;
-/// What is farther from all stems than this share of their length is of none.
-const FAR: f64 = 0.4;
-
+/// A line that is no stem is shorter than this share of the shortest one.
+const SHORT: f64 = 0.4;
 /// Of a disc the shorter side over the longer one; sizes of petals over its own; how near to its middle they begin, in radii;
 /// and the widest gap between two of them, radians.
 const ROUND: f64 = 0.75;
@@ -59,6 +60,7 @@ impl Stroke<'_> {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Stem {
     stroke: usize,
     foot: DVec2,
@@ -66,14 +68,74 @@ struct Stem {
     length: f64,
 }
 
-/// The plant of each stroke, by its stem; `None` of what is of no stem. Empty if this is no bed.
-///
-/// A stem is an upright line with a free foot and a head on its top. What lies about its top is its head, what touches it is its
-/// leaf, even if it touches a neighbour's head or stem as well. `wheels`: petals round one place, which stay together. Cost:
-/// stems by strokes.
-pub(super) fn bed(strokes: &[Stroke<'_>], wheels: &[Vec<usize>]) -> Vec<Option<usize>> {
+/// The stems of a bed.
+pub(super) struct Bed<'a> {
+    strokes: &'a [Stroke<'a>],
+    stems: Vec<Stem>,
+    /// Petals round one place, which stay together.
+    rings: Vec<Vec<usize>>,
+}
+
+impl<'a> Bed<'a> {
+    /// `None` if this is no bed. `wheels`: outlines that point away from one place. Cost: stems by strokes.
+    pub(super) fn of(strokes: &'a [Stroke<'a>], wheels: Vec<Vec<usize>>) -> Option<Self> {
+        let stems = stems(strokes)?;
+        // A ring of petals round a disc says more than the directions of petals.
+        let mut held = vec![false; strokes.len()];
+        let mut all = rings(strokes);
+        all.extend(wheels);
+        all.retain(|ring| {
+            let free = ring.iter().all(|&k| !held[k]);
+            ring.iter().filter(|_| free).for_each(|&k| held[k] = true);
+            free
+        });
+        Some(Self { strokes, stems, rings: all })
+    }
+
+    /// Strokes that touch one another as the plants that they are, and whether these are of the bed.
+    ///
+    /// What lies about the top of a stem is its head, what touches it is its leaf, even if it touches a neighbour's head or stem
+    /// as well.
+    pub(super) fn plants(&self, group: &[usize]) -> (Vec<Vec<usize>>, bool) {
+        let own: Vec<&Stem> = self.stems.iter().filter(|s| group.contains(&s.stroke)).collect();
+        let shortest = own.iter().map(|s| s.length).fold(f64::INFINITY, f64::min);
+        // Other long lines are trunks, limbs or stems with a bearer: of something else.
+        let is_stem = |k: usize| own.iter().any(|s| s.stroke == k);
+        let other = |&k: &usize| {
+            let s = &self.strokes[k];
+            !s.closed && !is_stem(k) && s.size() > SHORT * shortest
+        };
+        if group.iter().any(other) {
+            return (vec![group.to_vec()], false);
+        }
+        if own.len() < 2 {
+            return (vec![group.to_vec()], !own.is_empty());
+        }
+        let owner = |stroke: &Stroke<'_>| {
+            let costs = own.iter().map(|s| cost(stroke, s)).enumerate();
+            costs.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(row, _)| row)
+        };
+        let mut plants: Vec<Vec<usize>> = own.iter().map(|s| vec![s.stroke]).collect();
+        let rings = self.rings.iter().filter(|ring| ring.iter().all(|k| group.contains(k)));
+        let mut left: Vec<usize> = group.iter().copied().filter(|&k| !is_stem(k)).collect();
+        for ring in rings {
+            let points: Vec<DVec2> = ring.iter().flat_map(|&k| self.strokes[k].points).copied().collect();
+            let Some((lo, hi)) = geom::bounds(&points) else { continue };
+            let all = Stroke { points: &points, lo, hi, closed: true, straight: false, ground: false };
+            plants[owner(&all)].extend(ring);
+            left.retain(|k| !ring.contains(k));
+        }
+        for k in left {
+            plants[owner(&self.strokes[k])].push(k);
+        }
+        (plants, true)
+    }
+}
+
+/// Upright lines with a free foot and a head on its top.
+fn stems(strokes: &[Stroke<'_>]) -> Option<Vec<Stem>> {
     if strokes.len() > MOST {
-        return Vec::new();
+        return None;
     }
     let lines: Vec<Stem> = (0..strokes.len()).filter_map(|k| stem(strokes, k)).collect();
     let open = |k: &usize| !strokes[*k].closed && !strokes[*k].ground;
@@ -81,42 +143,35 @@ pub(super) fn bed(strokes: &[Stroke<'_>], wheels: &[Vec<usize>]) -> Vec<Option<u
         let mut others = (0..strokes.len()).filter(open).filter(|&k| k != s.stroke);
         others.all(|k| !strokes[k].near(s.foot, FREE * s.length))
     };
-    let headed = |s: &&Stem| {
+    let head = |s: &Stem| {
         let along = (s.top - s.foot) / s.length;
-        strokes.iter().any(|o| {
+        let on_top = |o: &&Stroke<'_>| {
             o.closed
                 && o.size() > HEAD * s.length
                 && (o.middle() - s.foot).dot(along) > BEYOND * s.length
                 && o.near(s.top, AT_TOP * s.length)
+        };
+        let found = strokes.iter().filter(on_top);
+        found.min_by(|a, b| a.middle().distance(s.top).total_cmp(&b.middle().distance(s.top)))
+    };
+    let headed: Vec<(&Stem, &Stroke<'_>)> =
+        lines.iter().filter(free).filter_map(|s| Some((s, head(s)?))).collect();
+    // Both sides of a trunk have the same crown, or lobes of it.
+    let alone = |(s, own): &&(&Stem, &Stroke<'_>)| {
+        headed.iter().all(|(t, other)| {
+            let apart = own.lo.cmpgt(other.hi).any() || other.lo.cmpgt(own.hi).any();
+            s.stroke == t.stroke || apart || s.foot.distance(t.foot) > BESIDE * s.length.max(t.length)
         })
     };
-    let stems: Vec<&Stem> = lines.iter().filter(free).filter(headed).collect();
+    let stems: Vec<Stem> = headed.iter().filter(alone).map(|(s, _)| **s).collect();
     let bears = |k: usize| {
-        let on = |s: &&&Stem| s.stroke != k && strokes[k].near(s.foot, TOUCHES * s.length);
+        let on = |s: &&Stem| s.stroke != k && strokes[k].near(s.foot, TOUCHES * s.length);
         !strokes[k].ground && stems.iter().filter(on).count() >= COMMON
     };
     if stems.len() < FEWEST || (0..strokes.len()).any(bears) {
-        return Vec::new();
+        return None;
     }
-    let owner = |stroke: &Stroke<'_>| {
-        let costs = stems.iter().map(|s| cost(stroke, s)).enumerate();
-        let best = costs.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cost)| *cost < FAR);
-        best.map(|(own, _)| own).filter(|_| !stroke.ground)
-    };
-    let mut owners: Vec<Option<usize>> = (0..strokes.len())
-        .map(|k| stems.iter().position(|s| s.stroke == k).or_else(|| owner(&strokes[k])))
-        .collect();
-    let mut held = vec![false; strokes.len()];
-    for wheel in rings(strokes).iter().chain(wheels) {
-        let points: Vec<DVec2> = wheel.iter().flat_map(|&k| strokes[k].points).copied().collect();
-        let Some((lo, hi)) = geom::bounds(&points) else { continue };
-        let whole = owner(&Stroke { points: &points, lo, hi, closed: true, straight: false, ground: false });
-        // A ring of petals round a disc says more than the directions of petals.
-        if !wheel.iter().any(|&k| held[k]) {
-            wheel.iter().for_each(|&k| (owners[k], held[k]) = (whole, true));
-        }
-    }
-    owners
+    Some(stems)
 }
 
 /// Round outlines with others all round them: discs with their petals, those with the most first.

@@ -7,7 +7,7 @@
 //! are several plants. Lines by themselves are no plants: they are grass, or belong to the plant beside them. Distances
 //! are shares of the sizes of what they lie between, so neither the sheet nor the order of drawing matters.
 
-use crate::beds::{Stroke, bed};
+use crate::beds::{Bed, Stroke};
 use geom::{Spoke, convex_hull, signed_area, wheels};
 use glam::DVec2;
 
@@ -73,7 +73,8 @@ pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
     }
     let sheet = Sheet::new(strokes);
     let ground = sheet.grounds();
-    let mut groups = sheet.touching(&ground, &sheet.bed(&ground));
+    let mut groups = sheet.touching(&ground);
+    sheet.part_beds(&mut groups, &ground);
     if groups.len() < 2 || groups.len() > MOST_GROUPS {
         return Subjects::one(count);
     }
@@ -158,8 +159,8 @@ impl Sheet {
         (0..self.lines.len()).filter(|&k| flat(&self.lines[k])).collect()
     }
 
-    /// The plant of each stroke in a bed; empty if it is none.
-    fn bed(&self, ground: &[usize]) -> Vec<Option<usize>> {
+    /// Takes groups apart in which several plants of a bed touch one another.
+    fn part_beds(&self, groups: &mut Vec<Group>, ground: &[usize]) {
         let strokes = self.lines.iter().enumerate().map(|(k, l)| Stroke {
             points: &l.points,
             lo: l.lo,
@@ -168,11 +169,19 @@ impl Sheet {
             straight: l.straight,
             ground: ground.contains(&k),
         });
-        bed(&strokes.collect::<Vec<_>>(), &self.wheels())
+        let strokes: Vec<Stroke<'_>> = strokes.collect();
+        let Some(bed) = Bed::of(&strokes, self.wheels()) else { return };
+        *groups = core::mem::take(groups)
+            .into_iter()
+            .flat_map(|group| {
+                let (plants, of_bed) = bed.plants(&group.strokes);
+                plants.into_iter().map(move |own| Group { of_bed, ..self.group(own) })
+            })
+            .collect();
     }
 
-    /// Groups of strokes that touch one another; `beds`: what is of other plants does not, even if it does.
-    fn touching(&self, ground: &[usize], beds: &[Option<usize>]) -> Vec<Group> {
+    /// Groups of strokes that touch one another.
+    fn touching(&self, ground: &[usize]) -> Vec<Group> {
         let reach = TOUCH * self.height().max(0.05);
         let mut cells: Vec<((i64, i64), usize, DVec2)> = Vec::new();
         let key = |p: DVec2| {
@@ -192,7 +201,7 @@ impl Sheet {
             cells.extend(line.points.last().map(|&p| (key(p), k, p)));
         }
         base::sort_by(&mut cells, |a, b| (a.0, a.1).cmp(&(b.0, b.1)));
-        let mut sets = Sets::new(self.lines.len(), beds);
+        let mut sets = Sets::new(self.lines.len());
         let row = |cell: (i64, i64)| {
             let from = cells.partition_point(|c| c.0 < cell);
             cells[from..].iter().take_while(move |c| c.0 == cell)
@@ -211,8 +220,7 @@ impl Sheet {
         for k in (0..self.lines.len()).filter(|k| !ground.contains(k)) {
             groups.entry(sets.top(k)).or_default().push(k);
         }
-        let of_bed = |strokes: &[usize]| strokes.iter().any(|&k| beds.get(k).is_some_and(Option::is_some));
-        groups.into_iter().map(|(_, s)| Group { of_bed: of_bed(&s), ..self.group(s) }).collect()
+        groups.into_iter().map(|(_, strokes)| self.group(strokes)).collect()
     }
 
     /// Joins outlines that point away from one place all round it: petals, whether or not they touch.
@@ -303,12 +311,13 @@ impl Sheet {
 
     /// How far two groups are from being one plant, where they are; the lower the surer.
     fn belongs(&self, a: &Group, b: &Group) -> Option<f64> {
-        if a.of_bed && b.of_bed {
-            return None;
-        }
         let (small, large) = if a.size() < b.size() { (a, b) } else { (b, a) };
         let gap = self.gap(small, large, 0.5 * large.size())?;
         let (stand_a, stand_b) = (self.stands(small), self.stands(large));
+        // Rows of a bed stand over one another.
+        if a.of_bed && b.of_bed && !(stand_a && stand_b) {
+            return None;
+        }
         let over = overlap(small, large);
         let enclosed = inside(small, large);
         let bare = [self.bare(small), self.bare(large)];
@@ -469,37 +478,24 @@ fn inside(small: &Group, large: &Group) -> f64 {
 }
 
 /// Sets of strokes that are joined one after another.
-struct Sets {
-    above: Vec<usize>,
-    /// The plant of a bed that a set belongs to, at its top.
-    plant: Vec<Option<usize>>,
-}
+struct Sets(Vec<usize>);
 
 impl Sets {
-    /// What is of one plant of a bed is one set from the beginning.
-    fn new(n: usize, beds: &[Option<usize>]) -> Self {
-        let plant: Vec<Option<usize>> = (0..n).map(|k| beds.get(k).copied().flatten()).collect();
-        let first =
-            |k: usize| plant[k].and_then(|own| plant.iter().position(|p| *p == Some(own))).unwrap_or(k);
-        Self { above: (0..n).map(first).collect(), plant }
+    fn new(n: usize) -> Self {
+        Self((0..n).collect())
     }
 
     fn top(&mut self, mut k: usize) -> usize {
-        while self.above[k] != k {
-            self.above[k] = self.above[self.above[k]];
-            k = self.above[k];
+        while self.0[k] != k {
+            self.0[k] = self.0[self.0[k]];
+            k = self.0[k];
         }
         k
     }
 
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.top(a), self.top(b));
-        if self.plant[a].is_some() && self.plant[b].is_some() {
-            return;
-        }
-        let plant = self.plant[a].or(self.plant[b]);
-        self.above[a.max(b)] = a.min(b);
-        self.plant[a.min(b)] = plant;
+        self.0[a.max(b)] = a.min(b);
     }
 }
 

@@ -20,11 +20,12 @@ const TRANSFORM: &str = "KHR_texture_transform";
 pub(super) const COMPRESSION: &str = "EXT_meshopt_compression";
 const OCTAHEDRAL: &str = "OCTAHEDRAL";
 
-/// Steps of compressed positions, metres, and least steps within the size of a model; steps of compressed coordinates
-/// within a texture. Finer ones are not seen and do not compress.
-const STEP_M: f64 = 0.0005;
-const STEPS: f64 = 16_384.0;
-const STEPS_OF_TEXTURE: f32 = 4096.0;
+/// Steps of compressed positions, metres, and least steps within the size of a model: finer ones are not seen and do not
+/// compress.
+const STEP_M: f64 = 0.001;
+const STEPS: f64 = 8192.0;
+/// Textures within the range of compressed coordinates, of which each has 512 steps.
+const TEXTURES: f32 = 65_535.0 / 512.0;
 /// What sixteen bits count to.
 const MOST: f64 = 65_535.0;
 /// Of JPEG textures: differences are hardly seen beside the picture.
@@ -36,8 +37,8 @@ pub enum Packing {
     /// Columns in few bits (`KHR_mesh_quantization`): positions to a 65,535th of the model's size, normals to a degree,
     /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
     Quantized,
-    /// Those, compressed (`EXT_meshopt_compression`), with positions to half a millimetre or a 16,384th of the model's size,
-    /// whichever is finer, texture coordinates to a 4,096th of a texture if they are within 16 of it, and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
+    /// Those, compressed (`EXT_meshopt_compression`), with positions in steps of a millimetre or of an 8,192th of the model's
+    /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
     /// without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
     /// Blender does not.
     Compressed,
@@ -128,7 +129,7 @@ impl Frame {
                 (low[k], high[k]) = (low[k].min(uv[k]), high[k].max(uv[k]));
             }
         }
-        let least = if packing == Packing::Compressed { MOST as f32 / STEPS_OF_TEXTURE } else { 0.0 };
+        let least = if packing == Packing::Compressed { TEXTURES } else { 0.0 };
         Self { low, size: [0, 1].map(|k| (high[k] - low[k]).max(least)) }
     }
 

@@ -278,7 +278,7 @@ fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
         Pot if flower && is_head(p) => Some(Other),
         Crown if flower => Some(Corolla),
         TrunkOutline | Crown | Fruit => Some(Blade),
-        Corolla if !flower && !(upright && is_tulip(p)) => Some(Blade),
+        Corolla if !(flower || upright && is_tulip(p)) => Some(Blade),
         _ => None,
     };
     parts.iter().filter_map(|p| Some((p.stroke, class(p)?))).collect()
