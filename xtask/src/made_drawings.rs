@@ -20,6 +20,7 @@ use reading::Kind;
 /// How many drawings of each set.
 const ROWS: u64 = 40;
 const BEDS: u64 = 12;
+pub(crate) const BEDS_OF_FLOWERS: &str = "beds of flowers";
 /// Trees of each way to draw one.
 const TREES: u64 = 12;
 
@@ -405,7 +406,7 @@ fn bed(r: &mut Stream) -> Shown {
         let (lo, hi) = extent(&lines);
         lines.push(hand(r, &[DVec2::new(lo.x - 0.1, 0.0), DVec2::new(hi.x + 0.1, 0.0)]));
     }
-    Shown { set: "beds of flowers", lines, plants, own: usize::MAX }
+    Shown { set: BEDS_OF_FLOWERS, lines, plants, own: usize::MAX }
 }
 
 /// A tree among bushes and grass.

@@ -95,6 +95,7 @@ export const PARTS = [
   'anther',
   'floret',
   'body',
+  'pot',
 ] as const;
 
 /** Fruits with a parachute each, all round the head: a dandelion's clock. */

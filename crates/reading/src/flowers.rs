@@ -50,6 +50,10 @@ const MEETS: f64 = 0.08;
 const APART: f64 = 0.2;
 /// The cosine of the angle within which what lies ahead of the foot of a cup is its middle.
 const AHEAD: f64 = 0.95;
+/// What is nearer to the foot of a cup than this share of its reach is its foot, not its rim; and how far above the dip its front
+/// may reach (*geometry*: the dip itself lies on it).
+const AT_FOOT: f64 = 0.2;
+const ROUNDED: f64 = 1.01;
 const STRIDE: usize = 6;
 const ALONG: usize = 3;
 const LONG_STEM: f64 = 0.4;
@@ -191,10 +195,11 @@ pub(crate) fn together(draft: &Draft<'_>, first: usize, second: usize) -> Option
 fn front_of_cup(points: &[DVec2], foot: DVec2) -> Vec<DVec2> {
     let reach = points.iter().map(|p| p.distance(foot)).fold(0.0, f64::max);
     let middle = points.iter().map(|p| *p - foot).sum::<DVec2>().normalize_or_zero();
-    let ahead =
-        |p: &&DVec2| (**p - foot).normalize_or_zero().dot(middle) > AHEAD && p.distance(foot) > 0.2 * reach;
+    let ahead = |p: &&DVec2| {
+        (**p - foot).normalize_or_zero().dot(middle) > AHEAD && p.distance(foot) > AT_FOOT * reach
+    };
     let dip = points.iter().filter(ahead).map(|p| p.distance(foot)).fold(reach, f64::min);
-    points.iter().copied().filter(|p| p.distance(foot) <= dip * 1.01).collect()
+    points.iter().copied().filter(|p| p.distance(foot) <= dip * ROUNDED).collect()
 }
 
 /// A lower part that is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
