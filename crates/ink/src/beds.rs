@@ -226,3 +226,65 @@ fn cost(stroke: &Stroke<'_>, stem: &Stem) -> f64 {
     let aside = LEAF * (stroke.middle().distance(stem.top) / stem.length).min(0.9);
     as_head.min(as_leaf) + aside
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(centre: DVec2, radius: f64) -> Vec<DVec2> {
+        (0..=24).map(|k| centre + radius * DVec2::from_angle(f64::from(k) / 24.0 * ops::TAU)).collect()
+    }
+
+    fn stroke(points: &[DVec2]) -> Stroke<'_> {
+        let (lo, hi) = geom::bounds(points).expect("points");
+        let ends = points[0].distance(points[points.len() - 1]);
+        let closed = ends < 0.1 * lo.distance(hi);
+        Stroke { points, lo, hi, closed, straight: !closed, ground: false }
+    }
+
+    /// Flowers of a stem, a disc and six round petals, their feet here.
+    fn flowers(feet: &[DVec2]) -> Vec<Vec<DVec2>> {
+        let one = |&foot: &DVec2| {
+            let middle = foot + DVec2::new(0.02, 1.0);
+            let petal = |k: u32| ring(middle + 0.16 * DVec2::from_angle(f64::from(k) * ops::TAU / 6.0), 0.08);
+            let stem = vec![foot, foot.lerp(middle, 0.4), middle - DVec2::Y * 0.22];
+            [stem, ring(middle, 0.08)].into_iter().chain((0..6).map(petal))
+        };
+        feet.iter().flat_map(one).collect()
+    }
+
+    #[test]
+    fn each_stem_keeps_its_head_where_rows_overlap() {
+        // The stems of the row behind begin among the petals of the row in front.
+        let front = (0..4).map(|k| DVec2::new(f64::from(k), 0.0));
+        let behind = (0..4).map(|k| DVec2::new(f64::from(k) + 0.12, 1.0));
+        let lines = flowers(&front.chain(behind).collect::<Vec<_>>());
+        let strokes: Vec<Stroke<'_>> = lines.iter().map(|l| stroke(l)).collect();
+        let bed = Bed::of(&strokes, Vec::new()).expect("eight stems with heads");
+        let (mut plants, of_bed) = bed.plants(&(0..strokes.len()).collect::<Vec<_>>());
+        plants.iter_mut().for_each(|own| own.sort_unstable());
+        plants.sort_unstable();
+        let want: Vec<Vec<usize>> = (0..8).map(|k| (8 * k..8 * k + 8).collect()).collect();
+        assert_eq!((plants, of_bed), (want, true));
+        // What is not among them is as it was.
+        assert_eq!(bed.plants(&[1, 2]), (vec![vec![1, 2]], false));
+    }
+
+    #[test]
+    fn sides_of_trunks_and_stems_on_one_pot_are_no_bed() {
+        let crown = |x: f64| ring(DVec2::new(x, 1.3), 0.4);
+        let side = |x: f64| vec![DVec2::new(x, 0.0), DVec2::new(x, 0.95)];
+        let trees: Vec<Vec<DVec2>> =
+            (0..4).map(f64::from).flat_map(|x| [side(x - 0.1), side(x + 0.1), crown(x)]).collect();
+        assert!(Bed::of(&trees.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new()).is_none());
+        let mut potted = flowers(&(0..5).map(|k| DVec2::new(0.7 * f64::from(k), 0.0)).collect::<Vec<_>>());
+        potted.push(vec![
+            DVec2::new(-0.2, 0.0),
+            DVec2::new(3.2, 0.0),
+            DVec2::new(3.0, -0.5),
+            DVec2::new(0.0, -0.5),
+            DVec2::new(-0.2, 0.0),
+        ]);
+        assert!(Bed::of(&potted.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new()).is_none());
+    }
+}

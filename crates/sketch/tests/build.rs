@@ -6,7 +6,7 @@ use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
 use proptest::prelude::*;
 use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, PlantReading,
-    Reading, RegionKind, RegionReading,
+    PotReading, Reading, RegionKind, RegionReading,
 };
 use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
 
@@ -656,4 +656,49 @@ fn a_bold_line_is_thick_and_nothing_is_thicker_than_what_bears_it() {
     let thin = radii(vec![(0, 0.5), (1, 2.0)]);
     assert!(thin[1] <= thin[0], "{thin:?}");
     assert_eq!(radii(vec![(0, f64::NAN), (9, 2.0)]), usual);
+}
+
+#[test]
+fn a_pot_stands_on_the_ground_and_bears_its_plant() {
+    let axis = AxisReading {
+        points: vec![v(0.5, 0.4), v(0.5, 1.0)],
+        kind: AxisKind::Stem,
+        bearer: None,
+        half_width: Vec::new(),
+        source: Some(1),
+    };
+    let bare = Reading { axes: vec![axis], ..Reading::default() };
+    // Wider above than below, and drawn in two strokes.
+    let sides = vec![v(0.35, 0.4), v(0.4, 0.1), v(0.6, 0.1), v(0.65, 0.4)];
+    let pot =
+        PotReading { lines: vec![sides, vec![v(0.35, 0.4), v(0.65, 0.4)]], source: Some(0), color: None };
+    let potted = Reading { pots: vec![pot], ..bare.clone() };
+    let spec = SketchSpec { height_m: Some(0.6), ..SketchSpec::default() };
+    let (bare, potted) = (made(&bare, &spec).plant, made(&potted, &spec).plant);
+    let foot = |p: &Plant| p.nodes.position.iter().map(|n| n.y).fold(f64::INFINITY, f64::min);
+    assert!(foot(&bare).abs() < 1e-9 && (foot(&potted) - 0.3).abs() < 1e-9, "{}", foot(&potted));
+    let pots: Vec<_> = potted.organs.iter().filter(|o| o.kind == OrganKind::Pot).collect();
+    assert_eq!(pots.len(), 2, "clay and soil");
+    assert!(pots.iter().all(|o| o.frame.origin.y.abs() < 1e-9));
+    let Shape::Revolution { profile } = &potted.shapes[pots[0].shape.index()] else { panic!("a vessel") };
+    let tall = profile.iter().map(|p| p.y).fold(0.0, f64::max);
+    let wide = profile.iter().map(|p| p.x).fold(0.0, f64::max);
+    assert!((tall - 0.3).abs() < 1e-9 && (wide - 0.15).abs() < 0.005, "{tall} {wide}");
+    // Nothing is measured of it.
+    let [one, other] = [&bare, &potted].map(Plant::measure);
+    assert_eq!((one.crown_volume_m3, one.leaf_area_m2), (other.crown_volume_m3, other.leaf_area_m2));
+}
+
+#[test]
+fn what_lies_in_front_leans_to_the_viewer() {
+    let slope = |front| {
+        let leaf = BladeReading { front, ..blade(v(0.5, 0.5), v(0.9, 0.7), 0.1, 1) };
+        let built = made(&Reading { leaves: vec![leaf], ..Reading::default() }, &SketchSpec::default());
+        match &built.plant.shapes[built.plant.organs[0].shape.index()] {
+            Shape::Blade(plant::Blade { lift: Lift::Tilt { slope }, .. }) => slope.y,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(slope(Some(1.0)) > 0.1 && slope(Some(-1.0)) < -0.1 && slope(Some(0.0)).abs() < 1e-9);
+    assert!(slope(None).abs() > 0.1, "by chance");
 }

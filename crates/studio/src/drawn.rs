@@ -541,6 +541,11 @@ mod tests {
         assert_eq!(lines.first().map(|l| (l.kind, l.row)), Some((DrawnKind::Axis, 0)));
         let crown = lines.last().expect("a crown");
         assert_eq!((crown.kind, crown.row, crown.points.len()), (DrawnKind::Crown, NOTHING, SECTORS + 1));
+        // Foliage hides the rest of the trunk.
+        let top = |points: &[DVec2]| points.iter().map(|p| p.y).fold(0.0, f64::max);
+        let foot = crown.points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let seen = (top(&lines[0].points) - foot) / (top(&crown.points) - foot);
+        assert!((0.0..0.4).contains(&seen), "{seen} of the crown");
         let drawing = drawing_of("a tree", lines.iter().map(|l| (l.kind.word(), l.points.clone())));
         assert_eq!(drawing.strokes.len(), lines.len());
         assert_eq!(drawing.layers.iter().map(|l| &*l.name).collect::<Vec<_>>(), ["axis", "crown"]);

@@ -209,3 +209,53 @@ fn round_petals_about_a_disc_are_a_flower() {
     assert_eq!((r.flowers.len(), r.flowers.first().map(|f| f.petals.len())), (1, Some(5)), "{:?}", r.strokes);
     assert_eq!((r.plants[0].kind, r.regions.len()), (Kind::Flower, 0));
 }
+
+/// A cup with points above, its foot at the origin of its stem.
+fn cup(points: &[(f64, f64)]) -> Vec<DVec2> {
+    let sides = [(16.0, 100.0), (10.0, 84.0), (0.0, 80.0), (-10.0, 84.0), (-16.0, 100.0)];
+    path(&[points, &sides, &points[..1]].concat())
+}
+
+#[test]
+fn a_tulip_is_petals_that_begin_at_its_stem() {
+    let three = [(-15.0, 120.0), (-7.0, 108.0), (0.0, 120.0), (7.0, 108.0), (15.0, 120.0)];
+    let two = [(-15.0, 120.0), (0.0, 105.0), (15.0, 120.0)];
+    let stem = line((0.0, 80.0), (0.0, 0.0));
+    let leaves = [leaf((0.0, 2.0), (-22.0, 60.0), 9.0), leaf((0.0, 2.0), (22.0, 60.0), 9.0)];
+    for head in [&three[..], &two] {
+        let lines = [&[cup(head), stem.clone()][..], &leaves].concat();
+        let (reading, _) = drawn(&lines);
+        let [flower] = &reading.flowers[..] else { panic!("{:?}", reading.flowers.len()) };
+        assert_eq!((flower.petals.len(), reading.leaves.len()), (3, 2));
+        let foot = reading.axes[0].points.last().expect("a line");
+        assert!(flower.petals.iter().all(|p| p.root.distance(*foot) < 0.05), "petals begin at the stem");
+    }
+    // Its points and its round half in two strokes.
+    let half = path(&[
+        (-15.0, 120.0),
+        (-16.0, 100.0),
+        (-10.0, 84.0),
+        (0.0, 80.0),
+        (10.0, 84.0),
+        (16.0, 100.0),
+        (15.0, 120.0),
+    ]);
+    let (reading, _) = drawn(&[&[stem, half, path(&three)][..], &leaves].concat());
+    assert_eq!(reading.flowers.iter().map(|f| f.petals.len()).collect::<Vec<_>>(), [3]);
+}
+
+#[test]
+fn a_pot_is_read_of_all_its_strokes() {
+    let pot = path(&[(-20.0, 0.0), (-14.0, -40.0), (14.0, -40.0), (20.0, 0.0), (-20.0, 0.0)]);
+    let rim = path(&[(-22.0, 0.0), (-22.0, 8.0), (22.0, 8.0), (22.0, 0.0), (-22.0, 0.0)]);
+    let strokes = [
+        (StrokeClass::Pot, pot),
+        (StrokeClass::Pot, rim),
+        (StrokeClass::Axis, line((0.0, 8.0), (0.0, 70.0))),
+        (StrokeClass::Blade, leaf((0.0, 40.0), (30.0, 60.0), 10.0)),
+    ];
+    let (r, _) = reading(&strokes);
+    let [pot] = &r.pots[..] else { panic!("{:?}", r.pots) };
+    assert_eq!((pot.lines.len(), pot.source), (2, Some(0)));
+    assert!(r.strokes[..2].iter().all(|s| s.organ == OrganWord::Pot));
+}
