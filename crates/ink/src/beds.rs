@@ -231,8 +231,12 @@ fn cost(stroke: &Stroke<'_>, stem: &Stem) -> f64 {
 mod tests {
     use super::*;
 
+    fn way(angle: f64) -> DVec2 {
+        DVec2::new(ops::cos(angle), ops::sin(angle))
+    }
+
     fn ring(centre: DVec2, radius: f64) -> Vec<DVec2> {
-        (0..=24).map(|k| centre + radius * DVec2::from_angle(f64::from(k) / 24.0 * ops::TAU)).collect()
+        (0..=24).map(|k| centre + radius * way(f64::from(k) / 24.0 * ops::TAU)).collect()
     }
 
     fn stroke(points: &[DVec2]) -> Stroke<'_> {
@@ -246,7 +250,7 @@ mod tests {
     fn flowers(feet: &[DVec2]) -> Vec<Vec<DVec2>> {
         let one = |&foot: &DVec2| {
             let middle = foot + DVec2::new(0.02, 1.0);
-            let petal = |k: u32| ring(middle + 0.16 * DVec2::from_angle(f64::from(k) * ops::TAU / 6.0), 0.08);
+            let petal = move |k: u32| ring(middle + 0.16 * way(f64::from(k) * ops::TAU / 6.0), 0.08);
             let stem = vec![foot, foot.lerp(middle, 0.4), middle - DVec2::Y * 0.22];
             [stem, ring(middle, 0.08)].into_iter().chain((0..6).map(petal))
         };

@@ -16,6 +16,8 @@ const SHUT: f64 = 0.12;
 /// The rim of a cup dips no deeper than this share of its reach from its foot, and its points lie farther than the second.
 const CUP_DEPTH: f64 = 0.35;
 const CUP_TIP: f64 = 0.75;
+/// The cosine of the angle to its axis beyond which nothing but its foot lies: 70 degrees.
+const CUP_ASIDE: f64 = 0.34;
 /// A piece shorter than this share of the reach is a remnant at an open end.
 const REMNANT: f64 = 0.3;
 /// Ends nearer to the root than this share of the reach are at it.
@@ -151,7 +153,10 @@ pub(crate) fn is_cup(points: &[DVec2], foot: DVec2) -> bool {
     let cuts = dips(&distance, DIP * reach);
     let between = cuts.get(1..cuts.len().saturating_sub(1)).unwrap_or_default();
     let tip = |w: &[usize]| distance[w[0]..=w[1]].iter().copied().fold(0.0, f64::max);
+    let ahead = points.iter().map(|p| *p - foot).sum::<DVec2>().normalize_or_zero();
+    let aside = |v: DVec2| v.length() > CUP_DEPTH * reach && v.normalize_or_zero().dot(ahead) < CUP_ASIDE;
     !between.is_empty()
+        && !points.iter().any(|p| aside(*p - foot))
         && between.iter().all(|&k| distance[k] > CUP_DEPTH * reach)
         && cuts.windows(2).all(|w| tip(w) > CUP_TIP * reach)
 }

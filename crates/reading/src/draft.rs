@@ -532,31 +532,31 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// What it stands in: strokes of pots above one another are of one pot.
+    /// What it stands in: strokes of pots above one another are of one pot, and its foot is the foot of the drawing.
     fn pots(&mut self) -> Vec<PotReading> {
-        let mut found: Vec<([f64; 2], PotReading)> = Vec::new();
-        let all = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
-        let (floor, top) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-        let tall = top - floor;
+        let heights = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
+        let (floor, top) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let mut found: Vec<(DVec2, DVec2, Vec<usize>)> = Vec::new();
         for k in self.of_class(StrokeClass::Pot) {
-            let s = &self.ink.strokes[k];
-            let Some((low, high)) = bounds(&s.points) else { continue };
-            // Its foot is the foot of the drawing.
-            if low.y > floor + FOOT * tall {
-                continue;
+            let Some((low, high)) = bounds(&self.ink.strokes[k].points) else { continue };
+            let mut one = (low, high, vec![k]);
+            for other in found.extract_if(.., |(l, h, _)| l.x <= high.x && low.x <= h.x) {
+                one.2.splice(0..0, other.2);
+                (one.0, one.1) = (one.0.min(other.0), one.1.max(other.1));
             }
-            self.organ[k] = OrganWord::Pot;
-            let lines = vec![s.points.clone()];
-            let mut all =
-                vec![([low.x, high.x], PotReading { lines, source: Some(s.index), color: s.color })];
-            all.splice(0..0, found.extract_if(.., |(x, _)| x[0] <= high.x && low.x <= x[1]));
-            // All that it meets become one, named after the first.
-            found.extend(all.into_iter().reduce(|(x, mut one), (y, other)| {
-                one.lines.extend(other.lines);
-                ([x[0].min(y[0]), x[1].max(y[1])], one)
-            }));
+            found.push(one);
         }
-        found.into_iter().map(|p| p.1).collect()
+        found.retain(|(low, ..)| low.y < floor + FOOT * (top - floor));
+        found
+            .into_iter()
+            .filter_map(|(.., rows)| {
+                rows.iter().for_each(|&k| self.organ[k] = OrganWord::Pot);
+                let strokes: Vec<&ink::InkStroke> = rows.iter().map(|&k| &self.ink.strokes[k]).collect();
+                let first = strokes.first()?;
+                let lines = strokes.iter().map(|s| s.points.clone()).collect();
+                Some(PotReading { lines, source: Some(first.index), color: first.color })
+            })
+            .collect()
     }
 
     /// Length of the longest line or axis.

@@ -206,13 +206,13 @@ fn a_cactus_has_arms_and_thorns_and_no_bark() {
 }
 
 #[test]
-fn a_pot_is_left_out_and_the_plant_stands_on_it() {
+fn a_pot_is_no_part_of_the_plant_that_stands_in_it() {
     let (r, _) = reading(&[
         (StrokeClass::Pot, path(&[(3.0, 3.0), (7.0, 3.0), (6.5, 0.0), (3.5, 0.0), (3.0, 3.0)])),
         (StrokeClass::Axis, line((5.0, 1.5), (5.0, 9.0))),
         (StrokeClass::Blade, leaf((5.0, 6.0), (7.5, 7.5), 0.8)),
     ]);
-    assert_eq!((organs(&r)[0], r.axes.len(), r.leaves.len()), ("ignored", 1, 1));
+    assert_eq!((organs(&r)[0], r.axes.len(), r.leaves.len()), ("pot", 1, 1));
     let rim = 3.0 / ops::hypot(4.5, 9.0);
     assert!((r.axes[0].points[0].y - rim).abs() < 0.02, "{}", r.axes[0].points[0].y);
 }

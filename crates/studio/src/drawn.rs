@@ -541,14 +541,27 @@ mod tests {
         assert_eq!(lines.first().map(|l| (l.kind, l.row)), Some((DrawnKind::Axis, 0)));
         let crown = lines.last().expect("a crown");
         assert_eq!((crown.kind, crown.row, crown.points.len()), (DrawnKind::Crown, NOTHING, SECTORS + 1));
-        // Foliage hides the rest of the trunk.
-        let top = |points: &[DVec2]| points.iter().map(|p| p.y).fold(0.0, f64::max);
-        let foot = crown.points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        let seen = (top(&lines[0].points) - foot) / (top(&crown.points) - foot);
-        assert!((0.0..0.4).contains(&seen), "{seen} of the crown");
         let drawing = drawing_of("a tree", lines.iter().map(|l| (l.kind.word(), l.points.clone())));
         assert_eq!(drawing.strokes.len(), lines.len());
         assert_eq!(drawing.layers.iter().map(|l| &*l.name).collect::<Vec<_>>(), ["axis", "crown"]);
+    }
+
+    #[test]
+    fn a_trunk_ends_behind_dense_foliage_and_goes_through_a_sparse_one() {
+        // The share of the crown's height up to which the trunk is drawn.
+        let seen = |larger: f64| {
+            let mut spec = TreeSpec::default();
+            spec.leaves.length_m *= larger;
+            let made =
+                make_tree(&spec, Seed::new(3), &TreeOptions::default(), &Run::plain()).expect("a tree");
+            let lines = drawn((&made.grown.plant, &made.model, &made.layout), &Run::plain()).expect("lines");
+            let crown = lines.last().expect("a crown");
+            let top = |points: &[DVec2]| points.iter().map(|p| p.y).fold(0.0, f64::max);
+            let foot = crown.points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+            (top(&lines[0].points) - foot) / (top(&crown.points) - foot)
+        };
+        let (dense, sparse) = (seen(3.0), seen(1.0));
+        assert!((0.0..0.4).contains(&dense) && sparse > 0.6, "{dense} {sparse}");
     }
 
     #[test]

@@ -209,7 +209,9 @@ impl Case {
             alone.nodes.radius_m = plant.axis_radii(AxisId::new(i)).iter().map(|r| r * share).collect();
             masks.push((self.mask(&alone), true));
         }
-        for (_, organ) in plant.organs.iter().enumerate().filter(|(i, _)| !grown_organ(*i)) {
+        // Pots are evened out, and compared with nothing.
+        let compared = |(i, o): &(usize, &Organ)| !grown_organ(*i) && o.kind != OrganKind::Pot;
+        for (_, organ) in plant.organs.iter().enumerate().filter(compared) {
             let alone = Plant {
                 shapes: vec![plant.shapes[organ.shape.index()].clone()],
                 organs: vec![Organ { shape: ShapeId::new(0), bearer: None, flower: None, ..organ.clone() }],

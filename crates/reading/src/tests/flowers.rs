@@ -257,5 +257,5 @@ fn a_pot_is_read_of_all_its_strokes() {
     let (r, _) = reading(&strokes);
     let [pot] = &r.pots[..] else { panic!("{:?}", r.pots) };
     assert_eq!((pot.lines.len(), pot.source), (2, Some(0)));
-    assert!(r.strokes[..2].iter().all(|s| s.organ == OrganWord::Pot));
+    assert!(r.strokes[..2].iter().all(|s| s.organ == crate::OrganWord::Pot));
 }
