@@ -60,13 +60,8 @@ pub(crate) fn run() -> Outcome {
          page.\n\n\
          | drawing | model | what was recognised |\n|---|---|---|\n",
     );
-    let folder = repository().join("fixtures/sketches/gallery");
-    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut names: Vec<String> = entries
-        .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned()))
-        .map(|name| format!("gallery/{name}"))
-        .collect();
-    names.sort();
+    let own = names_in("fixtures/sketches/gallery")?.into_iter();
+    let mut names: Vec<String> = own.map(|name| format!("gallery/{name}")).collect();
     names.extend(PAPER.iter().map(|(name, _)| format!("table1/{name}")));
     for name in &names {
         let item = make(name)?;
@@ -74,6 +69,21 @@ pub(crate) fn run() -> Outcome {
             page,
             "| <img src=\"../fixtures/sketches/{name}.svg\" width=\"180\"> | \
              <img src=\"pictures/{name}.png\" width=\"320\"> | {} |",
+            summary(&item)
+        );
+    }
+    page.push_str(
+        "\nSeveral plants in one drawing:\n\n\
+         | drawing | model | what was recognised |\n|---|---|---|\n",
+    );
+    for name in names_in("docs/scenes")? {
+        let item = made(&format!("docs/scenes/{name}.svg"), &format!("scenes/{name}"))?;
+        let plants = item["readings"][0]["plants"].as_u64().unwrap_or(1);
+        let _ = writeln!(
+            page,
+            "| <img src=\"scenes/{name}.svg\" width=\"180\"> | \
+             <img src=\"pictures/scenes/{name}.png\" width=\"320\"> | {}{} |",
+            if plants > 1 { format!("{plants} plants, ") } else { String::new() },
             summary(&item)
         );
     }
@@ -87,8 +97,23 @@ fn write(path: &Path, text: &str) -> Outcome {
     std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
+/// Names of the files in a folder of the repository, without what they end in.
+fn names_in(folder: &str) -> Outcome<Vec<String>> {
+    let folder = repository().join(folder);
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut names: Vec<String> =
+        entries.filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    Ok(names)
+}
+
 /// Makes one fixture, its picture in docs/pictures, and returns the report's item.
 fn make(name: &str) -> Outcome<Value> {
+    made(&format!("fixtures/sketches/{name}.svg"), name)
+}
+
+/// As [`make`], of any drawing of the repository; `name`: of its picture.
+fn made(drawing: &str, name: &str) -> Outcome<Value> {
     let root = repository();
     let picture = root.join(format!("docs/pictures/{name}.png"));
     let scratch = target_dir().join("gallery");
@@ -101,7 +126,7 @@ fn make(name: &str) -> Outcome<Value> {
         burgeon("release"),
         &[
             "sketch",
-            &format!("fixtures/sketches/{name}.svg"),
+            drawing,
             "-o",
             &as_text(&scratch.join("model.glb")),
             "--png",

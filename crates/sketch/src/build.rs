@@ -106,7 +106,7 @@ pub fn build_again(
     let scene = Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors) };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);
-    let templates: Vec<ShapeId> = leaves.iter().map(|l| l.shape).collect();
+    let templates: Vec<(ShapeId, Option<u32>)> = leaves.iter().map(|l| (l.shape, l.leaf.source)).collect();
     for leaf in leaves.iter().filter(|l| !crowned.holds(l.leaf.root)) {
         place_leaf(&mut plant, &scene, leaf.leaf, (leaf.shape, &leaf.local), leaf.key, None);
     }

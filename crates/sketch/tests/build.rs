@@ -702,3 +702,52 @@ fn what_lies_in_front_leans_to_the_viewer() {
     assert!(slope(Some(1.0)) > 0.1 && slope(Some(-1.0)) < -0.1 && slope(Some(0.0)).abs() < 1e-9);
     assert!(slope(None).abs() > 0.1, "by chance");
 }
+
+#[test]
+fn a_crown_has_the_leaves_of_its_own_plant_and_a_pot_is_as_deep_as_the_plant_in_it() {
+    let mut reading = tree();
+    reading.leaves.clear();
+    reading.regions.push(RegionReading {
+        outline: (0..40).map(|k| v(0.3, 0.6) + around(k, 40, 0.0) * 0.3).collect(),
+        kind: RegionKind::Crown,
+        bearers: vec![0],
+        source: Some(20),
+        color: None,
+    });
+    // A blade of grass beside it.
+    reading.leaves.push(blade(v(0.9, 0.0), v(0.95, 0.3), 0.02, 30));
+    let shapes_of = |plants: Vec<PlantReading>| {
+        let built = made(&Reading { plants, ..reading.clone() }, &SketchSpec::default());
+        let leaves = built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && o.source != Some(30));
+        let grass = built.plant.organs.iter().find(|o| o.source == Some(30)).expect("grass").shape;
+        (leaves.clone().count(), leaves.filter(|o| o.shape == grass).count())
+    };
+    let plant = |strokes: &[u32]| PlantReading { strokes: strokes.to_vec(), ..PlantReading::default() };
+    let (all, grass) = shapes_of(vec![plant(&[0, 1, 2, 3, 4, 5, 20]), plant(&[30])]);
+    assert!(all > 100 && grass == 0, "{grass} of {all} leaves are grass");
+    // Drawn for the same plant, it is its leaf.
+    let (_, own) = shapes_of(vec![plant(&[0, 1, 2, 3, 4, 5, 20, 30])]);
+    assert!(own > 10, "{own}");
+
+    let stem = |x: f64, source| AxisReading {
+        points: vec![v(x, 0.3), v(x, 0.9)],
+        kind: AxisKind::Stem,
+        bearer: None,
+        half_width: Vec::new(),
+        source: Some(source),
+    };
+    let pot = |x: f64, source| PotReading {
+        lines: vec![vec![v(x - 0.1, 0.3), v(x - 0.07, 0.1), v(x + 0.07, 0.1), v(x + 0.1, 0.3)]],
+        source: Some(source),
+        color: None,
+    };
+    let row: Vec<f64> = (0..4).map(|k| 0.2 + 0.3 * f64::from(k)).collect();
+    let axes = row.iter().zip(0..).map(|(x, k)| stem(*x, k)).collect();
+    let pots = row.iter().zip(10..).map(|(x, k)| pot(*x, k)).collect();
+    let built = made(&Reading { axes, pots, ..Reading::default() }, &SketchSpec::default());
+    for organ in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Pot) {
+        let at = organ.frame.origin;
+        let stands = |p: &&DVec3| (p.x - at.x).abs() < 1e-9 && (p.z - at.z).abs() < 1e-9;
+        assert!(built.plant.nodes.position.iter().any(|p| stands(&p)), "a stem stands in the pot at {at}");
+    }
+}

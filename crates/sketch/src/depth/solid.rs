@@ -126,7 +126,12 @@ pub(crate) fn place_pot(plant: &mut Plant, scene: &Scene<'_>, pot: &PotReading) 
     let level = DVec2::new(0.0, soil);
     let earth =
         vec![level - DVec2::Y * thick, DVec2::new(inner(soil), soil), level + DVec2::Y * (0.1 * thick)];
-    let at = scene.map.plant_from_ink(DVec2::new(centre, low)).extend(0.0);
+    // As deep as the plant that stands in it.
+    let middle = scene.map.plant_from_ink(DVec2::new(centre, low));
+    let feet = plant.axes.iter().filter(|a| a.bearer.is_none()).filter_map(|a| a.node_ids().next());
+    let feet = feet.map(|n| plant.nodes.position[n.index()]).filter(|p| (p.x - middle.x).abs() < wide);
+    let foot = feet.min_by(|a, b| (a.x - middle.x).abs().total_cmp(&(b.x - middle.x).abs()));
+    let at = middle.extend(foot.map_or(0.0, |p| p.z));
     let drawn = pot.color.filter(|_| scene.coloured).and_then(drawn_light);
     #[expect(clippy::cast_possible_truncation, reason = "a colour")]
     let clay = drawn.map_or(Paint::Tinted(CLAY), |c| Paint::Drawn(c.map(|x| x as f32)));

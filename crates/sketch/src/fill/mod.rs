@@ -31,7 +31,7 @@ use crate::{FillSpec, PlantMap, PullSet, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
-use reading::{Reading, RegionKind, RegionReading};
+use reading::{PlantReading, Reading, RegionKind, RegionReading};
 use twigs::Twigs;
 use volume::{Inflation, Volume, above};
 
@@ -65,8 +65,8 @@ pub(crate) struct FillContext<'a> {
     pub(crate) map: PlantMap,
     /// The plant's axis of each row of `Reading::axes`; `None` where it degenerated.
     pub(crate) axis_of_reading: &'a [Option<AxisId>],
-    /// Blade shapes of the drawn leaves, in their order.
-    pub(crate) templates: &'a [ShapeId],
+    /// Blade shapes of the drawn leaves, in their order, with their strokes.
+    pub(crate) templates: &'a [(ShapeId, Option<u32>)],
     /// Height of the drawn plant, metres: twigs and leaves that nobody drew are a share of it.
     pub(crate) height_m: f64,
     /// A tree rather than a herb.
@@ -86,6 +86,21 @@ pub struct GrownContour {
     pub axes: Range<usize>,
     /// The plant's organs that grew in it.
     pub organs: Range<usize>,
+}
+
+/// Of the drawn leaves those of the plant that a region is of: grass beside a tree is not the tree's.
+fn own_templates(
+    reading: &Reading,
+    region: &RegionReading,
+    templates: &[(ShapeId, Option<u32>)],
+) -> Vec<ShapeId> {
+    let of = |source: Option<u32>| {
+        let has = |p: &PlantReading| source.is_some_and(|s| p.strokes.binary_search(&s).is_ok());
+        reading.plants.iter().position(has)
+    };
+    let plant = if reading.plants.len() > 1 { of(region.source) } else { None };
+    let is_own = |source: Option<u32>| plant.is_none() || of(source).is_none_or(|p| Some(p) == plant);
+    templates.iter().filter(|(_, source)| is_own(*source)).map(|(shape, _)| *shape).collect()
 }
 
 /// Fills every region of the reading with twigs and leaves, borne by the plant's axes. Returns what grew, in the
@@ -110,8 +125,6 @@ pub(crate) fn fill(
     let mut grown = Vec::with_capacity(reading.regions.len());
     let mut bodies = KeptBodies::default();
     let mut forms: Vec<(BladeForm, ShapeId)> = Vec::new();
-    let drawn = foliage::measured(plant, ctx.templates);
-    let natural = foliage::median_length(&drawn);
     let share = MOST_GROWN / reading.regions.len().max(1);
     let mut born: BTreeMap<u64, u64> = BTreeMap::new();
     for (row, region) in reading.regions.iter().enumerate() {
@@ -147,6 +160,8 @@ pub(crate) fn fill(
         let spec = tame(ctx.spec.fill);
         let (first_axis, first) = (plant.axes.len(), plant.organs.len());
         let height_m = ctx.height_m;
+        let drawn = foliage::measured(plant, &own_templates(reading, region, ctx.templates));
+        let natural = foliage::median_length(&drawn);
         let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec, height_m };
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {

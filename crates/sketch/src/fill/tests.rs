@@ -109,7 +109,8 @@ fn grown_again(
     let metres: Vec<DVec2> = outline.iter().map(|&p| map.plant_from_ink(p)).collect();
     let bearers = (0..lines.len()).collect();
     reading.regions.push(RegionReading { outline, kind, bearers, source: None, color: None });
-    let templates: Vec<ShapeId> = leaf.map(|length| plant.add_shape(leaf_of(length))).into_iter().collect();
+    let templates: Vec<(ShapeId, Option<u32>)> =
+        leaf.map(|length| (plant.add_shape(leaf_of(length)), None)).into_iter().collect();
     let ctx = FillContext {
         spec,
         seed: Seed::new(seed),
