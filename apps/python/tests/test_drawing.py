@@ -62,13 +62,12 @@ def away(points, line):
 def test_plants_are_drawn_as_they_were_when_python_drew_them():
     """``drawn.json`` was written by rules in Python that the core has now; lines are true to 0.002 of the plant's size.
 
-    Not of trees in leaf: their trunks end behind their foliage now.
+    Not of trees: trunks end behind their foliage now, and shares of limbs are of what is really seen.
     """
     before = json.loads((pathlib.Path(__file__).parent / "drawn.json").read_text())
     plants = {
         "lily": bg.bloom("lily", seed=1),
         "tulip": bg.bloom("tulip", seed=1),
-        "palm": bg.grow("palm", seed=2, detail=0.2, textures=False),
     }
     for name, plant in plants.items():
         lines, fine = plant.drawing().lines, 0.002 * np.ptp(plant.model.vertices, axis=0).max() + 1e-5
