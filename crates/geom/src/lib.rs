@@ -68,4 +68,4 @@ pub use spline::{
 pub use step::Step;
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
 pub use voxels::{Voxels, extent};
-pub use wheel::{Spoke, Wheel, wheels};
+pub use wheel::{Spoke, Wheel, wheels, widest_gap};

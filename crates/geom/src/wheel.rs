@@ -149,12 +149,24 @@ fn wheel(spokes: &[Spoke], mut group: Vec<usize>) -> Option<Wheel> {
     if !group.iter().all(rooted) {
         return None;
     }
-    let mut angles: Vec<f64> =
-        group.iter().map(|&i| spokes[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
-    base::sort_numbers(&mut angles);
-    let last = angles.first()? + ops::TAU - angles.last()?;
-    let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(last, f64::max);
+    let widest = widest_gap(group.iter().map(|&i| spokes[i].middle - centre));
     (widest < GAP).then_some(Wheel { centre, spokes: group })
+}
+
+/// The widest angle between neighbours among directions, radians: a whole turn of a single one, and of none.
+///
+/// Cost: `n log n`.
+///
+/// ```
+/// use glam::DVec2;
+/// let widest = geom::widest_gap([DVec2::X, DVec2::Y].into_iter());
+/// assert!((widest - 1.5 * std::f64::consts::PI).abs() < 1e-12);
+/// ```
+pub fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
+    let mut angles: Vec<f64> = ways.map(|v| ops::atan2(v.y, v.x)).collect();
+    base::sort_numbers(&mut angles);
+    let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
+    angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max)
 }
 
 /// The direction of an outline, from where it was begun, or towards it.

@@ -2,8 +2,7 @@
 //!
 //! `lines -> the plant of each`
 
-use base::ops;
-use geom::distance_to_polyline;
+use geom::{distance_to_polyline, widest_gap};
 use glam::DVec2;
 
 /// Fewer are told apart by their places alone.
@@ -78,12 +77,12 @@ pub(super) struct Bed<'a> {
 
 impl<'a> Bed<'a> {
     /// `None` if this is no bed. `wheels`: outlines that point away from one place. Cost: stems by strokes.
-    pub(super) fn of(strokes: &'a [Stroke<'a>], wheels: Vec<Vec<usize>>) -> Option<Self> {
+    pub(super) fn of(strokes: &'a [Stroke<'a>], wheels: impl FnOnce() -> Vec<Vec<usize>>) -> Option<Self> {
         let stems = stems(strokes)?;
         // A ring of petals round a disc says more than the directions of petals.
         let mut held = vec![false; strokes.len()];
         let mut all = rings(strokes);
-        all.extend(wheels);
+        all.extend(wheels());
         all.retain(|ring| {
             let free = ring.iter().all(|&k| !held[k]);
             ring.iter().filter(|_| free).for_each(|&k| held[k] = true);
@@ -192,11 +191,7 @@ fn rings(strokes: &[Stroke<'_>]) -> Vec<Vec<usize>> {
                 && other.middle().distance(middle) > radius
         };
         let mut all: Vec<usize> = closed.iter().copied().filter(beside).collect();
-        let mut angles: Vec<f64> =
-            all.iter().map(|&k| strokes[k].middle() - middle).map(|v| ops::atan2(v.y, v.x)).collect();
-        base::sort_numbers(&mut angles);
-        let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
-        let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max);
+        let widest = widest_gap(all.iter().map(|&k| strokes[k].middle() - middle));
         all.push(d);
         (all.len() > FEWEST && widest < GAP).then_some(all)
     };
@@ -229,6 +224,8 @@ fn cost(stroke: &Stroke<'_>, stem: &Stem) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use base::ops;
+
     use super::*;
 
     fn way(angle: f64) -> DVec2 {
@@ -264,7 +261,7 @@ mod tests {
         let behind = (0..4).map(|k| DVec2::new(f64::from(k) + 0.12, 1.0));
         let lines = flowers(&front.chain(behind).collect::<Vec<_>>());
         let strokes: Vec<Stroke<'_>> = lines.iter().map(|l| stroke(l)).collect();
-        let bed = Bed::of(&strokes, Vec::new()).expect("eight stems with heads");
+        let bed = Bed::of(&strokes, Vec::new).expect("eight stems with heads");
         let (mut plants, of_bed) = bed.plants(&(0..strokes.len()).collect::<Vec<_>>());
         plants.iter_mut().for_each(|own| own.sort_unstable());
         plants.sort_unstable();
@@ -280,7 +277,7 @@ mod tests {
         let side = |x: f64| vec![DVec2::new(x, 0.0), DVec2::new(x, 0.95)];
         let trees: Vec<Vec<DVec2>> =
             (0..4).map(f64::from).flat_map(|x| [side(x - 0.1), side(x + 0.1), crown(x)]).collect();
-        assert!(Bed::of(&trees.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new()).is_none());
+        assert!(Bed::of(&trees.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
         let mut potted = flowers(&(0..5).map(|k| DVec2::new(0.7 * f64::from(k), 0.0)).collect::<Vec<_>>());
         potted.push(vec![
             DVec2::new(-0.2, 0.0),
@@ -289,6 +286,6 @@ mod tests {
             DVec2::new(0.0, -0.5),
             DVec2::new(-0.2, 0.0),
         ]);
-        assert!(Bed::of(&potted.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new()).is_none());
+        assert!(Bed::of(&potted.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
     }
 }

@@ -170,7 +170,7 @@ impl Sheet {
             ground: ground.contains(&k),
         });
         let strokes: Vec<Stroke<'_>> = strokes.collect();
-        let Some(bed) = Bed::of(&strokes, self.wheels()) else { return };
+        let Some(bed) = Bed::of(&strokes, || self.wheels()) else { return };
         *groups = core::mem::take(groups)
             .into_iter()
             .flat_map(|group| {

@@ -182,11 +182,13 @@ pub(crate) fn together(draft: &Draft<'_>, first: usize, second: usize) -> Option
     };
     let ((one, a, b), (other, from, to)) = (line(first)?, line(second)?);
     let near = MEETS * one.length;
-    let mut points = other.points.clone();
-    if b.distance(to) < near && a.distance(from) < near {
-        points.reverse();
-    } else if b.distance(from) >= near || a.distance(to) >= near {
+    let back = b.distance(to) < near && a.distance(from) < near;
+    if !back && (b.distance(from) >= near || a.distance(to) >= near) {
         return None;
+    }
+    let mut points = other.points.clone();
+    if back {
+        points.reverse();
     }
     Some([&one.points[..], &points].concat())
 }

@@ -2,7 +2,6 @@
 //!
 //! `blades + their strokes -> the layer of each`
 
-use base::LiteMap;
 use geom::{bounds, contains, distance_to_polyline};
 use glam::DVec2;
 use ink::Ink;
@@ -37,13 +36,12 @@ pub(crate) fn layers(blades: &[BladeReading], ink: &Ink) -> Vec<Option<f64>> {
     if blades.len() < 2 || blades.len() > MOST {
         return vec![None; blades.len()];
     }
-    let strokes: LiteMap<u32, usize> = ink.strokes.iter().zip(0..).map(|(s, row)| (s.index, row)).collect();
     let drawn: Vec<Drawn<'_>> = blades
         .iter()
         .map(|blade| {
             let (low, high) = bounds(&blade.outline).unwrap_or_default();
-            let stroke = blade.source.and_then(|k| strokes.get(&k)).map(|&row| &ink.strokes[row]);
-            let ends = stroke.and_then(|s| {
+            let row = blade.source.and_then(|k| ink.strokes.binary_search_by_key(&k, |s| s.index).ok());
+            let ends = row.map(|row| &ink.strokes[row]).and_then(|s| {
                 let ends = [*s.points.first()?, *s.points.last()?];
                 (ends[0].distance(ends[1]) > OPEN * s.length).then_some(ends)
             });
@@ -101,11 +99,12 @@ fn levels(count: usize, over: &[(usize, usize)]) -> Vec<Option<f64>> {
             break;
         }
     }
-    let size = |k: usize| group.iter().filter(|g| **g == group[k]).count();
+    let mut size = vec![0_usize; count];
+    group.iter().for_each(|&g| size[g] += 1);
     for _ in 0..count {
         let mut still = true;
         for &(behind, front) in over {
-            if level[front] <= level[behind] && level[behind] + 1 < size(front) {
+            if level[front] <= level[behind] && level[behind] + 1 < size[group[front]] {
                 (level[front], still) = (level[behind] + 1, false);
             }
         }
@@ -113,9 +112,10 @@ fn levels(count: usize, over: &[(usize, usize)]) -> Vec<Option<f64>> {
             break;
         }
     }
-    let most = |k: usize| (0..count).filter(|j| group[*j] == group[k]).map(|j| level[j]).max().unwrap_or(0);
+    let mut most = vec![0_usize; count];
+    (0..count).for_each(|k| most[group[k]] = most[group[k]].max(level[k]));
     (0..count)
-        .map(|k| match most(k) {
+        .map(|k| match most[group[k]] {
             0 => None,
             most => Some(2.0 * level[k] as f64 / most as f64 - 1.0),
         })

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::glb_write::{Encoded, Level, Writer, check_levels, row};
 use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
 use super::meshopt::{encode_attributes, encode_triangles};
-use super::meshopt_filter::octahedral;
+use super::meshopt_filter::{OCTAHEDRAL, octahedral};
 use super::picture::{WEBP_TYPE, webp};
 use super::{PngCache, share, unit};
 use crate::error::WriteError;
@@ -18,7 +18,6 @@ use crate::error::WriteError;
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 const TRANSFORM: &str = "KHR_texture_transform";
 pub(super) const COMPRESSION: &str = "EXT_meshopt_compression";
-const OCTAHEDRAL: &str = "OCTAHEDRAL";
 
 /// Steps of compressed positions, metres, and least steps within the size of a model: finer ones are not seen and do not
 /// compress.
@@ -38,8 +37,8 @@ pub enum Packing {
     /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
     Quantized,
     /// Those, compressed (`EXT_meshopt_compression`), with positions in steps of a millimetre or of an 8,192th of the model's
-    /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, and textures with holes as WebP without loss (`EXT_texture_webp`; as PNG
-    /// without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
+    /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, and textures
+    /// with holes as WebP without loss (`EXT_texture_webp`; as PNG without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
     /// Blender does not.
     Compressed,
 }

@@ -2,6 +2,9 @@
 //!
 //! Each undoes in place what a stream holds, as the extension's text says (decoding is defined there; how to encode is not).
 
+/// The word of [`Filter::Octahedral`].
+pub(super) const OCTAHEDRAL: &str = "OCTAHEDRAL";
+
 /// How the elements of a stream of attributes are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Filter {
@@ -17,7 +20,7 @@ impl Filter {
     /// `None` of a word that the extension does not have.
     pub(super) fn of(word: &str) -> Option<Self> {
         match word {
-            "OCTAHEDRAL" => Some(Self::Octahedral),
+            OCTAHEDRAL => Some(Self::Octahedral),
             "QUATERNION" => Some(Self::Quaternion),
             "EXPONENTIAL" => Some(Self::Exponential),
             _ => None,

@@ -3,7 +3,7 @@
 //! As in the rule about a whole tree, only shapes and places count.
 
 use base::ops;
-use geom::{bounds, contains, distance_to_polyline, signed_area};
+use geom::{bounds, contains, distance_to_polyline, signed_area, widest_gap};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -196,11 +196,7 @@ fn petals_of(
     let usual = sizes[sizes.len() / 2];
     let alike = |i: &usize| loops[*i].radius > 0.5 * usual && loops[*i].radius < 2.0 * usual;
     let petals: Vec<usize> = petals.into_iter().filter(alike).collect();
-    let mut angles: Vec<f64> =
-        petals.iter().map(|&i| loops[i].middle - disc.middle).map(|v| ops::atan2(v.y, v.x)).collect();
-    base::sort_numbers(&mut angles);
-    let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
-    let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max);
+    let widest = widest_gap(petals.iter().map(|&i| loops[i].middle - disc.middle));
     // A disc is no larger than its petals are long; berries have berries behind them.
     let behind = free.iter().any(|&i| {
         let l = &loops[i];

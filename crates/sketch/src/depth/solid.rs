@@ -89,20 +89,19 @@ fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<(Vec<DVec2>
         // Rings close up towards the poles, where the outline turns.
         let share = 0.5 - 0.5 * ops::cos(ops::PI * t);
         let y = low + (high - low) * share;
-        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (k, a) in local.iter().enumerate() {
-            let b = local[(k + 1) % local.len()];
-            if (a.y - y) * (b.y - y) <= 0.0 && a.y != b.y {
-                let x = ops::lerp(a.x, b.x, ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0));
-                left = left.min(x);
-                right = right.max(x);
-            }
-        }
+        let [left, right] = span((0..local.len()).map(|k| [local[k], local[(k + 1) % local.len()]]), y);
         let pole = i == 0 || i + 1 == RINGS;
         let radius = if pole || right < left { 0.0 } else { 0.5 * (right - left) };
         rings.push(DVec2::new(radius, y - low));
     }
     rings.iter().any(|r| r.x > 0.0).then_some((rings, low))
+}
+
+/// Where edges cross a height, farthest to the left and to the right; infinite where none does.
+fn span(edges: impl Iterator<Item = [DVec2; 2]>, y: f64) -> [f64; 2] {
+    let crossing = edges.filter(|[a, b]| (a.y - y) * (b.y - y) <= 0.0 && a.y != b.y);
+    let xs = crossing.map(|[a, b]| ops::lerp(a.x, b.x, ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0)));
+    xs.fold([f64::INFINITY, f64::NEG_INFINITY], |[left, right], x| [left.min(x), right.max(x)])
 }
 
 /// Adds a drawn pot: open above, its wall as wide as was drawn, with soil a little below its rim.
@@ -159,18 +158,17 @@ fn wall(pot: &PotReading) -> Option<(f64, f64, Vec<DVec2>)> {
     if tall < 1e-3 || high.x - low.x < 1e-3 {
         return None;
     }
-    let edges = || pot.lines.iter().flat_map(|l| l.windows(2)).filter(|w| usable(w[0]) && usable(w[1]));
+    let edges = || {
+        let all = pot.lines.iter().flat_map(|l| l.windows(2)).map(|w| [w[0], w[1]]);
+        all.filter(|[a, b]| usable(*a) && usable(*b))
+    };
     let mut line = Vec::with_capacity(POT_RINGS);
     for k in 0..POT_RINGS {
         #[expect(clippy::cast_precision_loss, reason = "rings are few")]
         let share = k as f64 / (POT_RINGS - 1) as f64;
         // Its floor and its rim are lines: a little inside of both.
         let y = low.y + tall * share.clamp(FLAT, 1.0 - FLAT);
-        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-        for w in edges().filter(|w| (w[0].y - y) * (w[1].y - y) <= 0.0 && w[0].y != w[1].y) {
-            let x = ops::lerp(w[0].x, w[1].x, ((y - w[0].y) / (w[1].y - w[0].y)).clamp(0.0, 1.0));
-            (left, right) = (left.min(x), right.max(x));
-        }
+        let [left, right] = span(edges(), y);
         // One side alone tells nothing.
         if right - left > 0.1 * (high.x - low.x) {
             line.push(DVec2::new(0.5 * (right - left), tall * share));

@@ -121,13 +121,12 @@ fn organ(foliage: &Foliage, node: NodeId, at: DVec3, twig: DVec3, azimuth: f64, 
     }
 }
 
-/// Shapes with their lengths, those of no length left out.
-pub(super) fn measured(plant: &Plant, shapes: &[ShapeId]) -> Vec<(ShapeId, f64)> {
-    let length = |id: &ShapeId| match plant.shapes.get(id.index()) {
-        Some(Shape::Blade(b)) if b.length() > 1e-9 && b.length().is_finite() => Some((*id, b.length())),
+/// A shape with its length; `None` of one without.
+pub(super) fn measured(plant: &Plant, shape: ShapeId) -> Option<(ShapeId, f64)> {
+    match plant.shapes.get(shape.index()) {
+        Some(Shape::Blade(b)) if b.length() > 1e-9 && b.length().is_finite() => Some((shape, b.length())),
         _ => None,
-    };
-    shapes.iter().filter_map(length).collect()
+    }
 }
 
 /// The middle of the lengths of [`measured`] shapes.

@@ -31,7 +31,7 @@ use crate::{FillSpec, PlantMap, PullSet, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
-use reading::{PlantReading, Reading, RegionKind, RegionReading};
+use reading::{Reading, RegionKind, RegionReading};
 use twigs::Twigs;
 use volume::{Inflation, Volume, above};
 
@@ -88,19 +88,10 @@ pub struct GrownContour {
     pub organs: Range<usize>,
 }
 
-/// Of the drawn leaves those of the plant that a region is of: grass beside a tree is not the tree's.
-fn own_templates(
-    reading: &Reading,
-    region: &RegionReading,
-    templates: &[(ShapeId, Option<u32>)],
-) -> Vec<ShapeId> {
-    let of = |source: Option<u32>| {
-        let has = |p: &PlantReading| source.is_some_and(|s| p.strokes.binary_search(&s).is_ok());
-        reading.plants.iter().position(has)
-    };
-    let plant = if reading.plants.len() > 1 { of(region.source) } else { None };
-    let is_own = |source: Option<u32>| plant.is_none() || of(source).is_none_or(|p| Some(p) == plant);
-    templates.iter().filter(|(_, source)| is_own(*source)).map(|(shape, _)| *shape).collect()
+/// The plant of a stroke, where a drawing shows several.
+fn plant_of(reading: &Reading, stroke: Option<u32>) -> Option<usize> {
+    let stroke = stroke.filter(|_| reading.plants.len() > 1)?;
+    reading.plants.iter().position(|p| p.strokes.binary_search(&stroke).is_ok())
 }
 
 /// Fills every region of the reading with twigs and leaves, borne by the plant's axes. Returns what grew, in the
@@ -125,6 +116,11 @@ pub(crate) fn fill(
     let mut grown = Vec::with_capacity(reading.regions.len());
     let mut bodies = KeptBodies::default();
     let mut forms: Vec<(BladeForm, ShapeId)> = Vec::new();
+    let templates = ctx
+        .templates
+        .iter()
+        .filter_map(|&(shape, source)| Some((foliage::measured(plant, shape)?, plant_of(reading, source))));
+    let templates: Vec<((ShapeId, f64), Option<usize>)> = templates.collect();
     let share = MOST_GROWN / reading.regions.len().max(1);
     let mut born: BTreeMap<u64, u64> = BTreeMap::new();
     for (row, region) in reading.regions.iter().enumerate() {
@@ -160,7 +156,10 @@ pub(crate) fn fill(
         let spec = tame(ctx.spec.fill);
         let (first_axis, first) = (plant.axes.len(), plant.organs.len());
         let height_m = ctx.height_m;
-        let drawn = foliage::measured(plant, &own_templates(reading, region, ctx.templates));
+        // Grass beside a tree is not the tree's.
+        let own = plant_of(reading, region.source);
+        let is_own = |of: Option<usize>| own.is_none() || of.is_none() || of == own;
+        let drawn: Vec<(ShapeId, f64)> = templates.iter().filter(|t| is_own(t.1)).map(|t| t.0).collect();
         let natural = foliage::median_length(&drawn);
         let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec, height_m };
         let (axes, leaves) = match region.kind {
