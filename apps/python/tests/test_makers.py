@@ -178,7 +178,7 @@ def test_strokes_are_a_drawing():
 
 def test_edits_by_hand_are_those_of_the_command_line(cli, shown, tmp_path):
     tree = bg.grow("hazel", seed=3, age=4, detail=0.1)
-    path = tree.branches(1)[1]["path"]
+    path = max(tree.branches(1), key=lambda b: b["length_m"])["path"]
     edits = {"schema": "burgeon.edits/1", "edits": [{"op": "prune", "axis": {"path": path}, "at": 0.3}]}
     spec, file = tmp_path / "hazel.toml", tmp_path / "edits.json"
     spec.write_text("age = 4\n" + shown("hazel"))

@@ -138,7 +138,8 @@ def test_other_settings_make_the_plant_that_has_them(small):
 
 
 def test_other_settings_keep_what_was_done_by_hand(small, root):
-    cut = small.shape([{"op": "prune", "axis": {"path": small.branches(1)[1]["path"]}, "at": 0.3}])
+    longest = max(small.branches(1), key=lambda b: b["length_m"])
+    cut = small.shape([{"op": "prune", "axis": {"path": longest["path"]}, "at": 0.3}])
     other = cut.again(look={"leaf_color": "#804020"})
     assert len(other.nodes) == len(cut.nodes) < len(small.nodes) and other.digest != cut.digest
     assert other.report["edits"][0]["done"]

@@ -2,10 +2,16 @@
 //!
 //! `Skeleton of the whole tree + share of its life -> Skeleton, thinner and shorter, with the same branches`
 //!
-//! The trunk rises by the law of Chapman and Richards; every branch starts when its bearer reaches its place and then
-//! grows by the same law until the end. The bole below the lowest limb lengthens with the tree, so that a young tree
-//! has its crown near the ground: in a wood the lowest limbs die while new ones grow at the top, which looks the same
-//! at each age, though there the limbs are not the same ones.
+//! The leader, the way to the highest joint, rises by the law of Chapman and Richards. A branch has reached the share of its
+//! length that its bearer has reached of what it has beyond that branch, so that a crown is a cone below its tip, in leaf
+//! nearly from its foot on, at each age. Limbs that reach far aside wait for the leader to get ahead of them and catch up
+//! later (apical control: Wilson, American Journal of Botany 87, 2000), and twigs are whole after few
+//! years.
+//!
+//! Joints of large axes come early and move apart; those of twigs come one by one. So a leader has most of its limbs early:
+//! in a wood the lowest die while new ones grow at the top, which looks the same at each age, though there they are not the
+//! same ones. Stretches that bear nothing in the whole tree, the bole and the inner halves of limbs, lengthen
+//! with their axis.
 
 use base::ops;
 use glam::DVec3;
@@ -13,85 +19,241 @@ use glam::DVec3;
 use crate::wood::{boles, main_children, pipes, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
-/// Rate and shape of growth (Richards 1959): half of the height is there at two fifths of the life that is looked at.
-const RATE: f64 = 1.6;
+/// Shape of growth (Richards 1959).
 const SHAPE: f64 = 1.35;
-/// The share of its remaining life that the shortest twig takes to its length.
-const AT_ONCE: f64 = 0.08;
+/// Rate of growth per year: trees in the open have a third of the height that they have at forty years after ten, and
+/// two thirds after twenty. Of short lives and very long ones, the rate is of a whole life.
+const RATE_A_YEAR: f64 = 0.05;
+const RATE: [f64; 2] = [1.6, 6.0];
+/// How far a leader is above a limb under full apical control, over how far that limb reaches aside. Crowns of young trees
+/// are about half as wide as they are high; those of trees whose limbs reach further aside than half of their height, as
+/// umbrella thorns, are wider early, too.
+const CONTROL: f64 = 4.0;
+const WIDE: f64 = 0.5;
+/// How far the bearer of the shortest twig is beyond it when it is whole, over its length.
+const WHOLE_AT: f64 = 1.2;
+/// How much a leader grows by the lengthening of all of its internodes rather than by new ones at its tip, 0 to 1; shorter
+/// axes by as much less as they are shorter, and twigs hardly. With 1, a young tree is the whole one made small, and as
+/// dense in twigs as a thicket; with 0 it is the foot of the whole one, with as many limbs as that has there.
+const SIMILAR: f64 = 0.8;
+/// The share of an axis that may bear nothing before the stretch counts as bare.
+const GAP: f64 = 0.08;
+/// The share of an axis's pipes that counts as a branch of it.
+const COUNTS: f64 = 0.01;
 /// The least share of an internode that is drawn at the tip of a growing shoot.
 const BEGUN: f64 = 0.12;
 
-/// The share of the final length at a share of life.
-pub(crate) fn grown_by(life: f64) -> f64 {
-    let all = 1.0 - ops::exp(-RATE);
-    ops::powf((1.0 - ops::exp(-RATE * life.clamp(0.0, 1.0))) / all, SHAPE)
-}
-
-/// The share of life at which a share of the length is reached.
-fn reached_at(length: f64) -> f64 {
-    let all = 1.0 - ops::exp(-RATE);
-    let share = ops::powf(length.clamp(0.0, 1.0), 1.0 / SHAPE);
-    (-ops::ln(1.0 - all * share) / RATE).min(1.0)
+/// The share of the final length at a share of a life of so many years.
+pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
+    let rate = (RATE_A_YEAR * f64::from(years)).clamp(RATE[0], RATE[1]);
+    let all = 1.0 - ops::exp(-rate);
+    ops::powf((1.0 - ops::exp(-rate * life.clamp(0.0, 1.0))) / all, SHAPE)
 }
 
 /// The skeleton at a share of its life, above 0 and below 1, and where each of its joints is then.
 ///
 /// Nested: what is there at one share is there at each later one. Radii that the skeleton brings along become thinner by
 /// the pipes that are not there yet. Cost: linear.
-pub(crate) fn younger(full: &Skeleton, wood: &WoodSpec, life: f64) -> (Skeleton, Vec<Option<JointId>>) {
-    let radius = radii(full, wood);
-    let main = main_children(full, &radius);
+pub(crate) fn younger(
+    full: &Skeleton,
+    wood: &WoodSpec,
+    life: f64,
+    years: u32,
+) -> (Skeleton, Vec<Option<JointId>>) {
+    let axes = Axes::of(full, wood);
     let n = full.len();
-    let from = |j: usize| full.parent[j].map_or(0.0, |p| full.position[p.index()].distance(full.position[j]));
-    // From each joint on to the end of its axis.
-    let mut rest = vec![0.0; n];
-    for j in (0..n).rev() {
-        if let Some(m) = main[j] {
-            rest[j] = rest[m.index()] + from(m.index());
-        }
-    }
-    let on_bole = boles(full, &main);
-    let share = grown_by(life);
-    let longest = rest.iter().copied().fold(0.0, f64::max);
-    // When each axis started, how long it will be, and where on it a joint is.
-    let (mut start, mut whole, mut along, mut birth) =
-        (vec![0.0; n], rest.clone(), vec![0.0; n], vec![0.0; n]);
-    // What a joint is moved by, as the bole below it is not as long yet.
-    let mut moved = vec![DVec3::ZERO; n];
+    let leader = grown_by(life, years);
+    // Of each joint's axis, the shares of its length and of its joints that are there; of each joint, the share of its own
+    // internode, and where it is.
+    let (mut grown, mut own, mut place) = (vec![leader; n], vec![1.0; n], full.position.clone());
+    let mut opened: Vec<f64> =
+        (0..n).map(|j| if full.parent[j].is_none() { axes.open(j, leader) } else { 0.0 }).collect();
     for j in 0..n {
         let Some(p) = full.parent[j].map(JointId::index) else { continue };
-        if on_bole[j] {
-            moved[j] = moved[p] - (full.position[j] - full.position[p]) * (1.0 - share);
-            whole[j] = rest[j];
-            continue;
-        }
-        moved[j] = moved[p];
-        if main[p].is_some_and(|m| m.index() == j) {
-            (start[j], whole[j], along[j]) = (start[p], whole[p], along[p] + from(j));
+        (grown[j], opened[j]) = if axes.head[j] == axes.head[p] {
+            (grown[p], opened[p])
         } else {
-            (start[j], whole[j], along[j]) = (birth[p], rest[j] + from(j), from(j));
-        }
-        // Twigs are as long as they will be after few years: shoots of a tree are of like length each year.
-        let span = (AT_ONCE + 2.0 * whole[j] / longest.max(1e-12)).min(1.0);
-        birth[j] = start[j] + span * (1.0 - start[j]) * reached_at(along[j] / whole[j].max(1e-12));
+            let share = axes.branch(j, p, grown[p], opened[p]);
+            (share, axes.open(j, share))
+        };
+        let internode = axes.internode(full, j);
+        let before = axes.shot_before(j, p);
+        let shot = axes.shot[j] - before;
+        let tip = opened[j] * axes.all_shot[axes.head[j]];
+        own[j] = if tip >= axes.shot[j] { 1.0 } else { ((tip - before) / shot.max(1e-12)).clamp(0.0, 1.0) };
+        let length = grown[j] * (internode - shot) + own[j] * shot * grown[j] / opened[j].max(1e-12);
+        place[j] = place[p] + (full.position[j] - full.position[p]) * (length / internode.max(1e-12));
     }
-    let begun = |j: usize| {
-        let before = full.parent[j].map_or(0.0, |p| birth[p.index()]);
-        ((life - before) / (birth[j] - before).max(1e-12)).clamp(0.0, 1.0)
-    };
     let there = |j: usize| {
         let Some(p) = full.parent[j].map(JointId::index) else { return true };
-        on_bole[j] || birth[j] <= life || (birth[p] <= life && begun(j) >= BEGUN)
+        own[j] >= 1.0 || (own[j] >= BEGUN && own[p] >= 1.0)
     };
     let (mut young, ids) = full.keep_mapped(there);
-    for (j, id) in ids.iter().enumerate() {
-        let (Some(id), Some(p)) = (id, full.parent[j]) else { continue };
-        let own = if on_bole[j] || birth[j] <= life { 1.0 } else { begun(j) };
-        let foot = full.position[p.index()];
-        young.position[id.index()] = foot + (full.position[j] - foot) * own + moved[j];
+    for (id, at) in ids.iter().zip(&place) {
+        if let Some(id) = id {
+            young.position[id.index()] = *at;
+        }
     }
     thinner(full, &mut young, &ids, wood);
     (young, ids)
+}
+
+/// The axes of a whole tree: which joints make each, and how they grow.
+struct Axes {
+    /// The first joint of each joint's axis, roots for trunks.
+    head: Vec<usize>,
+    /// By joint, metres along its axis from where that leaves its bearer.
+    along: Vec<f64>,
+    /// Of `along`, what is not bare.
+    shot: Vec<f64>,
+    /// By head: length of the axis, what of it is not bare, and how far aside it ends, metres.
+    whole: Vec<f64>,
+    all_shot: Vec<f64>,
+    aside: Vec<f64>,
+    /// By tree: the length of its leader, and of the longest branch that leaves it, and how far aside any of these ends.
+    leader: Vec<f64>,
+    limb: Vec<f64>,
+    reach: Vec<f64>,
+    tree: Vec<u32>,
+}
+
+impl Axes {
+    fn of(full: &Skeleton, wood: &WoodSpec) -> Self {
+        let n = full.len();
+        let mut main = main_children(full, &radii(full, wood));
+        lead_to_the_top(full, &mut main);
+        let on_bole = boles(full, &main);
+        let pipes = pipes(full, wood.internode_share);
+        let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
+        let none = || vec![0.0; n];
+        let mut axes = Self {
+            head: (0..n).collect(),
+            along: none(),
+            shot: none(),
+            whole: none(),
+            all_shot: none(),
+            aside: none(),
+            leader: vec![1e-12; trees],
+            limb: vec![1e-12; trees],
+            reach: vec![1e-12; trees],
+            tree: full.tree.clone(),
+        };
+        for j in 0..n {
+            if let Some(p) = full.parent[j].map(JointId::index).filter(|&p| main[p] == Some(JointId::new(j)))
+            {
+                axes.head[j] = axes.head[p];
+            }
+        }
+        // Joints with a branch that counts, and those with one further on.
+        let mut bears = vec![false; n];
+        for j in 0..n {
+            if let Some(p) = full.parent[j].map(JointId::index).filter(|_| axes.head[j] == j) {
+                bears[p] |= pipes[j] >= COUNTS * pipes[axes.head[p]];
+            }
+        }
+        let mut later = bears.clone();
+        for j in (0..n).rev() {
+            later[j] |= main[j].is_some_and(|m| later[m.index()]);
+            if main[j].is_none() {
+                let (end, head) = (full.position[j], axes.head[j]);
+                let foot = full.parent[head].map_or(end, |p| full.position[p.index()]);
+                axes.aside[head] = DVec3::new(end.x - foot.x, 0.0, end.z - foot.z).length();
+            }
+        }
+        axes.measure(full);
+        let mut quiet = none();
+        for j in 0..n {
+            let Some(p) = full.parent[j].map(JointId::index) else { continue };
+            let (h, internode) = (axes.head[j], axes.internode(full, j));
+            quiet[j] = internode + if h == j || bears[p] || on_bole[p] { 0.0 } else { quiet[p] };
+            let bare = match (on_bole[j], later[j]) {
+                (true, _) => internode,
+                (_, true) => (quiet[j] - GAP * axes.whole[h]).clamp(0.0, internode),
+                _ => 0.0,
+            };
+            axes.shot[j] = axes.shot_before(j, p) + internode - bare;
+            axes.all_shot[h] = axes.all_shot[h].max(axes.shot[j]);
+        }
+        axes
+    }
+
+    /// Lengths.
+    fn measure(&mut self, full: &Skeleton) {
+        for j in 0..full.len() {
+            let Some(p) = full.parent[j].map(JointId::index) else { continue };
+            let h = self.head[j];
+            self.along[j] = self.internode(full, j) + if h == j { 0.0 } else { self.along[p] };
+            self.whole[h] = self.whole[h].max(self.along[j]);
+        }
+        for h in (0..full.len()).filter(|&j| self.head[j] == j) {
+            let t = self.tree[h] as usize;
+            match full.parent[h].map(|p| self.head[p.index()]) {
+                None => self.leader[t] = self.leader[t].max(self.whole[h]),
+                Some(bearer) if full.parent[bearer].is_none() => {
+                    self.limb[t] = self.limb[t].max(self.whole[h]);
+                    self.reach[t] = self.reach[t].max(self.aside[h]);
+                }
+                Some(_) => {}
+            }
+        }
+    }
+
+    fn internode(&self, full: &Skeleton, j: usize) -> f64 {
+        full.parent[j].map_or(0.0, |p| full.position[p.index()].distance(full.position[j]))
+    }
+
+    /// What of the axis of `j` is not bare up to its parent `p`.
+    fn shot_before(&self, j: usize, p: usize) -> f64 {
+        if self.head[j] == self.head[p] { self.shot[p] } else { 0.0 }
+    }
+
+    /// The share of its joints that the axis which begins with joint `h` has, when it has a share of its length.
+    fn open(&self, h: usize, grown: f64) -> f64 {
+        let size = (self.whole[h] / self.leader[self.tree[h] as usize]).min(1.0);
+        ops::powf(grown, 1.0 - SIMILAR * size)
+    }
+
+    /// The share that the branch which begins with joint `h`, on joint `p` of its bearer, has of its length, when the bearer
+    /// has `bearer` of its own, and `begun` of its joints.
+    fn branch(&self, h: usize, p: usize, bearer: f64, begun: f64) -> f64 {
+        let b = self.head[p];
+        let beyond = self.whole[b] - self.along[p];
+        if beyond <= 1e-9 {
+            return bearer;
+        }
+        // Where the branch stands on its bearer now, and how far the tip of that is beyond it.
+        let foot = bearer * (self.along[p] - self.shot[p])
+            + self.shot[p].min(begun * self.all_shot[b]) * bearer / begun.max(1e-12);
+        let now = (bearer * self.whole[b] - foot).max(0.0);
+        let t = self.tree[h] as usize;
+        let length = self.whole[h];
+        let small = (1.0 - length / self.limb[t]).max(0.05);
+        let needed = (WHOLE_AT * length / (small * small)).min(beyond).max(1e-12);
+        let full = (CONTROL * WIDE * self.leader[t] / self.reach[t]).clamp(1.0, CONTROL);
+        let control = 1.0 + (full - 1.0) * (self.whole[b] / self.leader[t]).min(1.0);
+        let free = (needed / (control * self.aside[h]).max(1e-12)).min(1.0);
+        let share = (now / needed).min(1.0);
+        // Limbs that waited make up for it by the third power.
+        share * (free + (1.0 - free) * share * share)
+    }
+}
+
+/// Makes the way to the highest joint of each tree its leader.
+fn lead_to_the_top(full: &Skeleton, main: &mut [Option<JointId>]) {
+    let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
+    let mut top: Vec<Option<usize>> = vec![None; trees];
+    for j in 0..full.len() {
+        let best = &mut top[full.tree[j] as usize];
+        if best.is_none_or(|b| full.position[j].y > full.position[b].y) {
+            *best = Some(j);
+        }
+    }
+    for mut j in top.into_iter().flatten() {
+        while let Some(p) = full.parent[j].map(JointId::index) {
+            main[p] = Some(JointId::new(j));
+            j = p;
+        }
+    }
 }
 
 /// Radii of their own become those of the pipes that are there.
@@ -122,12 +284,14 @@ mod tests {
     use base::{Report, Run, Seed};
 
     #[test]
-    fn lengths_and_times_are_one_law() {
-        for i in 0..=20 {
-            let life = f64::from(i) / 20.0;
-            assert!((reached_at(grown_by(life)) - life).abs() < 1e-9, "{life}");
+    fn heights_follow_the_curve() {
+        for years in [1, 40, 300] {
+            assert!(grown_by(0.0, years) < 1e-12 && (grown_by(1.0, years) - 1.0).abs() < 1e-12);
+            assert!(
+                (1..=50)
+                    .all(|i| grown_by(f64::from(i) / 50.0, years) > grown_by(f64::from(i - 1) / 50.0, years))
+            );
         }
-        assert!(grown_by(0.0) < 1e-12 && (grown_by(1.0) - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -140,7 +304,7 @@ mod tests {
         let wood = WoodSpec::default();
         let mut last: (usize, f64, Vec<bool>) = (1, 0.0, vec![false; full.len()]);
         for i in 1..=12 {
-            let (young, ids) = younger(&full, &wood, f64::from(i) / 12.0);
+            let (young, ids) = younger(&full, &wood, f64::from(i) / 12.0, 40);
             assert_eq!(young.validate().count(), 0);
             assert!(young.len() >= last.0 && top(&young) >= last.1, "{i}: {} {}", young.len(), top(&young));
             assert!(
@@ -152,7 +316,33 @@ mod tests {
         assert_eq!(last.0, full.len());
         assert!((last.1 - top(&full)).abs() < 1e-9);
         // A third of its life makes about two fifths of its height, with limbs of its own.
-        let (young, _) = younger(&full, &wood, 0.33);
+        let (young, _) = younger(&full, &wood, 0.33, 40);
         assert!((0.33..0.6).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
+    }
+
+    #[test]
+    fn nothing_jumps_as_a_tree_grows() {
+        let spec = CompetitionSpec { points: 600, ..CompetitionSpec::default() };
+        let (run, none) = (Run::plain(), Obstacles::none());
+        let full = compete(&[DVec3::ZERO], &none, &spec, Seed::new(2), &run, &mut Report::default());
+        let (full, wood) = (full.expect("sound").skeleton, WoodSpec::default());
+        let at = |i: u32| younger(&full, &wood, f64::from(i) / 250.0, 40);
+        let mut last = at(24);
+        for i in 25..250 {
+            let now = at(i);
+            for (a, b) in last.1.iter().zip(&now.1) {
+                if let (Some(a), Some(b)) = (a, b) {
+                    let moved = last.0.position[a.index()].distance(now.0.position[b.index()]);
+                    assert!(moved < 0.03 * full.size(), "{i}: {moved} m of {} m", full.size());
+                }
+            }
+            last = now;
+        }
+        // The end of the way is the whole tree.
+        let (nearly, ids) = younger(&full, &wood, 1.0 - 1e-9, 40);
+        for (j, id) in ids.iter().enumerate() {
+            let off = id.map_or(0.0, |id| nearly.position[id.index()].distance(full.position[j]));
+            assert!(off < 1e-5, "{j}: {off}");
+        }
     }
 }

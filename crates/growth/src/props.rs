@@ -6,7 +6,6 @@ use base::ops::{self, FRAC_PI_2, PI};
 use base::{Draw, Seed};
 use glam::DVec3;
 
-use crate::life::grown_by;
 use crate::wood::{PropSpec, boles, main_children, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
@@ -19,8 +18,8 @@ const FOOT: f64 = 0.4;
 /// How deep props reach into the ground, in their radii.
 const SUNK: f64 = 2.0;
 
-/// Adds the props of each tree at a share of its life. They know nothing of obstacles.
-pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, life: f64, seed: Seed) {
+/// Adds the props of each tree that has grown to a share of its height. They know nothing of obstacles.
+pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, grown: f64, seed: Seed) {
     let spec = &wood.props;
     if spec.count == 0 || skeleton.is_empty() {
         return;
@@ -28,7 +27,6 @@ pub(crate) fn add_props(skeleton: &mut Skeleton, wood: &WoodSpec, life: f64, see
     let radius = radii(skeleton, wood);
     let main = main_children(skeleton, &radius);
     let on_bole = boles(skeleton, &main);
-    let grown = grown_by(life);
     let roots: Vec<usize> = (0..skeleton.len()).filter(|&j| skeleton.parent[j].is_none()).collect();
     for (root, i) in roots.into_iter().zip(0_u64..) {
         let ground = skeleton.position[root].y;

@@ -111,7 +111,7 @@ pub fn grow(
     strip_twigs(&wood_spec, &mut bones);
     let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
     let grown = bones.skeleton.len();
-    add_props(&mut bones.skeleton, &wood_spec, life.min(1.0), seed);
+    add_props(&mut bones.skeleton, &wood_spec, grown_by(life, spec.years.unwrap_or(1)), seed);
     let Bones { skeleton, marks, dead: mut leafless, mut tally, .. } = bones;
     if skeleton.len() > grown {
         leafless.resize(grown, false);
@@ -245,10 +245,10 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
         (Method::SelfOrganizing(_), _) | (Method::Lsystem { .. }, None) => {}
         (_, Some(years)) if age < years => {
             let life = f64::from(age) / f64::from(years);
-            let (young, ids) = younger(&bones.skeleton, wood, life);
+            let (young, ids) = younger(&bones.skeleton, wood, life, years);
             // Fronds and blades that are a part of the tree's own height grow with it.
             if spec.leaves.length_m > 0.05 * bones.skeleton.size() {
-                bones.marks.iter_mut().for_each(|m| m.scale *= grown_by(life));
+                bones.marks.iter_mut().for_each(|m| m.scale *= grown_by(life, years));
             }
             bones.become_of(young, &ids);
         }
@@ -606,7 +606,7 @@ mod tests {
         assert!((top - 2.0).abs() < 1e-9 && (tip - 0.2).abs() < 1e-9, "{top} {tip}");
         assert!((of("ages = steps", 200).0 - 8.0).abs() < 1e-9);
         // Without it a quarter of the life is what the law of growth says.
-        assert!((of("", 20).0 / 8.0 - grown_by(0.25)).abs() < 1e-9);
+        assert!((of("", 20).0 / 8.0 - grown_by(0.25, 80)).abs() < 1e-9);
     }
 
     #[test]

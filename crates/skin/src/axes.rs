@@ -465,6 +465,7 @@ fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
     let mut spine = Spine::new(&points, &radii, 4 * base::ops::whole(rows) as usize, first)?;
     if chain.bearer.is_none() && chain.surface == Surface::Bark {
         spine.root_flare();
+        spine.stand();
     }
     Some(spine)
 }

@@ -212,6 +212,10 @@ fn eased_tangents(line: &Spine, first: usize) -> Vec<DVec3> {
     // The mean leans to neither end; a last pass restores the bound that averaging may have broken.
     let mut mean: Vec<DVec3> =
         forward.iter().zip(&backward).map(|(a, b)| (*a + *b).try_normalize().unwrap_or(*a)).collect();
+    if first == 0 {
+        // What nothing bears begins as it is told to: a trunk is level with the ground.
+        mean[0] = t[0];
+    }
     for i in 1..n {
         mean[i] = within(mean[i - 1], mean[i], limit(i));
     }
@@ -270,6 +274,29 @@ mod tests {
             // Fewer than the samples: only what it takes.
             assert!(line.p.len() < spine.p.len() && line.p.len() >= 13, "{} rings", line.p.len());
         }
+    }
+
+    #[test]
+    fn a_leaning_trunk_meets_the_ground_all_round() {
+        for lean in [0.1, 0.5, 1.2] {
+            let points: Vec<DVec3> = (0..6).map(|i| DVec3::new(lean, 1.0, 0.0) * f64::from(i)).collect();
+            let mut spine = Spine::new(&points, &[0.4; 6], 60, None).unwrap();
+            spine.stand();
+            let (line, first) = drawn(&spine, None, 40.0, |r| 0.1 * r);
+            let rings = rings(&line, first);
+            assert!(rings[0].across.y.abs() < 1e-12 && rings[0].up.y.abs() < 1e-12, "{lean}: {:?}", rings[0]);
+            // No ring cuts through the next one.
+            for pair in rings.windows(2) {
+                for turn in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
+                    let [a, b] = [0, 1].map(|k| pair[k].centre + pair[k].ray(turn) * pair[k].radius);
+                    assert!((b - a).dot(pair[0].tangent) > 0.0, "{lean}: {a} {b}");
+                }
+            }
+        }
+        // What lies on the ground is cut across.
+        let mut lying = Spine::new(&[DVec3::ZERO, DVec3::new(2.0, 0.2, 0.0)], &[0.1, 0.1], 20, None).unwrap();
+        lying.stand();
+        assert!(rings(&lying, 0)[0].tangent.x > 0.9);
     }
 
     #[test]

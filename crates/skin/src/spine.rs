@@ -43,6 +43,9 @@ const THINNEST: f64 = 1.0 / 2000.0;
 // Rings fold over one another where radius x curvature passes 1; stay below.
 const TIGHTEST: f64 = 0.7;
 
+/// What rises by less than this share of its length at its foot does not stand on the ground: 60 degrees off the plumb line.
+const STANDS: f64 = 0.5;
+
 impl Spine {
     /// The curve through `points`, in about `samples` pieces; `first` replaces the first tangent.
     ///
@@ -123,6 +126,14 @@ impl Spine {
         for (r, s) in self.r.iter_mut().zip(&self.s) {
             let u = (1.0 - s / (2.0 * base)).max(0.0);
             *r *= 1.0 + 0.25 * u * u;
+        }
+    }
+
+    /// Makes the first cross-section level, so that a leaning trunk meets the ground all round. What lies more than it
+    /// stands is left as it is.
+    pub(crate) fn stand(&mut self) {
+        if self.t[0].y > STANDS {
+            self.t[0] = DVec3::Y;
         }
     }
 

@@ -102,6 +102,64 @@ fn an_oak_of_ten_years_is_a_young_tree() {
     }
 }
 
+/// How far the thickest stem's tip is up the tree, and the longest stretch of that stem without a branch above its lowest
+/// one, the tip included; both as shares of the height.
+fn leader(grown: &Grown) -> (f64, f64) {
+    let (plant, high) = (&grown.plant, height(grown));
+    let stems = (0..plant.axes.len()).filter(|&a| plant.axes[a].bearer.is_none());
+    let top = |a: usize| plant.nodes.position[plant.axes[a].nodes.end as usize - 1].y;
+    let Some(stem) = stems.reduce(|a, b| if top(b) > top(a) { b } else { a }) else { return (0.0, 1.0) };
+    let on_stem = plant.axes.iter().filter_map(|a| a.bearer).filter(|b| {
+        let rows = &plant.axes[stem].nodes;
+        (rows.start as usize..rows.end as usize).contains(&b.index())
+    });
+    let mut at: Vec<f64> = on_stem.map(|b| plant.nodes.position[b.index()].y).collect();
+    at.push(top(stem));
+    at.sort_by(f64::total_cmp);
+    (top(stem) / high, at.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max) / high)
+}
+
+/// Of the leaves above and below the middle of the crown: how far they reach aside, metres.
+fn reaches(grown: &Grown) -> [f64; 2] {
+    let mut leaves: Vec<_> = grown.plant.organs.iter().map(|o| o.frame.origin).collect();
+    leaves.sort_by(|a, b| a.y.total_cmp(&b.y));
+    let (Some(low), Some(high)) = (leaves.get(leaves.len() / 50), leaves.last()) else { return [0.0; 2] };
+    let middle = 0.5 * (low.y + high.y);
+    [true, false].map(|upper| {
+        let part: Vec<_> = leaves.iter().filter(|p| (p.y > middle) == upper).collect();
+        let sum = part.iter().map(|p| p.x * p.x + p.z * p.z).sum::<f64>();
+        (sum / part.len().max(1) as f64).sqrt()
+    })
+}
+
+#[test]
+fn a_young_tree_is_no_bare_pole_above_a_bush() {
+    let mut looked_at = 0;
+    for preset in PRESETS {
+        let spec = preset.spec().expect(preset.key);
+        let Some(years) = spec.years.filter(|y| *y >= 12 && !spec.bare) else { continue };
+        let whole = tree(&spec, 1);
+        // Palms and ferns bear nothing on their stems.
+        if !(0.005..0.15).contains(&leader(&whole).1) {
+            continue;
+        }
+        let young = tree(&TreeSpec { age: Some(years / 4), ..spec.clone() }, 1);
+        let (young_up, young_gap) = leader(&young);
+        let [above, below] = reaches(&young);
+        let leaves = young.leaves.kept as f64 / whole.leaves.kept as f64;
+        let key = preset.key;
+        println!("{key}: {young_up:.2} {young_gap:.2} {above:.2} {below:.2} {leaves:.3}");
+        looked_at += 1;
+        // The stem goes on through the crown, with branches all along, and the crown's upper half is no mere shoot.
+        assert!(young_up > 0.6 && young_gap < 0.18, "{key}: stem {young_up} of the height, bare {young_gap}");
+        assert!(above > 0.45 * below, "{key}: {above} m above {below} m");
+        // A quarter of a life makes a third of the height, and so about a tenth of the crown's surface; more of a long life's
+        // height, and of what climbs a wall.
+        assert!((0.012..0.4).contains(&leaves), "{key}: {leaves} of its leaves");
+    }
+    assert!(looked_at > 30, "{looked_at}");
+}
+
 /// Coefficients of variation of the height and of the diameter that were measured among trees of one age and place, in
 /// percent: from the standard deviations of plots of 50-year-old birch, spruce and pine (Scientific Reports 9, 2019,
 /// PMC6825224, Table 1), widened to those of Scots pines of 30 to 38 years (Forests 14, 2023, 1779: 23 and 23).
