@@ -1240,6 +1240,14 @@ export type SurfaceKind =
   | /** As approximate, drawn towards thick veins. */
   "nurbs";
 
+/** Roots that run along the ground from the foot of a stem, half sunk, until they are out of sight. */
+export type SurfaceRootSpec = {
+  /** How many leave each stem, 0 to 40, default 0; half of them fork. */
+  count?: number;
+  /** How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 6; each by two fifths more or less. */
+  reach?: number;
+};
+
 /** Eq 7: how an axis thins from base to tip: r(x) = (s^(-alpha x) + m) / (1 + m). */
 export type TaperSpec = {
   /** alpha, above 0, default 0.5. */
@@ -1418,6 +1426,8 @@ export type WoodSpec = {
   relax?: number;
   /** Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). */
   smooth?: boolean;
+  /** Roots that show around the foot of each stem. */
+  surface_roots?: SurfaceRootSpec;
   /** How much thicker the bole is than what its crown asks for, a factor, 1 to 20, default 1: baobabs and bottle trees store water there. */
   swell?: number;
   /** Joints that bear nothing are left out where this takes the course aside by less than this share of the radius, 0 to 10, default 0.25. */

@@ -19,6 +19,7 @@
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |
 //! | `props` | roots that arch from the stem to the ground |
+//! | `surface_roots` | roots that run along the ground from the foot of a stem |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
 //! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
 //! | `tree` | the whole way: [`grow`] |
@@ -45,6 +46,7 @@ mod sieve;
 mod skeleton;
 mod solid;
 mod spec;
+mod surface_roots;
 mod tree;
 mod tropism;
 mod variation;
@@ -71,7 +73,7 @@ pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tree::{FlowerPlace, Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;
-pub use wood::{PropSpec, Wood, WoodSpec, make_wood};
+pub use wood::{PropSpec, SurfaceRootSpec, Wood, WoodSpec, make_wood};
 
 /// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and
 /// meshes. As of an oak.

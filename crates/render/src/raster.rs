@@ -154,6 +154,8 @@ impl Visible {
         let triangle = &scene.triangles[id as usize];
         let surface = &scene.surfaces[triangle.surface as usize];
         let mask = surface.texture.as_ref().filter(|_| surface.mask);
+        // From the front the ground is a line, and what was drawn below it is shown.
+        let sunk = perspective && scene.corners(triangle).iter().any(|v| v.at.y < scene.ground);
         let [a, b, c] = flat.corners.map(|p| DVec3::new(p.x - origin.x, p.y - origin.y, p.z));
         let sign = flat.area.signum();
         // Edge functions e(p) = dot(n, p) + k, positive inside.
@@ -191,11 +193,15 @@ impl Visible {
                     if key <= self.keys[at + k] {
                         continue;
                     }
-                    if let Some(texture) = mask {
+                    if sunk || mask.is_some() {
                         let w = flat.surface_weights(origin + p + pattern[k], perspective);
                         let [va, vb, vc] = scene.corners(triangle);
+                        let up = va.at.y * w.x + vb.at.y * w.y + vc.at.y * w.z;
+                        if sunk && up < scene.ground {
+                            continue;
+                        }
                         let uv = (va.uv * w.x + vb.uv * w.y + vc.uv * w.z).as_vec2();
-                        if texture.hole(uv.x, uv.y) {
+                        if mask.is_some_and(|texture| texture.hole(uv.x, uv.y)) {
                             continue;
                         }
                     }

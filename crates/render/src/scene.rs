@@ -40,7 +40,7 @@ pub(crate) struct Scene {
     pub(crate) triangles: Vec<Triangle>,
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) bounds: Bounds,
-    /// Height of the ground.
+    /// Height of the ground. It hides what is below it from all who look from above.
     pub(crate) ground: f64,
     /// The part and the row in it of each triangle, where somebody asks for them.
     pub(crate) places: Option<Vec<[u32; 2]>>,

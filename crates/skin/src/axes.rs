@@ -3,7 +3,7 @@
 use base::{Cancelled, Counted, Run, Stopped, map_indexed};
 use glam::DVec3;
 use mesh::TriMesh;
-use plant::{AxisId, AxisKind, NodeId, Plant};
+use plant::{Axis, AxisId, AxisKind, NodeId, Plant};
 
 use crate::coloured::Coloured;
 use crate::fork::{Bearer, Collar, reach};
@@ -27,14 +27,28 @@ pub(crate) enum Surface {
 }
 
 impl Surface {
-    fn of(kind: AxisKind) -> Self {
-        match kind {
+    fn of(plant: &Plant, axis: &Axis) -> Self {
+        match axis.kind {
             AxisKind::Branch | AxisKind::Twig => Self::Bark,
+            AxisKind::Root if on_the_ground(plant, axis) => Self::Bark,
             AxisKind::Root => Self::Root,
             // Stem, petiole, and kinds to come that are not known to be woody.
             _ => Self::Stem,
         }
     }
+}
+
+/// Whether a root of a woody stem runs along the ground: in the light, with bark as the stem has it.
+fn on_the_ground(plant: &Plant, root: &Axis) -> bool {
+    let rows = root.nodes.start as usize..root.nodes.end as usize;
+    let Some([a, .., b]) = plant.nodes.position.get(rows) else { return false };
+    let course = *b - *a;
+    let host = |axis: &Axis| plant.nodes.axis.get(axis.bearer?.index()).map(|&host| plant.axis(host));
+    let mut bearer = host(root);
+    while let Some(further) = bearer.filter(|a| a.kind == AxisKind::Root) {
+        bearer = host(further);
+    }
+    course.y.abs() < LEVEL * course.length() && bearer.is_some_and(|a| a.kind == AxisKind::Branch)
 }
 
 /// Axes that follow one another tip to base, meshed as one tube.
@@ -45,6 +59,8 @@ struct Chain {
     surface: Surface,
     /// A leaf stalk: thin and one of many.
     stalk: bool,
+    /// Roots leave its foot.
+    rooted: bool,
 }
 
 /// One finished tube.
@@ -70,6 +86,13 @@ const GROUP: usize = 16;
 const YOUNG: f64 = 0.24;
 // A plant whose thickest branch is thinner than this share of its size has no old wood.
 const SLENDER: f64 = 0.02;
+
+// How much wider than above a trunk is at the ground, and how high up in its radii: where roots leave it, and without.
+const SKIRT: (f64, f64) = (0.6, 3.5);
+const COLLAR: (f64, f64) = (0.25, 2.0);
+
+// The share of its way that a root on the ground rises or falls at most: 20 degrees.
+const LEVEL: f64 = 0.35;
 
 // Sides of a tube with ribs: two for each of as many as there can be.
 const MOST_SIDES: u32 = 64;
@@ -137,7 +160,7 @@ pub(crate) fn tubes<'p>(
         let wood = |i: usize| Wood {
             bearer: smooth(hosts[i]).zip(hosts[i]).map(|(bearer, (host, _))| (bearer, host)),
             reach: reaches[i],
-            borne: chains[i].bearer.is_some() && chains[i].surface != Surface::Root,
+            borne: chains[i].bearer.is_some() && !is_root(plant, &chains[i]),
             key: chains[i].axes.first().map_or(0, |&a| plant.axis(a).key),
             spine: spines[i].as_ref(),
         };
@@ -171,7 +194,7 @@ pub(crate) fn tubes<'p>(
         let bearer = hosts[i].and_then(|(host, sample)| {
             Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], faces[host]))
         });
-        let surface = surface(chain, spine, thickest, budget);
+        let surface = surface(chain, is_root(plant, chain), spine, thickest, budget);
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
         let repeats = match surface {
             Surface::Bark => base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
@@ -196,10 +219,16 @@ pub(crate) fn tubes<'p>(
     Ok((tubes.into_iter().flatten().collect(), wind))
 }
 
-/// What a chain is made of, as thick as it is beside the thickest and the whole plant.
-fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
+fn is_root(plant: &Plant, chain: &Chain) -> bool {
+    chain.axes.first().is_some_and(|&a| plant.axis(a).kind == AxisKind::Root)
+}
+
+/// What a chain is made of, as thick as it is beside the thickest and the whole plant. Roots are as old as the stem.
+fn surface(chain: &Chain, root: bool, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
     match chain.surface {
-        Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => Surface::YoungBark,
+        Surface::Bark if !root && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
+            Surface::YoungBark
+        }
         Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
         surface => surface,
     }
@@ -360,6 +389,12 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
     let heir = heirs(plant);
     let mut chains: Vec<Chain> = Vec::with_capacity(n);
     let mut places: Vec<Place> = vec![(usize::MAX, 0); n];
+    let mut rooted = vec![false; n];
+    for axis in plant.axes.iter().filter(|a| a.kind == AxisKind::Root && on_the_ground(plant, a)) {
+        if let Some(host) = axis.bearer.and_then(|b| plant.nodes.axis.get(b.index())) {
+            rooted[host.index()] = true;
+        }
+    }
     for i in 0..n {
         if places[i].0 != usize::MAX {
             continue;
@@ -369,8 +404,9 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
         let mut chain = Chain {
             axes: vec![id],
             bearer: axis.bearer,
-            surface: Surface::of(axis.kind),
+            surface: Surface::of(plant, axis),
             stalk: axis.kind == AxisKind::Petiole,
+            rooted: rooted[i],
         };
         places[i] = (chains.len(), 0);
         let mut offset = axis.nodes.len();
@@ -398,7 +434,7 @@ fn heirs(plant: &Plant) -> Vec<Option<usize>> {
         if host.index() >= i || plant.axis(host).nodes.end as usize != bearer.index() + 1 {
             continue;
         }
-        if Surface::of(plant.axis(host).kind) != Surface::of(axis.kind) || axis.nodes.len() < 2 {
+        if Surface::of(plant, plant.axis(host)) != Surface::of(plant, axis) || axis.nodes.len() < 2 {
             continue;
         }
         let (a, b) = (end_direction(plant, host), start_direction(plant, AxisId::new(i)));
@@ -464,7 +500,7 @@ fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
     });
     let mut spine = Spine::new(&points, &radii, 4 * base::ops::whole(rows) as usize, first)?;
     if chain.bearer.is_none() && chain.surface == Surface::Bark {
-        spine.root_flare();
+        spine.root_flare(if chain.rooted { SKIRT } else { COLLAR });
         spine.stand();
     }
     Some(spine)

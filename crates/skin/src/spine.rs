@@ -43,8 +43,8 @@ const THINNEST: f64 = 1.0 / 2000.0;
 // Rings fold over one another where radius x curvature passes 1; stay below.
 const TIGHTEST: f64 = 0.7;
 
-/// What rises by less than this share of its length at its foot does not stand on the ground: 60 degrees off the plumb line.
-const STANDS: f64 = 0.5;
+/// What rises by less than this share of its length at its foot does not stand on the ground: 45 degrees off the plumb line.
+const STANDS: f64 = 0.7;
 
 impl Spine {
     /// The curve through `points`, in about `samples` pieces; `first` replaces the first tangent.
@@ -120,12 +120,12 @@ impl Spine {
         }
     }
 
-    /// Swells the base as trunks do where they meet the ground: by a quarter, over two radii.
-    pub(crate) fn root_flare(&mut self) {
+    /// Swells the base as trunks do where they meet the ground: by a share, over so many radii.
+    pub(crate) fn root_flare(&mut self, (wider, over): (f64, f64)) {
         let base = self.r[0];
         for (r, s) in self.r.iter_mut().zip(&self.s) {
-            let u = (1.0 - s / (2.0 * base)).max(0.0);
-            *r *= 1.0 + 0.25 * u * u;
+            let u = (1.0 - s / (over * base)).max(0.0);
+            *r *= 1.0 + wider * u * u;
         }
     }
 

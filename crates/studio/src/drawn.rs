@@ -122,6 +122,9 @@ pub fn drawn(
             _ => {}
         }
     }
+    // What is on the ground is not the plant's outline.
+    let above = |row: i32| usize::try_from(row).is_ok_and(|i| plant.axes[i].kind != AxisKind::Root);
+    wood.retain(|axis, _| above(*axis));
     let all: u32 = organs.values().sum();
     organs.retain(|_, count| f64::from(*count) >= LARGE * f64::from(PIXELS * PIXELS));
     if organs.len() <= MOST_ORGANS && 2 * organs.values().sum::<u32>() >= all {

@@ -1114,6 +1114,7 @@ export const en = {
   'field.rib_depth': 'depth of ribs',
   'field.swell': 'swelling of the bole',
   'field.props': 'prop roots',
+  'field.surface_roots': 'surface roots',
   'field.rise_m': 'height they leave the stem',
   'field.petal_width': 'width of petals',
   'field.tuft': 'tuft of stamens',

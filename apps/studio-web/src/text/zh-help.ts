@@ -603,12 +603,17 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.PropSpec.radius_m': '平均半径，米，0.001 至 5，默认 0.025。',
   'tree.PropSpec.reach_m': '最高的根落地处离主干的距离，米，0.01 至 50，默认 1.5；各根相差可达一半。',
   'tree.PropSpec.rise_m': '成年树的根离开主干的最大高度，米，0.01 至 50，默认 1.5。',
+  'tree.SurfaceRootSpec':
+    '自干基沿地面伸出、半埋土中直至没入的根。粗细由树干而定，很快变细。半径不足 12 厘米的干，根也较小；不足 2 厘米者无。',
+  'tree.SurfaceRootSpec.count': '每干的根数，0 至 40，默认 0；半数分叉。树木的主根有 4 至 11 条（Perry，Journal of Arboriculture 8，1982）。',
+  'tree.SurfaceRootSpec.reach': '自干心露出多远，以干基半径计，1.5 至 40，默认 6；各根相差可达五分之二。',
   'tree.WoodSpec': '骨架如何长成木质。',
   'tree.WoodSpec.internode_share':
     '每个节间为管道增加的量，以枝梢为 1，0 至 1，默认 0.05。它使枝条在分叉之间渐细；0 即严格按式 4。',
   'tree.WoodSpec.pipe_exponent':
     '管道模型 r^t = Σ r_i^t 的指数 t（Yang 等（2019） 式 4），1 至 4，默认 2.4；实测树木为 1.8 至 2.6。',
   'tree.WoodSpec.props': '自主干拱向地面的根。默认无。',
+  'tree.WoodSpec.surface_roots': '每株树干基部露出地面的根。默认无。',
   'tree.WoodSpec.swell': '主干比树冠所需粗多少倍，1 至 20，默认 1：猴面包树和瓶干树以此贮水。大枝粗细不变。',
   'tree.WoodSpec.relax':
     '每个节点向其母节点移动一半的次数（Runions 2007 步骤 e），0 至 10：分叉变锐，枝条变直；每次使树缩小半个节间。默认 1。',

@@ -1101,6 +1101,7 @@ export const zh: Record<TextKey, string> = {
   'field.rib_depth': '棱沟深度',
   'field.swell': '主干膨大',
   'field.props': '支柱根',
+  'field.surface_roots': '地表根',
   'field.rise_m': '离干高度',
   'field.petal_width': '花瓣宽度',
   'field.tuft': '花蕊宽度',
