@@ -265,7 +265,10 @@ impl LimbsSpec {
         let mut left = if own.chance(0.5) { 1.0 } else { -1.0 };
         let mut t = 1.0;
         loop {
-            t -= self.apart * self.mass_m * own.range(0.8, 1.2) / length;
+            // Along a steep limb masses are as near as they are flat, so that none is a ball on a rod.
+            let steep = (at(t).y - at((t - 0.1).max(0.0)).y).abs() / (0.1 * length);
+            let extent = self.mass_m * ops::lerp(1.0, self.flat.min(1.0), steep.min(1.0));
+            t -= self.apart * extent * own.range(0.8, 1.2) / length;
             if t < self.bare {
                 break;
             }

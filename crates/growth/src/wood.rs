@@ -109,7 +109,7 @@ pub struct SurfaceRootSpec {
     /// Journal of Arboriculture 8, 1982).
     #[schemars(range(min = 0, max = 40))]
     pub count: u32,
-    /// How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 6; each by two fifths more or less.
+    /// How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 5; each by two fifths more or less.
     #[schemars(range(min = 1.5, max = 40.0))]
     pub reach: f64,
 }
@@ -118,7 +118,7 @@ spec::schemas!(SurfaceRootSpec => crate::TreeSpec, "/$defs/SurfaceRootSpec");
 
 impl Default for SurfaceRootSpec {
     fn default() -> Self {
-        Self { count: 0, reach: 6.0 }
+        Self { count: 0, reach: 5.0 }
     }
 }
 

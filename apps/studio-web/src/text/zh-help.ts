@@ -606,7 +606,7 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.SurfaceRootSpec':
     '自干基沿地面伸出、半埋土中直至没入的根。粗细由树干而定，很快变细。半径不足 12 厘米的干，根也较小；不足 2 厘米者无。',
   'tree.SurfaceRootSpec.count': '每干的根数，0 至 40，默认 0；半数分叉。树木的主根有 4 至 11 条（Perry，Journal of Arboriculture 8，1982）。',
-  'tree.SurfaceRootSpec.reach': '自干心露出多远，以干基半径计，1.5 至 40，默认 6；各根相差可达五分之二。',
+  'tree.SurfaceRootSpec.reach': '自干心露出多远，以干基半径计，1.5 至 40，默认 5；各根相差可达五分之二。',
   'tree.WoodSpec': '骨架如何长成木质。',
   'tree.WoodSpec.internode_share':
     '每个节间为管道增加的量，以枝梢为 1，0 至 1，默认 0.05。它使枝条在分叉之间渐细；0 即严格按式 4。',
