@@ -274,6 +274,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() {
         kind = told_apart(kind, &scores);
     }
+    if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
+        soften(&mut reading);
+    }
     let readings = readings(kind, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
@@ -322,6 +325,13 @@ fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
         share > POOR_CROWN && share > MORE_CROWN * crown_share(ink, first)
     };
     !bears_a_crown_as_blade(again) && (bears_a_crown_as_blade(first) || more())
+}
+
+/// Cacti, fruits and vegetables have no wood, however much they branch.
+fn soften(reading: &mut Reading) {
+    reading.woody = false;
+    let wood = reading.axes.iter_mut().filter(|a| a.kind == AxisKind::Branch);
+    wood.for_each(|a| a.kind = AxisKind::Stem);
 }
 
 /// A fruit and a root are built alike: the model says which of them it is.

@@ -55,6 +55,14 @@ const LEAFLET: f64 = 0.4;
 /// its skin.
 const BODY: f64 = 0.25;
 const SKIN: f64 = 0.7;
+/// What stands above this share of a fruit's height, and has less than that share of its area, is a leaf on it.
+const TOP: f64 = 0.7;
+const LESS_THAN_BODY: f64 = 0.6;
+/// A mushroom's stem begins below the first share of its cap's height, reaches below it by more than the second, and if it is
+/// drawn as one line, has more than the third of its area.
+const CAP_FOOT: f64 = 0.5;
+const STEM_LONG: f64 = 0.25;
+const STEM_AREA: f64 = 0.08;
 /// What is smooth is the body under a tuft if its area is more than this share of the tuft's.
 const BESIDE_TUFT: f64 = 0.5;
 /// A pot drawn in lines, shares of the drawing: its lines begin below the first, one of them below the second and wider than
@@ -362,6 +370,18 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
         .iter()
         .filter(|p| p.area > BODY * largest && (lines || p.open < 0.5 || p.area >= largest) && !tuft(p))
         .collect();
+    let (low, high) = (under.unwrap_or(widest).lo.y, under.unwrap_or(widest).hi.y);
+    let on_top = |p: &&Part| {
+        p.area < LESS_THAN_BODY * largest
+            && p.lo.y > low + TOP * (high - low)
+            && draft.kind == Some(Kind::Fruit)
+    };
+    let (upper, lower): (Vec<&Part>, Vec<&Part>) = bodies.iter().copied().partition(on_top);
+    // Of a bunch each is a body.
+    let bodies = if lower.len() == 1 { lower } else { bodies };
+    let on_top = |p: &Part| bodies.len() == 1 && upper.iter().any(|u| u.stroke == p.stroke);
+    let stem =
+        if draft.kind == Some(Kind::Vegetable) { below_cap(parts, (low, high), largest) } else { Vec::new() };
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
         bodies.iter().any(|b| {
@@ -374,17 +394,31 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         if within(p) {
             StrokeClass::Other
-        } else if body(p) {
+        } else if body(p) || stem.contains(&p.stroke) {
             StrokeClass::Fruit
         } else if tuft(p) {
             StrokeClass::Corolla
-        } else if p.open < MOUTH {
+        } else if p.open < MOUTH || on_top(p) {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
         }
     };
     parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// The stem of a mushroom that was drawn open at its cap, in one line down and up again or as its two sides; its strokes.
+fn below_cap(parts: &[Part], (low, high): (f64, f64), largest: f64) -> Vec<usize> {
+    let hangs = |p: &&Part| {
+        p.hi.y < low + CAP_FOOT * (high - low) && low - p.lo.y > STEM_LONG * (high - low) && p.open > MOUTH
+    };
+    let (cups, sides): (Vec<&Part>, Vec<&Part>) =
+        parts.iter().filter(hangs).partition(|p| p.area > STEM_AREA * largest);
+    match (&cups[..], &sides[..]) {
+        ([cup], _) => vec![cup.stroke],
+        (_, [a, b]) if a.tall().min(b.tall()) > 0.5 * a.tall().max(b.tall()) => vec![a.stroke, b.stroke],
+        _ => Vec::new(),
+    }
 }
 
 /// What stands in the pot is no tree.

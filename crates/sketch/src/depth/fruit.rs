@@ -1,7 +1,7 @@
 //! Fruits, roots and other bodies: turned about the line of their symmetry, or along their middle where they bend.
 
 use base::ops;
-use geom::{pca2, polyline_length, resample, smooth_gaussian};
+use geom::{convex_hull, pca2, polyline_length, resample, signed_area, smooth_gaussian};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Plant, Shape};
 use reading::FruitReading;
@@ -23,6 +23,10 @@ const BENT_LENGTH: f64 = 2.0;
 /// Its middle bows by more than this share of the distance of its ends: a banana's by 0.2, a straight root's that was drawn by
 /// hand by 0.05.
 const BOW: f64 = 0.1;
+/// Its outline fills less than this share of its hull: one side is hollow, as that of half a disc is not.
+const HOLLOW: f64 = 0.9;
+/// So many times as long as wide, nothing turns about an axis across.
+const LONGEST: f64 = 2.2;
 /// Its rings are this much narrower than long, so that the inner side of a bend does not fold: a share of the radius of the
 /// bend.
 const FOLDS: f64 = 0.95;
@@ -105,8 +109,12 @@ fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
         return Some(bent);
     }
     let forgiven = if long && away.is_none() { 0.0 } else { BY_THE_STALK };
-    let axes = [all.major, stalk, all.minor, DVec2::NEG_Y].into_iter();
-    let axes = axes.map(|a| if a.dot(stalk) < 0.0 { -a } else { a });
+    let longest = all.lambda[0] >= LONGEST * LONGEST * all.lambda[1];
+    let axes = [all.major, stalk, all.minor, DVec2::NEG_Y];
+    let axes = axes
+        .into_iter()
+        .take(if longest { 1 } else { axes.len() })
+        .map(|a| if a.dot(stalk) < 0.0 { -a } else { a });
     let worth = |along: &DVec2| {
         let lopsided = profile(outline, all.centre, *along).map_or(f64::INFINITY, |p| p.lopsided);
         lopsided + forgiven * (1.0 - along.dot(stalk))
@@ -169,6 +177,9 @@ fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<Profile> {
 
 /// A long body whose middle bows; it begins at the end that is nearer to `stalk`.
 fn bent(outline: &[DVec2], stalk: DVec2) -> Option<Body> {
+    if signed_area(outline).abs() > HOLLOW * signed_area(&convex_hull(outline)) {
+        return None;
+    }
     let (mut a, mut b) = sides(outline)?;
     if stalk.distance(b[PAIRS].midpoint(a[PAIRS])) < stalk.distance(a[0].midpoint(b[0])) {
         a.reverse();
