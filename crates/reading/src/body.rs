@@ -38,6 +38,8 @@ const FOOT_WIDTH: core::ops::Range<f64> = 0.6..2.2;
 /// It lies in the lowest part of the body, and one that was left open above in the highest: shares of its height.
 const FOOT_LOW: f64 = 0.35;
 const TOP_HIGH: f64 = 0.75;
+/// What stands on a drawn line does so along more than this share of it.
+const FOOT_FILLED: f64 = 0.9;
 /// A body without such an opening stands on the lowest part of this share of its height.
 const LOWEST: f64 = 0.05;
 
@@ -57,6 +59,7 @@ pub(crate) struct Limb {
 /// `base`: where it stands, if that is known (an arm of a cactus stands on the body).
 pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let Some(mask) = Mask::new(&ring.points) else { return Vec::new() };
+    let foot = base.is_none().then(|| mask.foot(ring)).flatten();
     let base = base.unwrap_or_else(|| mask.base(ring));
     let Some(root) = mask.nearest_inside(base) else { return Vec::new() };
     let clearance = mask.clearance();
@@ -68,7 +71,7 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     });
     let mut covered: Vec<Option<usize>> = vec![None; mask.inside.len()];
     // The corners of a flared foot or an open top are no limbs.
-    let openings: Vec<(DVec2, DVec2)> = ring.gaps.iter().map(|&g| ring.gap(g)).collect();
+    let openings: Vec<(DVec2, DVec2)> = ring.gaps.iter().map(|&g| ring.gap(g)).chain(foot).collect();
     let mut limbs: Vec<Limb> = Vec::new();
     for _ in 0..MOST_LIMBS {
         let first = limbs.is_empty();
@@ -290,6 +293,23 @@ impl Mask {
             let x = low.iter().map(|p| p.x).sum::<f64>() / (low.len() as f64).max(1.0);
             if low.is_empty() { lo.midpoint(hi) } else { DVec2::new(x, lo.y) }
         })
+    }
+
+    /// Both ends of a drawn line on which the body stands, all along it; roots that stand apart have none.
+    fn foot(&self, ring: &Ring) -> Option<(DVec2, DVec2)> {
+        let (lo, hi) = bounds(&ring.points)?;
+        let band = (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell);
+        let low = ring.points.iter().filter(|p| p.y < lo.y + band);
+        let (left, right) =
+            low.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), p| (l.min(p.x), r.max(p.x)));
+        let on_it = |c: &usize| {
+            let p = self.middle(*c);
+            p.y < lo.y + band && p.x > left && p.x < right && self.inside[*c]
+        };
+        let stood: Vec<usize> = (0..self.inside.len()).filter(on_it).map(|c| c % self.nx).collect();
+        let columns = (right - left) / self.cell;
+        let filled = base::set_of(stood).len() as f64;
+        (filled > FOOT_FILLED * columns).then_some((DVec2::new(left, lo.y), DVec2::new(right, lo.y)))
     }
 
     /// The cell in the middle of a wide opening at the body's upper end.
