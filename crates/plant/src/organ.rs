@@ -38,6 +38,8 @@ pub enum OrganKind {
     Body,
     /// The pot that the plant stands in, or its soil: no part of the plant, but what belongs under it.
     Pot,
+    /// A fruit that grew together of many, with an eye for each, such as a pineapple.
+    Syncarp,
 }
 
 /// What the colour of an organ is, as its maker knows it. Linear RGB.

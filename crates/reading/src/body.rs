@@ -40,6 +40,8 @@ const FOOT_LOW: f64 = 0.35;
 const TOP_HIGH: f64 = 0.75;
 /// What stands on a drawn line does so along more than this share of it.
 const FOOT_FILLED: f64 = 0.9;
+/// Its middle may lie so many times as high as its ends.
+const SAGS: f64 = 2.5;
 /// A body without such an opening stands on the lowest part of this share of its height.
 const LOWEST: f64 = 0.05;
 
@@ -304,7 +306,7 @@ impl Mask {
             low.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), p| (l.min(p.x), r.max(p.x)));
         let on_it = |c: &usize| {
             let p = self.middle(*c);
-            p.y < lo.y + band && p.x > left && p.x < right && self.inside[*c]
+            p.y < lo.y + SAGS * band && p.x > left && p.x < right && self.inside[*c]
         };
         let stood: Vec<usize> = (0..self.inside.len()).filter(on_it).map(|c| c % self.nx).collect();
         let columns = (right - left) / self.cell;

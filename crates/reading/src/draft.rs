@@ -33,7 +33,7 @@ const STALK_NEAR: f64 = 0.35;
 const SHUT: f64 = 0.1;
 const ONE_SIDE: f64 = 0.45;
 /// Gaps between the halves of a fruit, a share of its outline.
-const HALVES_GAPS: f64 = 0.2;
+pub(crate) const HALVES_GAPS: f64 = 0.2;
 /// Green is larger by more than this than red and blue, of 255: grey and what is nearly black differ by less.
 const GREEN: u8 = 15;
 

@@ -36,10 +36,9 @@ const GREEN: [f32; 3] = [0.14, 0.31, 0.05];
 const TAN: [f32; 3] = [0.52, 0.34, 0.16];
 const PEAR: [f32; 3] = [0.50, 0.52, 0.07];
 const BERRY: [f32; 3] = [0.09, 0.025, 0.14];
-const PINEAPPLE: [f32; 3] = [0.58, 0.30, 0.04];
 
 /// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of their form, where nobody
-/// drew them in colour. Of fruits long ones are yellow, pears a yellow green, what bears a tuft a pineapple's brown, many
+/// drew them in colour. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
 /// of one plant as dark as berries, others red. Of vegetables roots that run to a point are orange, long or bent ones and
 /// many of one plant green, others tan.
 pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
@@ -63,11 +62,13 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             continue;
         }
         let many = of_plants.iter().filter(|p| **p == of).count() >= MANY;
-        let skin = if kind == Kind::Fruit {
-            fruit_skin(&form, many, has_tuft(reading, organ.source))
-        } else {
-            Some(vegetable_skin(&form, many))
-        };
+        let natural = matches!(organ.paint, Paint::Natural(_));
+        if natural && kind == Kind::Fruit && !many && !form.is_pointed() && has_tuft(reading, organ.source) {
+            organ.kind = OrganKind::Syncarp;
+            continue;
+        }
+        let skin =
+            if kind == Kind::Fruit { fruit_skin(&form, many) } else { Some(vegetable_skin(&form, many)) };
         if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin) {
             organ.paint = Paint::Tinted([0, 1, 2].map(|k| varied[k] * skin[k]));
         }
@@ -106,6 +107,11 @@ impl Form {
         Some(Self { tall, wide, ends: [mean(0.0, END), mean(1.0 - END, 1.0)], bent })
     }
 
+    /// Thinner away from its stalk, as a strawberry is.
+    fn is_pointed(&self) -> bool {
+        self.ends[1] < PEAR_NECK * self.ends[0]
+    }
+
     fn is_long(&self) -> bool {
         self.tall > LONG * self.wide
     }
@@ -133,12 +139,10 @@ fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
 }
 
 /// The usual colour of a fruit by its form; `None`: red.
-fn fruit_skin(form: &Form, many: bool, tuft: bool) -> Option<[f32; 3]> {
+fn fruit_skin(form: &Form, many: bool) -> Option<[f32; 3]> {
     let [stalk, tip] = form.ends;
     if many {
         Some(BERRY)
-    } else if tuft && tip > PEAR_NECK * stalk {
-        Some(PINEAPPLE)
     } else if form.is_long() {
         Some(YELLOW)
     } else if form.tall > PEAR_LONG * form.wide && stalk < PEAR_NECK * tip {

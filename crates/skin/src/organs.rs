@@ -248,7 +248,7 @@ fn uses(plant: &Plant) -> Vec<Option<Use>> {
             *used = Some(Use {
                 scale: organ.scale.max(scale),
                 body: body || organ.kind == OrganKind::Body,
-                fruit: fruit || organ.kind == OrganKind::Fruit,
+                fruit: fruit || matches!(organ.kind, OrganKind::Fruit | OrganKind::Syncarp),
                 leaf: leaf && organ.kind == OrganKind::Leaf,
             });
         }
@@ -526,7 +526,8 @@ impl<'a> Ground<'a> {
             OrganKind::Sepal => Slot::Sepal(coat),
             OrganKind::Disc | OrganKind::Floret => Slot::Disc(coat),
             OrganKind::Body if coat == Coat::Natural => Slot::Body,
-            OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
+            OrganKind::Syncarp if coat == Coat::Natural => Slot::Syncarp,
+            OrganKind::Fruit | OrganKind::Syncarp | OrganKind::Body => Slot::Fruit(coat),
             OrganKind::Stamen | OrganKind::Anther | OrganKind::Pistil => Slot::Stamen(coat),
             OrganKind::Pot => Slot::Pot,
             OrganKind::Thorn => Slot::Thorn,

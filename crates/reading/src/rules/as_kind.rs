@@ -12,7 +12,7 @@ use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whol
 use crate::built::pointed;
 use crate::contour::neck;
 use crate::corolla::dips;
-use crate::draft::Draft;
+use crate::draft::{Draft, HALVES_GAPS};
 use crate::flowers::together;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
@@ -60,7 +60,9 @@ const BODY: f64 = 0.25;
 const SKIN: f64 = 0.7;
 /// What stands above this share of a fruit's height, and has less than that share of its area, is a leaf on it.
 const TOP: f64 = 0.7;
-const LESS_THAN_BODY: f64 = 0.6;
+const LESS_THAN_BODY: f64 = 0.8;
+/// An arc of a body encloses more than this share of the area of the largest part.
+const ARC: f64 = 0.05;
 /// So many bodies are a bunch, and the form of a leaf on it is that much less round than theirs, or its area larger.
 const BUNCH: usize = 4;
 const UNLIKE: f64 = 0.7;
@@ -413,6 +415,7 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let on_top = |p: &Part| bodies.len() == 1 && upper.iter().any(|u| u.stroke == p.stroke);
     let stem =
         if draft.kind == Some(Kind::Vegetable) { below_cap(parts, (low, high), largest) } else { Vec::new() };
+    let halves = halves(draft, parts, largest);
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
         bodies.iter().any(|b| {
@@ -425,7 +428,7 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         if within(p) {
             StrokeClass::Other
-        } else if body(p) || stem.contains(&p.stroke) {
+        } else if body(p) || stem.contains(&p.stroke) || halves.contains(&p.stroke) {
             StrokeClass::Fruit
         } else if tuft(p) {
             StrokeClass::Corolla
@@ -436,6 +439,20 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
         }
     };
     parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// Arcs that go round one body together.
+fn halves(draft: &Draft<'_>, parts: &[Part], largest: f64) -> Vec<usize> {
+    let arcs: Vec<&Part> = parts.iter().filter(|p| p.open > MOUTH && p.area > ARC * largest).collect();
+    let points: Vec<&[DVec2]> = arcs.iter().map(|p| draft.ink.strokes[p.stroke].points.as_slice()).collect();
+    let closes = |ring: &Ring| {
+        let gaps: f64 = ring.gaps.iter().map(|&g| ring.gap(g)).map(|(a, b)| a.distance(b)).sum();
+        let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
+        let around = signed_area(&convex_hull(&ring.points));
+        ring.parts.len() > 1 && gaps < HALVES_GAPS * drawn && around > largest
+    };
+    let found = rings(&points).into_iter().filter(closes);
+    found.flat_map(|r| r.parts).map(|p| arcs[p].stroke).collect()
 }
 
 /// Of many bodies the highest one is a leaf if it is much more pointed or larger than the usual one.

@@ -1,7 +1,7 @@
 //! Fruits, roots and other bodies: turned about the line of their symmetry, or along their middle where they bend.
 
 use base::ops;
-use geom::{convex_hull, pca2, polyline_length, resample, signed_area, smooth_gaussian};
+use geom::{contains, convex_hull, pca2, polyline_length, resample, signed_area, smooth_gaussian};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Plant, Shape};
 use reading::FruitReading;
@@ -15,9 +15,13 @@ const RINGS: usize = 13;
 /// Longer than so many times its width a body has an axis of its own; below it looks round (the ratio of the variances is the
 /// square).
 const ROUND: f64 = 1.25;
-/// What lopsidedness an axis is forgiven for standing where the stalk is, from across it to along it: a share of the half
-/// width, twice what a hand that draws an apple is off.
-const BY_THE_STALK: f64 = 0.3;
+/// About another axis than the usual one it is that much more alike on both sides, a share of its half width: a hand that
+/// draws an apple is off by half of it.
+const CLEARLY: f64 = 0.1;
+/// What bears it lies on its skin and is no stalk, if it is inside and nearer to the middle than this share of its reach.
+const ON_SKIN: f64 = 0.6;
+/// Down but for 37 degrees: its cosine.
+const NEARLY_DOWN: f64 = 0.8;
 /// A bent body is so many times as long as wide, along its middle; shorter ones are lopsided.
 const BENT_LENGTH: f64 = 2.0;
 /// Its middle bows by more than this share of the distance of its ends: a banana's by 0.2, a straight root's that was drawn by
@@ -26,7 +30,7 @@ const BOW: f64 = 0.1;
 /// Its outline fills less than this share of its hull: one side is hollow, as that of half a disc is not.
 const HOLLOW: f64 = 0.9;
 /// So many times as long as wide, nothing turns about an axis across.
-const LONGEST: f64 = 2.2;
+const LONGEST: f64 = 3.0;
 /// Its rings are this much narrower than long, so that the inner side of a bend does not fold: a share of the radius of the
 /// bend.
 const FOLDS: f64 = 0.95;
@@ -102,28 +106,36 @@ pub(crate) fn place_fruit(
 /// The form of an outline that hangs at `bearer`; without one its upper end is its root.
 fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
     let all = pca2(outline)?;
-    let away = bearer.and_then(|b| (all.centre - b).try_normalize());
-    let stalk = away.unwrap_or(DVec2::NEG_Y);
+    let stalk = stalk(outline, bearer);
     let long = all.lambda[0] >= ROUND * ROUND * all.lambda[1].max(f64::MIN_POSITIVE);
-    if long && let Some(bent) = bent(outline, all.centre - stalk * all.extent[0]) {
+    if long && let Some(bent) = bent(outline, all.centre - stalk.unwrap_or(DVec2::NEG_Y) * all.extent[0]) {
         return Some(bent);
     }
-    let forgiven = if long && away.is_none() { 0.0 } else { BY_THE_STALK };
+    let hangs = stalk.unwrap_or(DVec2::NEG_Y);
+    let usual = if long && stalk.is_none() { all.major } else { hangs };
     let longest = all.lambda[0] >= LONGEST * LONGEST * all.lambda[1];
-    let axes = [all.major, stalk, all.minor, DVec2::NEG_Y];
-    let axes = axes
-        .into_iter()
-        .take(if longest { 1 } else { axes.len() })
-        .map(|a| if a.dot(stalk) < 0.0 { -a } else { a });
-    let worth = |along: &DVec2| {
-        let lopsided = profile(outline, all.centre, *along).map_or(f64::INFINITY, |p| p.lopsided);
-        lopsided + forgiven * (1.0 - along.dot(stalk))
-    };
-    // The first of equals, so the long axis of what is alike about both.
-    let along = axes.map(|a| (worth(&a), a)).reduce(|a, b| if b.0 < a.0 { b } else { a })?.1;
+    let others = [DVec2::NEG_Y, all.major, all.minor];
+    let axes = if longest { vec![all.major] } else { [usual].into_iter().chain(others).collect() };
+    let lopsided = |along: &DVec2| profile(outline, all.centre, *along).map_or(f64::INFINITY, |p| p.lopsided);
+    // Clearly more alike than about the usual axis, and then the first of equals.
+    let worth = |(k, along): (usize, DVec2)| (lopsided(&along) + if k > 0 { CLEARLY } else { 0.0 }, along);
+    let along = axes.into_iter().enumerate().map(worth).reduce(|a, b| if b.0 < a.0 { b } else { a })?.1;
+    let along = if along.dot(hangs) < 0.0 { -along } else { along };
     let Profile { rings, low, aside, .. } = profile(outline, all.centre, along)?;
     let root = all.centre + along * low + along.perp() * aside;
     Some(Body::Straight { root, along, profile: rings })
+}
+
+/// The way from the stalk to the middle, down where it is nearly that: stalks are drawn beside the middle. None where what
+/// bears it lies in it, such as a line on its skin.
+fn stalk(outline: &[DVec2], bearer: Option<DVec2>) -> Option<DVec2> {
+    let (centre, bearer) = (pca2(outline)?.centre, bearer?);
+    let reach = outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
+    let away = (centre - bearer).try_normalize()?;
+    if contains(outline, bearer) && bearer.distance(centre) < ON_SKIN * reach {
+        return None;
+    }
+    Some(if away.dot(DVec2::NEG_Y) > NEARLY_DOWN { DVec2::NEG_Y } else { away })
 }
 
 /// An outline about an axis.

@@ -100,7 +100,7 @@ fn organ_lines(plant: &Plant, organ: &Organ, seen: impl Fn(DVec3) -> DVec2, line
         }
         // A body that bends.
         Some(Shape::Strand { path, radius_m, .. })
-            if matches!(organ.kind, OrganKind::Fruit | OrganKind::Body) =>
+            if matches!(organ.kind, OrganKind::Fruit | OrganKind::Syncarp | OrganKind::Body) =>
         {
             let edge = |side: f64| -> Vec<DVec3> {
                 let flat: Vec<DVec2> = path.iter().map(|p| p.truncate()).collect();
