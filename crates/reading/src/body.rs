@@ -61,7 +61,8 @@ pub(crate) struct Limb {
 /// `base`: where it stands, if that is known (an arm of a cactus stands on the body).
 pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let Some(mask) = Mask::new(&ring.points) else { return Vec::new() };
-    let foot = base.is_none().then(|| mask.foot(ring)).flatten();
+    let opened = base.is_none().then(|| mask.without_foot(ring)).flatten();
+    let ring = opened.as_ref().unwrap_or(ring);
     let base = base.unwrap_or_else(|| mask.base(ring));
     let Some(root) = mask.nearest_inside(base) else { return Vec::new() };
     let clearance = mask.clearance();
@@ -73,7 +74,7 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     });
     let mut covered: Vec<Option<usize>> = vec![None; mask.inside.len()];
     // The corners of a flared foot or an open top are no limbs.
-    let openings: Vec<(DVec2, DVec2)> = ring.gaps.iter().map(|&g| ring.gap(g)).chain(foot).collect();
+    let openings: Vec<(DVec2, DVec2)> = ring.gaps.iter().map(|&g| ring.gap(g)).collect();
     let mut limbs: Vec<Limb> = Vec::new();
     for _ in 0..MOST_LIMBS {
         let first = limbs.is_empty();
@@ -297,21 +298,46 @@ impl Mask {
         })
     }
 
-    /// Both ends of a drawn line on which the body stands, all along it; roots that stand apart have none.
-    fn foot(&self, ring: &Ring) -> Option<(DVec2, DVec2)> {
+    /// The outline of a body that stands on a drawn line, all along it, open there: so a foot that flares is as wide as it was
+    /// drawn, and its corners are no roots. None of what is open below, or stands on roots apart.
+    fn without_foot(&self, ring: &Ring) -> Option<Ring> {
         let (lo, hi) = bounds(&ring.points)?;
         let band = (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell);
-        let low = ring.points.iter().filter(|p| p.y < lo.y + band);
-        let (left, right) =
-            low.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), p| (l.min(p.x), r.max(p.x)));
+        let low = |p: DVec2| p.y < lo.y + band;
+        if ring
+            .gaps
+            .iter()
+            .map(|&g| ring.gap(g))
+            .any(|(a, b)| low(a) && low(b) && a.distance(b) > OPENING_CELLS * self.cell)
+        {
+            return None;
+        }
+        let corners = (0..ring.points.len()).filter(|&k| low(ring.points[k]));
+        let x = |k: &usize| ring.points[*k].x;
+        let left = corners.clone().min_by(|a, b| x(a).total_cmp(&x(b)))?;
+        let right = corners.max_by(|a, b| x(a).total_cmp(&x(b)))?;
+        let (a, b) = (ring.points[left], ring.points[right]);
         let on_it = |c: &usize| {
             let p = self.middle(*c);
-            p.y < lo.y + SAGS * band && p.x > left && p.x < right && self.inside[*c]
+            p.y < lo.y + SAGS * band && p.x > a.x && p.x < b.x && self.inside[*c]
         };
         let stood: Vec<usize> = (0..self.inside.len()).filter(on_it).map(|c| c % self.nx).collect();
-        let columns = (right - left) / self.cell;
         let filled = base::set_of(stood).len() as f64;
-        (filled > FOOT_FILLED * columns).then_some((DVec2::new(left, lo.y), DVec2::new(right, lo.y)))
+        if b.x - a.x < OPENING_CELLS * self.cell || filled < FOOT_FILLED * (b.x - a.x) / self.cell {
+            return None;
+        }
+        // The way over the top, from the right to the left corner or the other way.
+        let n = ring.points.len();
+        let way = |from: usize, to: usize| -> Vec<usize> {
+            (0..=(to + n - from) % n).map(|k| (from + k) % n).collect()
+        };
+        let ways = [way(left, right), way(right, left)];
+        let top = |w: &Vec<usize>| w.iter().map(|&k| ring.points[k].y).fold(f64::NEG_INFINITY, f64::max);
+        let kept = if top(&ways[0]) > top(&ways[1]) { &ways[0] } else { &ways[1] };
+        let mut gaps: Vec<usize> = (0..kept.len() - 1).filter(|&k| ring.gaps.contains(&kept[k])).collect();
+        gaps.push(kept.len() - 1);
+        let points = kept.iter().map(|&k| ring.points[k]).collect();
+        Some(Ring { points, parts: ring.parts.clone(), gaps })
     }
 
     /// The cell in the middle of a wide opening at the body's upper end.

@@ -43,6 +43,8 @@ const SLIM: f64 = 0.3;
 /// A bare trunk is at its top at most so many times as wide as at its foot, and has so many limbs at least; they begin above this
 /// share of its height.
 const NARROWS: f64 = 1.15;
+/// It is slimmer than this share of its length: its foot flares.
+const BARE_SLIM: f64 = 0.4;
 const LIMBS: usize = 3;
 const LIMB_HIGH: f64 = 0.25;
 const FAN: usize = 4;
@@ -113,8 +115,11 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
                 .filter(|(k, p)| *k != a && *k != b && p.distance(hub) < 0.5 * gaps.0 + WELL_SHORT)
                 .count();
             let slim = gaps.0.max(gaps.1) < SLIM * short.min(long);
-            let bare =
-                slim && crowns.is_empty() && gaps.0 < NARROWS * gaps.1 && limbs(draft, (a, b), hub) >= LIMBS;
+            let rather_slim = gaps.0.max(gaps.1) < BARE_SLIM * short.min(long);
+            let bare = rather_slim
+                && crowns.is_empty()
+                && gaps.0 < NARROWS * gaps.1
+                && limbs(draft, (a, b), hub) >= LIMBS;
             let open = gaps.0 > SIDES_APART;
             if bare || (open && (crowned || (fan >= FAN && slim && crowns.is_empty()))) {
                 sides = Some((a, b));

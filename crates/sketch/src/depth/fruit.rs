@@ -183,8 +183,10 @@ fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<Profile> {
         return None;
     }
     let aside = middles.iter().map(|(r, m)| r * m).sum::<f64>() / total;
-    let off: f64 = middles.iter().map(|(_, m)| (m - aside).abs()).sum();
-    Some(Profile { rings, low, aside, lopsided: off / total })
+    // Where it is narrow, such as at one of the two humps of an apple, it counts little.
+    let off: f64 = middles.iter().map(|(r, m)| r * (m - aside).abs()).sum();
+    let square: f64 = middles.iter().map(|(r, _)| r * r).sum();
+    Some(Profile { rings, low, aside, lopsided: off / square })
 }
 
 /// A long body whose middle bows; it begins at the end that is nearer to `stalk`.
