@@ -304,12 +304,11 @@ impl Mask {
         let (lo, hi) = bounds(&ring.points)?;
         let band = (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell);
         let low = |p: DVec2| p.y < lo.y + band;
-        if ring
-            .gaps
-            .iter()
-            .map(|&g| ring.gap(g))
-            .any(|(a, b)| low(a) && low(b) && a.distance(b) > OPENING_CELLS * self.cell)
-        {
+        // Open there already, however uneven its feet are.
+        let open = |(a, b): (DVec2, DVec2)| {
+            a.distance(b) > OPENING_CELLS * self.cell && a.midpoint(b).y < 0.5 * (lo.y + hi.y)
+        };
+        if ring.gaps.iter().map(|&g| ring.gap(g)).any(open) {
             return None;
         }
         let corners = (0..ring.points.len()).filter(|&k| low(ring.points[k]));
