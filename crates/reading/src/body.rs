@@ -39,7 +39,7 @@ const FOOT_WIDTH: core::ops::Range<f64> = 0.6..2.2;
 const FOOT_LOW: f64 = 0.35;
 const TOP_HIGH: f64 = 0.75;
 /// What stands on a drawn line does so along more than this share of it.
-const FOOT_FILLED: f64 = 0.9;
+const FOOT_FILLED: f64 = 0.75;
 /// Its middle may lie so many times as high as its ends.
 const SAGS: f64 = 2.5;
 /// A body without such an opening stands on the lowest part of this share of its height.

@@ -89,7 +89,7 @@ impl Form {
     fn of(shape: &Shape) -> Option<Self> {
         let (profile, bent) = match shape {
             Shape::Revolution { profile } => (Cow::Borrowed(profile), false),
-            Shape::Strand { path, radius_m, .. } => {
+            Shape::Strand { path, radius_m, .. } if shape.is_bent_body() => {
                 let way = (0..path.len()).map(|k| polyline_length3(&path[..=k]));
                 (Cow::Owned(radius_m.iter().zip(way).map(|(r, y)| DVec2::new(*r, y)).collect()), true)
             }

@@ -321,6 +321,37 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_bent_body_is_as_thick_as_a_straight_one() {
+        let radius = |k: i32| 0.2 * ops::sin(ops::PI * f64::from(k) / 16.0).max(0.0).sqrt();
+        let radii: Vec<f64> = (0..=16).map(|k| if k % 16 == 0 { 0.0 } else { radius(k) }).collect();
+        let straight: Vec<DVec3> = (0..=16).map(|k| DVec3::Y * (f64::from(k) / 16.0)).collect();
+        let profile: Vec<DVec2> = radii.iter().zip(&straight).map(|(r, p)| DVec2::new(*r, p.y)).collect();
+        let (turned, along) = (revolution(&profile, 400.0, 0), bent(&straight, &radii, 400.0, 0));
+        assert_eq!(turned.triangles, along.triangles);
+        let solid = |mesh: &TriMesh| -> f64 {
+            let corner =
+                |&[a, b, c]: &[u32; 3]| mesh.position(a).dot(mesh.position(b).cross(mesh.position(c)));
+            mesh.triangles.iter().map(corner).sum::<f64>() / 6.0
+        };
+        assert!((solid(&turned) - solid(&along)).abs() < 1e-6);
+        // A third of a circle as long: by Pappus it has the same volume.
+        let angle = |k: i32| 2.0 * ops::PI / 3.0 * f64::from(k) / 16.0;
+        let arc: Vec<DVec3> = (0..=16)
+            .map(|k| ops::sin_cos(angle(k)))
+            .map(|(s, c)| DVec3::new(c, s, 0.0) * (1.5 / ops::PI))
+            .collect();
+        let mesh = bent(&arc, &radii, 400.0, 0);
+        assert_eq!(mesh.validate().count(), 0);
+        assert!((solid(&mesh) / solid(&turned) - 1.0).abs() < 0.02, "{}", solid(&mesh) / solid(&turned));
+        let outwards = mesh.triangles.iter().all(|t| {
+            let [a, b, c] = t.map(|i| mesh.position(i));
+            (b - a).cross(c - a).dot(wide(mesh.normals[t[0] as usize])) > 0.0
+        });
+        assert!(outwards, "normals look out");
+        assert!(bent(&[DVec3::ZERO; 3], &[0.1; 3], 400.0, 0).triangles.is_empty());
+    }
+
+    #[test]
     fn a_prism_is_closed_and_encloses_its_strand() {
         let path = [DVec3::ZERO, DVec3::new(0.1, 0.9, 0.3)];
         let mesh = prism(&path, &[0.01, 0.03]);

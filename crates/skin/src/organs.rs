@@ -233,8 +233,6 @@ struct Use {
     scale: f64,
     /// Of a body.
     body: bool,
-    /// Of a fruit.
-    fruit: bool,
     /// Of leaves alone.
     leaf: bool,
 }
@@ -244,11 +242,10 @@ fn uses(plant: &Plant) -> Vec<Option<Use>> {
     let mut uses = vec![None; plant.shapes.len()];
     for organ in plant.organs.iter().filter(|o| sound(o)) {
         if let Some(used) = uses.get_mut(organ.shape.index()) {
-            let Use { scale, body, fruit, leaf } = used.unwrap_or(Use { leaf: true, ..Use::default() });
+            let Use { scale, body, leaf } = used.unwrap_or(Use { leaf: true, ..Use::default() });
             *used = Some(Use {
                 scale: organ.scale.max(scale),
                 body: body || organ.kind == OrganKind::Body,
-                fruit: fruit || matches!(organ.kind, OrganKind::Fruit | OrganKind::Syncarp),
                 leaf: leaf && organ.kind == OrganKind::Leaf,
             });
         }
@@ -500,7 +497,7 @@ impl<'a> Ground<'a> {
                     Wish::Revolution(triangles(area), 0)
                 }
             }
-            Shape::Strand { path, radius_m, .. } if used.body || used.fruit => {
+            Shape::Strand { path, radius_m, .. } if shape.is_bent_body() => {
                 let piece = |(p, r): (&[DVec3], &[f64])| (r[0] + r[1]) * p[0].distance(p[1]);
                 let pieces = path.windows(2).zip(radius_m.windows(2)).map(piece);
                 let area: f64 = pieces.filter(|a| a.is_finite()).sum();

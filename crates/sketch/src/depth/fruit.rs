@@ -214,6 +214,7 @@ fn bent(outline: &[DVec2], stalk: DVec2) -> Option<Body> {
     if polyline_length(&line) < BENT_LENGTH * 2.0 * widest || bow < BOW * first.distance(last) {
         return None;
     }
+    // Both ends are points of the outline, so that their width is 0.
     let half_width = (0..line.len()).map(|k| half_width[k].min(FOLDS * bend_radius(&line, k))).collect();
     Some(Body::Bent { line, half_width })
 }
@@ -258,4 +259,33 @@ fn sides(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
     };
     let (_, (i, j)) = pairs.map(|p| (apart(&p), p)).reduce(|a, b| if b.0 < a.0 { b } else { a })?;
     Some((side(i, j, false), side(i, j, true)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_round_outline_gives_a_ball() {
+        let circle: Vec<DVec2> = (0..64)
+            .map(|i| {
+                let (s, c) = ops::sin_cos(ops::TAU * f64::from(i) / 64.0);
+                DVec2::new(0.3 + 0.1 * c, 0.5 + 0.1 * s)
+            })
+            .collect();
+        let Profile { rings, low, lopsided, aside } =
+            profile(&circle, DVec2::new(0.3, 0.5), DVec2::Y).expect("a body");
+        assert!((low + 0.1).abs() < 1e-6);
+        for r in &rings[1..RINGS - 1] {
+            assert!((r.x * r.x + (r.y - 0.1) * (r.y - 0.1) - 0.01).abs() < 2e-4, "{r}");
+        }
+        assert_eq!((rings[0].x, rings[RINGS - 1].x), (0.0, 0.0));
+        assert!(lopsided < 0.01 && aside.abs() < 0.01);
+    }
+
+    #[test]
+    fn outlines_without_extent_give_nothing() {
+        assert!(profile(&[DVec2::ZERO, DVec2::X], DVec2::ZERO, DVec2::Y).is_none());
+        assert!(profile(&[], DVec2::ZERO, DVec2::Y).is_none());
+    }
 }

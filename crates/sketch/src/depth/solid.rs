@@ -161,30 +161,3 @@ pub(crate) fn place_thorn(
         source: thorn.2,
     });
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_round_outline_gives_a_ball() {
-        let circle: Vec<DVec2> = (0..64)
-            .map(|i| {
-                let (s, c) = ops::sin_cos(ops::TAU * f64::from(i) / 64.0);
-                DVec2::new(0.3 + 0.1 * c, 0.5 + 0.1 * s)
-            })
-            .collect();
-        let (rings, low) = profile(&circle, DVec2::new(0.3, 0.5), DVec2::Y).expect("a body");
-        assert!((low + 0.1).abs() < 1e-6);
-        for r in &rings[1..RINGS - 1] {
-            assert!((r.x * r.x + (r.y - 0.1) * (r.y - 0.1) - 0.01).abs() < 2e-4, "{r}");
-        }
-        assert_eq!((rings[0].x, rings[RINGS - 1].x), (0.0, 0.0));
-    }
-
-    #[test]
-    fn outlines_without_extent_give_nothing() {
-        assert!(profile(&[DVec2::ZERO, DVec2::X], DVec2::ZERO, DVec2::Y).is_none());
-        assert!(profile(&[], DVec2::ZERO, DVec2::Y).is_none());
-    }
-}

@@ -99,9 +99,7 @@ fn organ_lines(plant: &Plant, organ: &Organ, seen: impl Fn(DVec3) -> DVec2, line
             show(side(1.0).chain(side(-1.0).rev()).map(at).collect(), true);
         }
         // A body that bends.
-        Some(Shape::Strand { path, radius_m, .. })
-            if matches!(organ.kind, OrganKind::Fruit | OrganKind::Syncarp | OrganKind::Body) =>
-        {
+        Some(shape @ Shape::Strand { path, radius_m, .. }) if shape.is_bent_body() => {
             let edge = |side: f64| -> Vec<DVec3> {
                 let flat: Vec<DVec2> = path.iter().map(|p| p.truncate()).collect();
                 let across = |k: usize| {
