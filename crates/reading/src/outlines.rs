@@ -22,6 +22,8 @@ const MOST_BODIES: usize = 100;
 const THIN: f64 = 0.008;
 /// The base of an arm lies this near to the body.
 const ARM: f64 = 0.03;
+/// One side of it may end this far off.
+const OVERSHOT: f64 = 0.12;
 /// The sides of a trunk drawn in one go with its crown: the crown closes where its stroke comes nearer to itself than this
 /// share of the gap between its ends, and a side is straighter than that share of its length.
 const SIDE_NEAR: f64 = 0.75;
@@ -226,7 +228,8 @@ fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DV
         let middle = a.midpoint(b);
         let touches = |p| forest.nearest(p, ARM).is_some();
         let (bearer, _) = forest.nearest(middle, ARM + 0.5 * a.distance(b))?;
-        (touches(a) && touches(b)).then_some((bearer, middle))
+        let beside = |p| forest.nearest(p, OVERSHOT).is_some();
+        ((touches(a) && beside(b)) || (beside(a) && touches(b))).then_some((bearer, middle))
     })
 }
 

@@ -18,14 +18,18 @@ const ROOT_POINT: f64 = 0.6;
 /// A pear is longer than so many widths, and at its stalk this much thinner than at its other end.
 const PEAR_LONG: f64 = 1.1;
 const PEAR_NECK: f64 = 0.75;
+/// A strawberry is thinner than this share at its tip, of its other end: no pineapple.
+const STRAWBERRY: f64 = 0.55;
 /// So many bodies or more of one plant are berries, or peas.
 const MANY: usize = 4;
 /// On a pineapple stand so many leaves at least, as high as this share of it; it is no wider than so many times its length.
 const TUFT: usize = 3;
 const TUFT_HIGH: f64 = 0.25;
-const TUFT_WIDE: f64 = 1.1;
+const TUFT_WIDE: f64 = 1.25;
 /// They begin above this share of its height.
 const TUFT_FROM: f64 = 0.8;
+/// The height of its direction where a body hangs or stands: within 45 degrees.
+const UPRIGHT: f64 = -0.7;
 /// Which parts of the length its ends are.
 const END: f64 = 0.3;
 
@@ -67,8 +71,12 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             organ.kind = OrganKind::Syncarp;
             continue;
         }
-        let skin =
-            if kind == Kind::Fruit { fruit_skin(&form, many) } else { Some(vegetable_skin(&form, many)) };
+        let points_up = organ.frame.along.y < UPRIGHT && form.ends[0] < form.ends[1];
+        let skin = if kind == Kind::Fruit {
+            fruit_skin(&form, many)
+        } else {
+            Some(vegetable_skin(&form, many, points_up))
+        };
         if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin) {
             organ.paint = Paint::Tinted([0, 1, 2].map(|k| varied[k] * skin[k]));
         }
@@ -109,7 +117,7 @@ impl Form {
 
     /// Thinner away from its stalk, as a strawberry is.
     fn is_pointed(&self) -> bool {
-        self.ends[1] < PEAR_NECK * self.ends[0]
+        self.ends[1] < STRAWBERRY * self.ends[0]
     }
 
     fn is_long(&self) -> bool {
@@ -153,11 +161,12 @@ fn fruit_skin(form: &Form, many: bool) -> Option<[f32; 3]> {
 }
 
 /// The usual colour of a vegetable by its form.
-fn vegetable_skin(form: &Form, many: bool) -> [f32; 3] {
+/// `points_up`: it stands, and its thinner end is the upper one, as a spear's is and no root's.
+fn vegetable_skin(form: &Form, many: bool, points_up: bool) -> [f32; 3] {
     let [a, b] = form.ends;
     if many || form.bent {
         GREEN
-    } else if form.tall > ROOT_LONG * form.wide && a.min(b) < ROOT_POINT * a.max(b) {
+    } else if !points_up && form.tall > ROOT_LONG * form.wide && a.min(b) < ROOT_POINT * a.max(b) {
         ORANGE
     } else if form.is_long() {
         GREEN

@@ -516,7 +516,7 @@ fn arc_body(half_width: impl Fn(f64) -> f64) -> Vec<DVec2> {
     (0..=40).map(|k| at(share(k), 1.0)).chain((1..40).rev().map(|k| at(share(k), -1.0))).collect()
 }
 
-fn body_of(outline: Vec<DVec2>, kind: Kind) -> sketch::Built {
+fn body_of(outline: Vec<DVec2>, kind: Kind) -> Built {
     let mut reading = whole(kind, |_| 0.1, None);
     reading.fruits[0].outline = outline;
     made(&reading, &SketchSpec::default())

@@ -64,7 +64,7 @@ const LESS_THAN_BODY: f64 = 0.8;
 /// An arc of a body encloses more than this share of the area of the largest part.
 const ARC: f64 = 0.05;
 /// So many bodies are a bunch, and the form of a leaf on it is that much less round than theirs, or its area larger.
-const BUNCH: usize = 4;
+const BUNCH: usize = 3;
 const UNLIKE: f64 = 0.7;
 /// A mushroom's stem begins below the first share of its cap's height, reaches below it by more than the second, and if it is
 /// drawn as one line, has more than the third of its area.
@@ -460,6 +460,7 @@ fn without_leaf(mut bodies: Vec<&Part>) -> Vec<&Part> {
     if bodies.len() < BUNCH {
         return bodies;
     }
+    let few = bodies.len() == BUNCH;
     let slender = |p: &Part| p.wide().min(p.tall()) / p.wide().max(p.tall()).max(f64::MIN_POSITIVE);
     let full = |p: &Part| p.area / (p.wide() * p.tall()).max(f64::MIN_POSITIVE);
     let usual = |of: &dyn Fn(&Part) -> f64| {
@@ -472,7 +473,9 @@ fn without_leaf(mut bodies: Vec<&Part>) -> Vec<&Part> {
     let highest = bodies.iter().map(|p| p.lo.midpoint(p.hi).y).fold(f64::NEG_INFINITY, f64::max);
     bodies.retain(|p| {
         let top = p.lo.midpoint(p.hi).y >= highest;
-        !(top && (form(p) < UNLIKE * round || UNLIKE * p.area > area))
+        let (unlike, larger) = (form(p) < UNLIKE * round, UNLIKE * p.area > area);
+        // Of three a large one may be all that the others lie on.
+        !(top && if few { unlike && !larger } else { unlike || larger })
     });
     bodies
 }
