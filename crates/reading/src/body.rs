@@ -62,6 +62,9 @@ pub(crate) struct Limb {
 pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let Some(mask) = Mask::new(&ring.points) else { return Vec::new() };
     let opened = base.is_none().then(|| mask.without_foot(ring)).flatten();
+    // What ends so low on a drawn foot is a corner of it.
+    let corner =
+        opened.as_ref().map(|_| mask.band(ring).map_or(f64::NEG_INFINITY, |(low, band)| low + SAGS * band));
     let ring = opened.as_ref().unwrap_or(ring);
     let base = base.unwrap_or_else(|| mask.base(ring));
     let Some(root) = mask.nearest_inside(base) else { return Vec::new() };
@@ -91,6 +94,7 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
         // A bump of the outline is no limb: one stands out by more than the body's own half width there.
         let bump = !first
             && (way.cost[far] - way.cost[at] < (BUMP * clearance[at]).max(BUMP_LEAST * CELLS)
+                || corner.is_some_and(|y| mask.middle(far).y < y)
                 || openings.iter().any(|&(a, b)| {
                     let tip = mask.middle(far);
                     a.distance(tip).min(b.distance(tip)) < OPENING_CELLS * mask.cell
@@ -298,11 +302,17 @@ impl Mask {
         })
     }
 
+    /// The lowest height of a body, and up to how far above it its feet are.
+    fn band(&self, ring: &Ring) -> Option<(f64, f64)> {
+        let (lo, hi) = bounds(&ring.points)?;
+        Some((lo.y, (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell)))
+    }
+
     /// The outline of a body that stands on a drawn line, all along it, open there: so a foot that flares is as wide as it was
     /// drawn, and its corners are no roots. None of what is open below, or stands on roots apart.
     fn without_foot(&self, ring: &Ring) -> Option<Ring> {
         let (lo, hi) = bounds(&ring.points)?;
-        let band = (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell);
+        let (_, band) = self.band(ring)?;
         let low = |p: DVec2| p.y < lo.y + band;
         // Open there already, however uneven its feet are.
         let open = |(a, b): (DVec2, DVec2)| {
