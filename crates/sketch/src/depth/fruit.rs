@@ -1,7 +1,10 @@
 //! Fruits, roots and other bodies: turned about the line of their symmetry, or along their middle where they bend.
 
 use base::ops;
-use geom::{contains, convex_hull, pca2, polyline_length, resample, signed_area, smooth_gaussian};
+use geom::{
+    centroid, contains, convex_hull, distance_to_polyline, pca2, polyline_length, resample, signed_area,
+    smooth_gaussian,
+};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Plant, Shape};
 use reading::FruitReading;
@@ -15,13 +18,15 @@ const RINGS: usize = 13;
 /// Longer than so many times its width a body has an axis of its own; below it looks round (the ratio of the variances is the
 /// square).
 const ROUND: f64 = 1.25;
-/// About another axis than the usual one it is that much more alike on both sides, a share of its half width: a hand that
-/// draws an apple is off by half of it.
+/// About another axis than that of its stalk it is that much more alike on both sides, a share of its half width; than about a
+/// long one without a stalk, that much.
 const CLEARLY: f64 = 0.1;
-/// What bears it lies on its skin and is no stalk, if it is inside and nearer to the middle than this share of its reach.
-const ON_SKIN: f64 = 0.6;
-/// Down but for 37 degrees: its cosine.
-const NEARLY_DOWN: f64 = 0.8;
+const MORE: f64 = 0.04;
+/// What bears it lies on its skin and is no stalk, if it is inside by more than this share of half its width: stalks begin in a
+/// hollow.
+const ON_SKIN: f64 = 0.3;
+/// Down but for 53 degrees: its cosine.
+const NEARLY_DOWN: f64 = 0.6;
 /// A bent body is so many times as long as wide, along its middle; shorter ones are lopsided.
 const BENT_LENGTH: f64 = 2.0;
 /// Its middle bows by more than this share of the distance of its ends: a banana's by 0.2, a straight root's that was drawn by
@@ -118,7 +123,8 @@ fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
     let axes = if longest { vec![all.major] } else { [usual].into_iter().chain(others).collect() };
     let lopsided = |along: &DVec2| profile(outline, all.centre, *along).map_or(f64::INFINITY, |p| p.lopsided);
     // Clearly more alike than about the usual axis, and then the first of equals.
-    let worth = |(k, along): (usize, DVec2)| (lopsided(&along) + if k > 0 { CLEARLY } else { 0.0 }, along);
+    let margin = if long && stalk.is_none() { MORE } else { CLEARLY };
+    let worth = |(k, along): (usize, DVec2)| (lopsided(&along) + if k > 0 { margin } else { 0.0 }, along);
     let along = axes.into_iter().enumerate().map(worth).reduce(|a, b| if b.0 < a.0 { b } else { a })?.1;
     let along = if along.dot(hangs) < 0.0 { -along } else { along };
     let Profile { rings, low, aside, .. } = profile(outline, all.centre, along)?;
@@ -129,10 +135,10 @@ fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
 /// The way from the stalk to the middle, down where it is nearly that: stalks are drawn beside the middle. None where what
 /// bears it lies in it, such as a line on its skin.
 fn stalk(outline: &[DVec2], bearer: Option<DVec2>) -> Option<DVec2> {
-    let (centre, bearer) = (pca2(outline)?.centre, bearer?);
-    let reach = outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
-    let away = (centre - bearer).try_normalize()?;
-    if contains(outline, bearer) && bearer.distance(centre) < ON_SKIN * reach {
+    let (all, bearer) = (pca2(outline)?, bearer?);
+    let away = (centroid(outline) - bearer).try_normalize()?;
+    let inside = distance_to_polyline(outline, bearer).filter(|_| contains(outline, bearer));
+    if inside.is_some_and(|d| d > ON_SKIN * 0.5 * all.extent[1]) {
         return None;
     }
     Some(if away.dot(DVec2::NEG_Y) > NEARLY_DOWN { DVec2::NEG_Y } else { away })
