@@ -38,6 +38,8 @@ pub enum OrganKind {
     Body,
     /// The pot that the plant stands in, or its soil: no part of the plant, but what belongs under it.
     Pot,
+    /// A fruit that grew together of many, with an eye for each, such as a pineapple.
+    Syncarp,
 }
 
 /// What the colour of an organ is, as its maker knows it. Linear RGB.
@@ -98,7 +100,8 @@ pub enum Shape {
     Spline(Arc<SplineBlade>),
     /// A blade as a grid of points: of a scan, or a petal at one day.
     Sheet(Arc<Sheet>),
-    /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed.
+    /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed; with a radius
+    /// of 0 at both ends a body that bends ([`is_bent_body`](Self::is_bent_body)).
     Strand {
         /// Local points, root first.
         path: Vec<DVec3>,
@@ -134,6 +137,17 @@ impl Shape {
             Self::Sheet(sheet) => Some(sheet.reach()),
             Self::Strand { path, .. } => Some(geom::polyline_length3(path)),
             Self::Dome { .. } | Self::Revolution { .. } => None,
+        }
+    }
+
+    /// A strand that runs to a point at both ends: a bent fruit or pod.
+    pub fn is_bent_body(&self) -> bool {
+        let pole = |r: Option<&f64>| r.is_some_and(|r| *r <= 0.0);
+        match self {
+            Self::Strand { radius_m, knob_m, .. } => {
+                pole(radius_m.first()) && pole(radius_m.last()) && *knob_m <= 0.0
+            }
+            _ => false,
         }
     }
 

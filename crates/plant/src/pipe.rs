@@ -68,7 +68,7 @@ fn carried(plant: &Plant) -> Carried {
     for organ in &plant.organs {
         let weight = match organ.kind {
             OrganKind::Leaf => 0.25,
-            OrganKind::Fruit | OrganKind::Body => 1.0,
+            OrganKind::Fruit | OrganKind::Syncarp | OrganKind::Body => 1.0,
             _ => 0.0,
         };
         if let Some(n) = organ.bearer.and_then(|n| here.get_mut(n.index())) {

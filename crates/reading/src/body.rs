@@ -38,6 +38,10 @@ const FOOT_WIDTH: core::ops::Range<f64> = 0.6..2.2;
 /// It lies in the lowest part of the body, and one that was left open above in the highest: shares of its height.
 const FOOT_LOW: f64 = 0.35;
 const TOP_HIGH: f64 = 0.75;
+/// What stands on a drawn line does so along more than this share of it.
+const FOOT_FILLED: f64 = 0.75;
+/// Its middle may lie so many times as high as its ends.
+const SAGS: f64 = 2.5;
 /// A body without such an opening stands on the lowest part of this share of its height.
 const LOWEST: f64 = 0.05;
 
@@ -57,6 +61,11 @@ pub(crate) struct Limb {
 /// `base`: where it stands, if that is known (an arm of a cactus stands on the body).
 pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let Some(mask) = Mask::new(&ring.points) else { return Vec::new() };
+    let opened = base.is_none().then(|| mask.without_foot(ring)).flatten();
+    // What ends so low on a drawn foot is a corner of it.
+    let corner =
+        opened.as_ref().map(|_| mask.band(ring).map_or(f64::NEG_INFINITY, |(low, band)| low + SAGS * band));
+    let ring = opened.as_ref().unwrap_or(ring);
     let base = base.unwrap_or_else(|| mask.base(ring));
     let Some(root) = mask.nearest_inside(base) else { return Vec::new() };
     let clearance = mask.clearance();
@@ -85,6 +94,7 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
         // A bump of the outline is no limb: one stands out by more than the body's own half width there.
         let bump = !first
             && (way.cost[far] - way.cost[at] < (BUMP * clearance[at]).max(BUMP_LEAST * CELLS)
+                || corner.is_some_and(|y| mask.middle(far).y < y)
                 || openings.iter().any(|&(a, b)| {
                     let tip = mask.middle(far);
                     a.distance(tip).min(b.distance(tip)) < OPENING_CELLS * mask.cell
@@ -290,6 +300,53 @@ impl Mask {
             let x = low.iter().map(|p| p.x).sum::<f64>() / (low.len() as f64).max(1.0);
             if low.is_empty() { lo.midpoint(hi) } else { DVec2::new(x, lo.y) }
         })
+    }
+
+    /// The lowest height of a body, and up to how far above it its feet are.
+    fn band(&self, ring: &Ring) -> Option<(f64, f64)> {
+        let (lo, hi) = bounds(&ring.points)?;
+        Some((lo.y, (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell)))
+    }
+
+    /// The outline of a body that stands on a drawn line, all along it, open there: so a foot that flares is as wide as it was
+    /// drawn, and its corners are no roots. None of what is open below, or stands on roots apart.
+    fn without_foot(&self, ring: &Ring) -> Option<Ring> {
+        let (lo, hi) = bounds(&ring.points)?;
+        let (_, band) = self.band(ring)?;
+        let low = |p: DVec2| p.y < lo.y + band;
+        // Open there already, however uneven its feet are.
+        let open = |(a, b): (DVec2, DVec2)| {
+            a.distance(b) > OPENING_CELLS * self.cell && a.midpoint(b).y < 0.5 * (lo.y + hi.y)
+        };
+        if ring.gaps.iter().map(|&g| ring.gap(g)).any(open) {
+            return None;
+        }
+        let corners = (0..ring.points.len()).filter(|&k| low(ring.points[k]));
+        let x = |k: &usize| ring.points[*k].x;
+        let left = corners.clone().min_by(|a, b| x(a).total_cmp(&x(b)))?;
+        let right = corners.max_by(|a, b| x(a).total_cmp(&x(b)))?;
+        let (a, b) = (ring.points[left], ring.points[right]);
+        let on_it = |c: &usize| {
+            let p = self.middle(*c);
+            p.y < lo.y + SAGS * band && p.x > a.x && p.x < b.x && self.inside[*c]
+        };
+        let stood: Vec<usize> = (0..self.inside.len()).filter(on_it).map(|c| c % self.nx).collect();
+        let filled = base::set_of(stood).len() as f64;
+        if b.x - a.x < OPENING_CELLS * self.cell || filled < FOOT_FILLED * (b.x - a.x) / self.cell {
+            return None;
+        }
+        // The way over the top, from the right to the left corner or the other way.
+        let n = ring.points.len();
+        let way = |from: usize, to: usize| -> Vec<usize> {
+            (0..=(to + n - from) % n).map(|k| (from + k) % n).collect()
+        };
+        let ways = [way(left, right), way(right, left)];
+        let top = |w: &Vec<usize>| w.iter().map(|&k| ring.points[k].y).fold(f64::NEG_INFINITY, f64::max);
+        let kept = if top(&ways[0]) > top(&ways[1]) { &ways[0] } else { &ways[1] };
+        let mut gaps: Vec<usize> = (0..kept.len() - 1).filter(|&k| ring.gaps.contains(&kept[k])).collect();
+        gaps.push(kept.len() - 1);
+        let points = kept.iter().map(|&k| ring.points[k]).collect();
+        Some(Ring { points, parts: ring.parts.clone(), gaps })
     }
 
     /// The cell in the middle of a wide opening at the body's upper end.

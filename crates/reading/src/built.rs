@@ -9,6 +9,8 @@ use crate::thresholds::FEWEST_PETALS;
 use crate::{AxisReading, Kind, OrganWord, Reading, RegionReading};
 /// A crown over less bare trunk than this share of its height is a bush.
 const BARE: f64 = 0.1;
+/// That share where the trunk has an outline: nobody draws the sides of a trunk that is not to be seen.
+const BARE_OUTLINE: f64 = 0.04;
 /// A conifer is at least this high beside its width, and its upper part on the average at most this wide beside its lower one.
 const POINTED_TALL: f64 = 0.9;
 const POINTED_THIN: f64 = 0.45;
@@ -86,14 +88,12 @@ fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
     let all = crowns.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let Some((low, high)) = all else { return Kind::None };
     let height = high.y - low.y;
-    let foot = reading
-        .axes
-        .iter()
-        .filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root)
-        .filter_map(|a| a.points.first())
-        .map(|p| p.y)
-        .fold(f64::INFINITY, f64::min);
-    if low.y - foot < BARE * height {
+    let foot = |thick: bool| {
+        let standing = reading.axes.iter().filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
+        let feet = standing.filter(|a| !thick || drawn_thick(a)).filter_map(|a| a.points.first());
+        feet.map(|p| p.y).fold(f64::INFINITY, f64::min)
+    };
+    if low.y - foot(false) < BARE * height && low.y - foot(true) < BARE_OUTLINE * height {
         return Kind::Bush;
     }
     if pointed(&crown.outline) { Kind::Conifer } else { Kind::Tree }

@@ -32,6 +32,8 @@ const STALK_NEAR: f64 = 0.35;
 /// Ends nearer than this share of the length: a blade that is closed by itself. Ends farther than that: one side of a leaf.
 const SHUT: f64 = 0.1;
 const ONE_SIDE: f64 = 0.45;
+/// Gaps between the halves of a fruit, a share of its outline.
+pub(crate) const HALVES_GAPS: f64 = 0.2;
 /// Green is larger by more than this than red and blue, of 255: grey and what is nearly black differ by less.
 const GREEN: u8 = 15;
 
@@ -420,21 +422,25 @@ impl<'a> Draft<'a> {
         fruits
     }
 
-    /// Where the whole is a fruit or a root: outlines of it that were drawn in several lines. The other strokes are left.
+    /// Where the whole is a fruit or a root: outlines of it that were drawn in several lines. Where nobody said so, but nothing
+    /// else has an inside, halves that close well. The other strokes are left.
     fn joined_fruits(&mut self, strokes: &mut Vec<usize>, fruits: &mut Vec<FruitReading>) -> Vec<usize> {
         let whole = self.kind.is_some_and(|k| k.is_like(Kind::Fruit));
         let open = |k: &usize| {
             let s = &self.ink.strokes[*k];
             s.points[0].distance(s.points[s.points.len() - 1]) > MOUTH * s.length
         };
-        if !whole {
+        let alone = self.kind.is_none() && self.regions.is_empty() && self.bodies.is_empty();
+        if !whole && !alone {
             return core::mem::take(strokes);
         }
         let (lines, mut rest): (Vec<usize>, Vec<usize>) = strokes.iter().partition(|k| open(k));
         let points: Vec<&[DVec2]> = lines.iter().map(|&k| self.ink.strokes[k].points.as_slice()).collect();
         for ring in rings::rings(&points) {
             let outline = geom::simple_outline(&ring.points).filter(|_| ring.parts.len() > 1);
-            let Some(outline) = outline else {
+            let gaps: f64 = ring.gaps.iter().map(|&g| ring.gap(g)).map(|(a, b)| a.distance(b)).sum();
+            let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
+            let Some(outline) = outline.filter(|_| whole || gaps < HALVES_GAPS * drawn) else {
                 rest.extend(ring.parts.iter().map(|&p| lines[p]));
                 continue;
             };

@@ -22,10 +22,14 @@ const MOST_BODIES: usize = 100;
 const THIN: f64 = 0.008;
 /// The base of an arm lies this near to the body.
 const ARM: f64 = 0.03;
+/// One side of it may end this far off.
+const OVERSHOT: f64 = 0.12;
 /// The sides of a trunk drawn in one go with its crown: the crown closes where its stroke comes nearer to itself than this
 /// share of the gap between its ends, and a side is straighter than that share of its length.
 const SIDE_NEAR: f64 = 0.75;
 const SIDE_STRAIGHT: f64 = 0.75;
+/// The other side of a trunk is at least this share as long.
+const SIDES_ALIKE: f64 = 0.5;
 /// What ends within this of the foot of a crown ends at it: four steps of the pen (*sampled*). A trunk is wider.
 const FOOT: f64 = 0.02;
 /// What hangs below a crown by more than this is its trunk.
@@ -83,6 +87,30 @@ pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
             draft.sides.push((k, below));
             draft.loops.insert(k, outline);
         }
+    }
+    other_side(draft);
+}
+
+/// The other side of a trunk of which one was drawn in a stroke with the crown: a line beside it, about as long.
+fn other_side(draft: &mut Draft<'_>) {
+    let [(crown, side)] = &draft.sides[..] else { return };
+    let (a, b) = (side[0], side[side.len() - 1]);
+    let (top, foot) = if a.y > b.y { (a, b) } else { (b, a) };
+    let long = top.distance(foot);
+    let beside = |&k: &usize| {
+        let p = &draft.ink.strokes[k].points;
+        let (a, b) = (p[0], p[p.len() - 1]);
+        let (own_top, own_foot) = if a.y > b.y { (a, b) } else { (b, a) };
+        let own = own_top.distance(own_foot);
+        let apart = own_top.distance(top).max(own_foot.distance(foot));
+        k != *crown
+            && own.min(long) > SIDES_ALIKE * own.max(long)
+            && apart < own.max(long)
+            && own_top.y - own_foot.y > SIDE_STRAIGHT * polyline_length(p)
+    };
+    let mut lines = draft.of_class(StrokeClass::Axis).into_iter().filter(beside);
+    if let (Some(k), None) = (lines.next(), lines.next()) {
+        draft.class[k] = StrokeClass::TrunkOutline;
     }
 }
 
@@ -200,7 +228,8 @@ fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DV
         let middle = a.midpoint(b);
         let touches = |p| forest.nearest(p, ARM).is_some();
         let (bearer, _) = forest.nearest(middle, ARM + 0.5 * a.distance(b))?;
-        (touches(a) && touches(b)).then_some((bearer, middle))
+        let beside = |p| forest.nearest(p, OVERSHOT).is_some();
+        ((touches(a) && beside(b)) || (beside(a) && touches(b))).then_some((bearer, middle))
     })
 }
 

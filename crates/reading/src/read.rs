@@ -232,11 +232,13 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let own = group(&scores, s.kind);
         !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
     };
-    // The kind may be right, and still its crown be taken for a blade, or most of it for something else.
+    // The kind may be right, and still its crown be taken for a blade, or most of it for something else; or the leaves on a
+    // fruit for petals.
     let free = asked.is_free(ink, classes);
+    let poor_tree = bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN;
     let half = free
-        && built.is_like(Kind::Tree)
-        && (bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN);
+        && (built.is_like(Kind::Tree) && poor_tree
+            || built.is_like(Kind::Fruit) && !reading.flowers.is_empty());
     let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
     let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
     if let Some(wanted) = asked.kind {
@@ -245,7 +247,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     } else if let Some(other) = other.filter(|_| !rooted && free) {
         let (tried, again) = taken_for(asked, other.kind, ink, classes);
         // Only what can be built of the drawing explains it.
-        let better = !other.kind.is_like(built) || is_whole_tree(ink, &reading, &tried);
+        let better = !other.kind.is_like(built)
+            || other.kind.is_like(Kind::Fruit)
+            || is_whole_tree(ink, &reading, &tried);
         if better && is_built(other.kind, &tried) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
         }
@@ -273,6 +277,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     if asked.kind.is_none() {
         kind = told_apart(kind, &scores);
+    }
+    if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
+        soften(&mut reading);
     }
     let readings = readings(kind, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
@@ -322,6 +329,13 @@ fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
         share > POOR_CROWN && share > MORE_CROWN * crown_share(ink, first)
     };
     !bears_a_crown_as_blade(again) && (bears_a_crown_as_blade(first) || more())
+}
+
+/// Cacti, fruits and vegetables have no wood, however much they branch.
+fn soften(reading: &mut Reading) {
+    reading.woody = false;
+    let wood = reading.axes.iter_mut().filter(|a| a.kind == AxisKind::Branch);
+    wood.for_each(|a| a.kind = AxisKind::Stem);
 }
 
 /// A fruit and a root are built alike: the model says which of them it is.

@@ -1,5 +1,8 @@
 //! What the large bodies of a drawing look like: the flesh of a cactus, or the skin of a fruit, a root or a tuber.
 
+use std::borrow::Cow;
+
+use geom::{bounds, polyline_length, polyline_length3};
 use glam::DVec2;
 use plant::{OrganKind, Paint, Plant, Shape};
 use reading::{Kind, PlantReading, Reading};
@@ -12,6 +15,21 @@ const LONG: f64 = 2.2;
 /// A root is longer than so many widths, and its thinner end this much thinner than its other end.
 const ROOT_LONG: f64 = 1.3;
 const ROOT_POINT: f64 = 0.6;
+/// A pear is longer than so many widths, and at its stalk this much thinner than at its other end.
+const PEAR_LONG: f64 = 1.1;
+const PEAR_NECK: f64 = 0.75;
+/// A strawberry is thinner than this share at its tip, of its other end: no pineapple.
+const STRAWBERRY: f64 = 0.55;
+/// So many bodies or more of one plant are berries, or peas.
+const MANY: usize = 4;
+/// On a pineapple stand so many leaves at least, as high as this share of it; it is no wider than so many times its length.
+const TUFT: usize = 3;
+const TUFT_HIGH: f64 = 0.25;
+const TUFT_WIDE: f64 = 1.25;
+/// They begin above this share of its height.
+const TUFT_FROM: f64 = 0.8;
+/// The height of its direction where a body hangs or stands: within 45 degrees.
+const UPRIGHT: f64 = -0.7;
 /// Which parts of the length its ends are.
 const END: f64 = 0.3;
 
@@ -20,57 +38,139 @@ const YELLOW: [f32; 3] = [0.80, 0.55, 0.04];
 const ORANGE: [f32; 3] = [0.83, 0.22, 0.02];
 const GREEN: [f32; 3] = [0.14, 0.31, 0.05];
 const TAN: [f32; 3] = [0.52, 0.34, 0.16];
+const PEAR: [f32; 3] = [0.50, 0.52, 0.07];
+const BERRY: [f32; 3] = [0.09, 0.025, 0.14];
 
 /// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of their form, where nobody
-/// drew them in colour: long fruits are yellow, roots that run to a point orange, long vegetables green, others tan; all
-/// other fruits are red.
+/// drew them in colour. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
+/// of one plant as dark as berries, others red. Of vegetables roots that run to a point are orange, long or bent ones and
+/// many of one plant green, others tan.
 pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
     let Some((low, high)) = plant.extent() else { return };
     let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
     let large = low.distance(high) * if thorny { THORNY_BODY } else { BODY };
+    let row = |source: Option<u32>| {
+        let has = |p: &PlantReading| source.is_some_and(|s| p.strokes.contains(&s));
+        reading.plants.iter().position(has)
+    };
+    let fruits = plant.organs.iter().filter(|o| o.kind == OrganKind::Fruit);
+    let of_plants: Vec<Option<usize>> = fruits.map(|o| row(o.source)).collect();
     for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Fruit) {
-        let Some(Shape::Revolution { profile }) = plant.shapes.get(organ.shape.index()) else { continue };
-        let kind = kind_of(reading, organ.source);
+        let Some(form) = plant.shapes.get(organ.shape.index()).and_then(Form::of) else { continue };
+        let of = row(organ.source);
+        let kind = of.and_then(|k| reading.plants.get(k)).map_or(Kind::None, |p| p.kind);
         if !kind.is_like(Kind::Fruit) {
-            if length(profile) * organ.scale > large {
+            if form.tall * organ.scale > large {
                 organ.kind = OrganKind::Body;
             }
-        } else if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin(kind, profile)) {
+            continue;
+        }
+        let many = of_plants.iter().filter(|p| **p == of).count() >= MANY;
+        let natural = matches!(organ.paint, Paint::Natural(_));
+        if natural && kind == Kind::Fruit && !many && !form.is_pointed() && has_tuft(reading, organ.source) {
+            organ.kind = OrganKind::Syncarp;
+            continue;
+        }
+        let points_up = organ.frame.along.y < UPRIGHT && form.ends[0] < form.ends[1];
+        let skin = if kind == Kind::Fruit {
+            fruit_skin(&form, many)
+        } else {
+            Some(vegetable_skin(&form, many, points_up))
+        };
+        if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin) {
             organ.paint = Paint::Tinted([0, 1, 2].map(|k| varied[k] * skin[k]));
         }
     }
 }
 
-/// The kind of the plant of a stroke.
-fn kind_of(reading: &Reading, stroke: Option<u32>) -> Kind {
-    let has = |p: &&PlantReading| stroke.is_some_and(|s| p.strokes.contains(&s));
-    reading.plants.iter().find(has).map_or(Kind::None, |p| p.kind)
+/// What the form of a body says about it.
+#[derive(Debug)]
+struct Form {
+    tall: f64,
+    wide: f64,
+    /// Mean half widths of both ends, of that at its stalk first.
+    ends: [f64; 2],
+    bent: bool,
 }
 
-fn length(profile: &[DVec2]) -> f64 {
-    let (low, high) = profile.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
-    high - low
-}
-
-/// The usual colour of a skin by the form under it; `None`: red.
-fn skin(kind: Kind, profile: &[DVec2]) -> Option<[f32; 3]> {
-    let tall = length(profile);
-    let wide = 2.0 * profile.iter().map(|p| p.x).fold(0.0, f64::max);
-    if kind == Kind::Fruit {
-        return (tall > LONG * wide).then_some(YELLOW);
+impl Form {
+    fn of(shape: &Shape) -> Option<Self> {
+        let (profile, bent) = match shape {
+            Shape::Revolution { profile } => (Cow::Borrowed(profile), false),
+            Shape::Strand { path, radius_m, .. } if shape.is_bent_body() => {
+                let way = (0..path.len()).map(|k| polyline_length3(&path[..=k]));
+                (Cow::Owned(radius_m.iter().zip(way).map(|(r, y)| DVec2::new(*r, y)).collect()), true)
+            }
+            _ => return None,
+        };
+        // The root of a cactus's body is its origin, even if nothing of it is there.
+        let (low, high) = profile.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        let tall = high - low;
+        let mean = |from: f64, to: f64| {
+            let at = |p: &&DVec2| p.y >= low + from * tall && p.y <= low + to * tall;
+            let (sum, n) = profile.iter().filter(at).fold((0.0, 0.0_f64), |(s, n), p| (s + p.x, n + 1.0));
+            sum / n.max(1.0)
+        };
+        let wide = 2.0 * profile.iter().map(|p| p.x).fold(0.0, f64::max);
+        Some(Self { tall, wide, ends: [mean(0.0, END), mean(1.0 - END, 1.0)], bent })
     }
-    let low = profile.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    let mean = |from: f64, to: f64| {
-        let at = |p: &&DVec2| p.y >= low + from * tall && p.y <= low + to * tall;
-        let (sum, n) = profile.iter().filter(at).fold((0.0, 0.0_f64), |(s, n), p| (s + p.x, n + 1.0));
-        sum / n.max(1.0)
+
+    /// Thinner away from its stalk, as a strawberry is.
+    fn is_pointed(&self) -> bool {
+        self.ends[1] < STRAWBERRY * self.ends[0]
+    }
+
+    fn is_long(&self) -> bool {
+        self.tall > LONG * self.wide
+    }
+}
+
+/// Leaves stand on it, all from its top.
+fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
+    let body = reading.fruits.iter().find(|f| f.source == source && source.is_some());
+    let Some((low, high)) = body.and_then(|f| bounds(&f.outline)) else { return false };
+    let tall = high.y - low.y;
+    let on_top = |line: &[DVec2]| {
+        bounds(line).is_some_and(|(l, h)| {
+            l.y > low.y + TUFT_FROM * tall
+                && h.y > high.y + 0.5 * TUFT_HIGH * tall
+                && l.x < high.x
+                && h.x > low.x
+                && polyline_length(line) > TUFT_HIGH * tall
+        })
     };
-    let (a, b) = (mean(0.0, END), mean(1.0 - END, 1.0));
-    Some(if tall > ROOT_LONG * wide && a.min(b) < ROOT_POINT * a.max(b) {
+    let petals = reading.flowers.iter().flat_map(|f| &f.petals);
+    let blades = reading.leaves.iter().chain(petals).filter(|b| on_top(&b.outline)).count();
+    let lines = reading.axes.iter().filter(|a| on_top(&a.points)).count();
+    let wide = high.x - low.x;
+    wide < TUFT_WIDE * tall && (blades >= TUFT || lines >= TUFT || blades + lines > TUFT)
+}
+
+/// The usual colour of a fruit by its form; `None`: red.
+fn fruit_skin(form: &Form, many: bool) -> Option<[f32; 3]> {
+    let [stalk, tip] = form.ends;
+    if many {
+        Some(BERRY)
+    } else if form.is_long() {
+        Some(YELLOW)
+    } else if form.tall > PEAR_LONG * form.wide && stalk < PEAR_NECK * tip {
+        Some(PEAR)
+    } else {
+        None
+    }
+}
+
+/// The usual colour of a vegetable by its form.
+/// `points_up`: it stands, and its thinner end is the upper one, as a spear's is and no root's.
+fn vegetable_skin(form: &Form, many: bool, points_up: bool) -> [f32; 3] {
+    let [a, b] = form.ends;
+    if many || form.bent {
+        GREEN
+    } else if !points_up && form.tall > ROOT_LONG * form.wide && a.min(b) < ROOT_POINT * a.max(b) {
         ORANGE
-    } else if tall > LONG * wide {
+    } else if form.is_long() {
         GREEN
     } else {
         TAN
-    })
+    }
 }

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
 use proptest::prelude::*;
 use reading::{
-    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, PlantReading,
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, PlantReading,
     PotReading, Reading, RegionKind, RegionReading,
 };
 use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
@@ -460,50 +460,6 @@ fn what_is_drawn_in_a_crown_hangs_on_what_grows_there() {
     assert_eq!(built.plant.validate().next(), None);
     let fruit = built.plant.organs.iter().find(|o| o.kind == OrganKind::Fruit).expect("an apple");
     assert!(fruit.bearer.is_some(), "it hangs on a twig");
-}
-
-/// One outline that is the whole plant.
-fn whole(kind: Kind, half_width: impl Fn(f64) -> f64, color: Option<[u8; 3]>) -> Reading {
-    let side = |k: u32, s: f64| v(0.5 + s * half_width(f64::from(k) / 20.0), f64::from(k) / 20.0);
-    let outline = (0..=20).map(|k| side(k, 1.0)).chain((1..20).rev().map(|k| side(k, -1.0))).collect();
-    let plant = PlantReading { strokes: vec![0], height: 1.0, kind, readings: vec![] };
-    Reading {
-        fruits: vec![FruitReading { outline, bearer: None, source: Some(0), color }],
-        plants: vec![plant],
-        ..Reading::default()
-    }
-}
-
-#[test]
-fn large_fruits_have_the_skin_of_their_form_and_only_what_is_no_fruit_is_a_green_body() {
-    let ball = |t: f64| (0.25 - (t - 0.5) * (t - 0.5)).max(0.0).sqrt();
-    let [red, green, blue] = [0, 1, 2];
-    let look = |kind, width: &dyn Fn(f64) -> f64| {
-        let built = made(&whole(kind, width, None), &SketchSpec::default());
-        let organ = &built.plant.organs[0];
-        (organ.kind, organ.paint)
-    };
-    assert!(matches!(look(Kind::Fruit, &ball), (OrganKind::Fruit, Paint::Natural(_))), "an apple");
-    let tinted = |kind, width: &dyn Fn(f64) -> f64| match look(kind, width) {
-        (OrganKind::Fruit, Paint::Tinted(c)) => c,
-        other => panic!("{other:?}"),
-    };
-    let banana = tinted(Kind::Fruit, &|t| 0.3 * ball(t));
-    let carrot = tinted(Kind::Vegetable, &|t| 0.4 * t * (1.0 - t * t * t).max(0.0));
-    let pod = tinted(Kind::Vegetable, &|t| 0.3 * ball(t));
-    let tuber = tinted(Kind::Vegetable, &|t| 0.8 * ball(t));
-    assert!(banana[green] > 0.5 * banana[red] && banana[blue] < 0.2 * banana[red]);
-    assert!(carrot[green] < 0.5 * carrot[red] && carrot[blue] < 0.1 * carrot[red]);
-    assert!(pod[green] > 1.5 * pod[red] && tuber[red] > tuber[green] && tuber[blue] > 0.2 * tuber[red]);
-    // A cactus is green flesh, and what was drawn in colour keeps it.
-    assert_eq!(look(Kind::Cactus, &ball).0, OrganKind::Body);
-    assert_eq!(look(Kind::None, &ball).0, OrganKind::Body);
-    let mut drawn = whole(Kind::Fruit, |t| 0.3 * ball(t), Some([20, 60, 200]));
-    let leaf = BladeReading { color: Some([20, 160, 30]), ..blade(v(0.5, 1.0), v(0.8, 1.2), 0.1, 1) };
-    drawn.leaves.push(leaf);
-    let drawn = made(&drawn, &SketchSpec::default());
-    let fruit = drawn.plant.organs.iter().find(|o| o.kind == OrganKind::Fruit).expect("a fruit");
-    assert!(matches!(fruit.paint, Paint::Drawn(c) if c[blue] > c[red]), "{:?}", fruit.paint);
 }
 
 fn any_point() -> impl Strategy<Value = DVec2> {

@@ -8,6 +8,9 @@ use crate::sleeve::{Circle, drop_flat, narrow, narrow2, wide};
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
 use crate::tube::{TubeSpec, tube};
 
+/// Points of a bent body's line for each that it was given: enough to look round.
+const BENDS: usize = 4;
+
 /// Columns that grow together.
 #[derive(Default)]
 struct Columns(TriMesh);
@@ -123,6 +126,38 @@ pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMes
     drop_flat(&mut out.0);
     smooth_seam(&mut out.0, &rows, sides);
     out.0
+}
+
+/// A body along a line with a radius at each of its points, as [`revolution`] is about an axis.
+pub(crate) fn bent(path: &[DVec3], radii: &[f64], triangles: f64, ribs: u32) -> TriMesh {
+    let line = geom::catmull_rom(path, BENDS);
+    let frames = geom::rotation_minimising_frames(&line, None);
+    let mut way = Vec::with_capacity(frames.len());
+    for (k, f) in frames.iter().enumerate() {
+        let before = k.checked_sub(1).map_or(0.0, |i| way[i] + frames[i].origin.distance(f.origin));
+        way.push(before);
+    }
+    if frames.len() < 2 || path.len() != radii.len() || (frames.len() - 1) != BENDS * (path.len() - 1) {
+        return TriMesh::default();
+    }
+    let profile: Vec<DVec2> = radii.iter().enumerate().map(|(k, &r)| DVec2::new(r, way[BENDS * k])).collect();
+    let mut mesh = revolution(&profile, triangles, ribs);
+    let at = |y: f64| {
+        let k = way.partition_point(|w| *w < y).clamp(1, frames.len() - 1);
+        let t = (y - way[k - 1]) / (way[k] - way[k - 1]).max(f64::MIN_POSITIVE);
+        let (a, b) = (&frames[k - 1], &frames[k]);
+        let along = a.tangent.lerp(b.tangent, t).normalize_or(DVec3::Y);
+        let side = a.normal.lerp(b.normal, t).reject_from(along).normalize_or_zero();
+        // Right-handed, as x, y and z of the straight body are.
+        (a.origin.lerp(b.origin, t), side, along, side.cross(along))
+    };
+    for (p, n) in mesh.positions.iter_mut().zip(&mut mesh.normals) {
+        let (straight, normal) = (wide(*p), wide(*n));
+        let (origin, x, y, z) = at(straight.y);
+        *p = narrow(origin + x * straight.x + z * straight.z);
+        *n = narrow((x * normal.x + y * normal.y + z * normal.z).normalize_or(y));
+    }
+    mesh
 }
 
 /// The profile, smooth and with few enough points; from the lower to the upper pole.
@@ -284,6 +319,37 @@ fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bent_body_is_as_thick_as_a_straight_one() {
+        let radius = |k: i32| 0.2 * ops::sin(ops::PI * f64::from(k) / 16.0).max(0.0).sqrt();
+        let radii: Vec<f64> = (0..=16).map(|k| if k % 16 == 0 { 0.0 } else { radius(k) }).collect();
+        let straight: Vec<DVec3> = (0..=16).map(|k| DVec3::Y * (f64::from(k) / 16.0)).collect();
+        let profile: Vec<DVec2> = radii.iter().zip(&straight).map(|(r, p)| DVec2::new(*r, p.y)).collect();
+        let (turned, along) = (revolution(&profile, 400.0, 0), bent(&straight, &radii, 400.0, 0));
+        assert_eq!(turned.triangles, along.triangles);
+        let solid = |mesh: &TriMesh| -> f64 {
+            let corner =
+                |&[a, b, c]: &[u32; 3]| mesh.position(a).dot(mesh.position(b).cross(mesh.position(c)));
+            mesh.triangles.iter().map(corner).sum::<f64>() / 6.0
+        };
+        assert!((solid(&turned) - solid(&along)).abs() < 1e-6);
+        // A third of a circle as long: by Pappus it has the same volume.
+        let angle = |k: i32| 2.0 * ops::PI / 3.0 * f64::from(k) / 16.0;
+        let arc: Vec<DVec3> = (0..=16)
+            .map(|k| ops::sin_cos(angle(k)))
+            .map(|(s, c)| DVec3::new(c, s, 0.0) * (1.5 / ops::PI))
+            .collect();
+        let mesh = bent(&arc, &radii, 400.0, 0);
+        assert_eq!(mesh.validate().count(), 0);
+        assert!((solid(&mesh) / solid(&turned) - 1.0).abs() < 0.02, "{}", solid(&mesh) / solid(&turned));
+        let outwards = mesh.triangles.iter().all(|t| {
+            let [a, b, c] = t.map(|i| mesh.position(i));
+            (b - a).cross(c - a).dot(wide(mesh.normals[t[0] as usize])) > 0.0
+        });
+        assert!(outwards, "normals look out");
+        assert!(bent(&[DVec3::ZERO; 3], &[0.1; 3], 400.0, 0).triangles.is_empty());
+    }
 
     #[test]
     fn a_prism_is_closed_and_encloses_its_strand() {

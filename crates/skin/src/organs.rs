@@ -10,7 +10,7 @@ use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
 use crate::LeafMeshSpec;
 use crate::blade::blade_mesh;
-use crate::body::{dome, prism, revolution, rod, strand};
+use crate::body::{bent, dome, prism, revolution, rod, strand};
 use crate::layout::Piece;
 use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::{COPIED_WIDER, fewer_corners, lean_mesh};
@@ -294,6 +294,8 @@ enum Wish {
     Dome(f64),
     /// With at least so many sides.
     Revolution(f64, u32),
+    /// A body along a line, as such.
+    Bent(f64, u32),
     Strand {
         fine: bool,
     },
@@ -315,7 +317,9 @@ impl Wish {
             (Self::Sheet(a), Self::Sheet(b))
             | (Self::Plain(a), Self::Plain(b))
             | (Self::Dome(a), Self::Dome(b)) => near(a, b),
-            (Self::Revolution(a, m), Self::Revolution(b, n)) => m == n && near(a, b),
+            (Self::Revolution(a, m), Self::Revolution(b, n)) | (Self::Bent(a, m), Self::Bent(b, n)) => {
+                m == n && near(a, b)
+            }
             _ => self == other,
         }
     }
@@ -332,6 +336,7 @@ impl Wish {
             (Self::Plain(n), Shape::Blade(blade)) => blade_mesh(&plain(blade, n), n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
             (Self::Revolution(n, sides), Shape::Revolution { profile }) => revolution(profile, n, sides),
+            (Self::Bent(n, sides), Shape::Strand { path, radius_m, .. }) => bent(path, radius_m, n, sides),
             (Self::Strand { fine }, Shape::Strand { path, radius_m, knob_m }) => {
                 let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
                 strand(path, radius_m, knob, fine)
@@ -395,6 +400,9 @@ impl KeptShapes {
         self.made = if few { made.to_vec() } else { Vec::new() };
     }
 }
+
+/// Ribs of a cactus.
+const RIBS: u32 = 16;
 
 /// More leaves are a crowd.
 const FEW_LEAVES: usize = 1500;
@@ -484,9 +492,19 @@ impl<'a> Ground<'a> {
                 let area = |w: &[glam::DVec2]| (w[0].x + w[1].x) * w[0].distance(w[1]);
                 let area: f64 = profile.windows(2).map(area).filter(|a| a.is_finite()).sum();
                 if used.body {
-                    Wish::Revolution(4.0 * triangles(area), 16)
+                    Wish::Revolution(4.0 * triangles(area), RIBS)
                 } else {
                     Wish::Revolution(triangles(area), 0)
+                }
+            }
+            Shape::Strand { path, radius_m, .. } if shape.is_bent_body() => {
+                let piece = |(p, r): (&[DVec3], &[f64])| (r[0] + r[1]) * p[0].distance(p[1]);
+                let pieces = path.windows(2).zip(radius_m.windows(2)).map(piece);
+                let area: f64 = pieces.filter(|a| a.is_finite()).sum();
+                if used.body {
+                    Wish::Bent(4.0 * triangles(area), RIBS)
+                } else {
+                    Wish::Bent(triangles(area), 0)
                 }
             }
             Shape::Strand { knob_m: 0.0, .. } if self.steady => Wish::Rod,
@@ -505,7 +523,8 @@ impl<'a> Ground<'a> {
             OrganKind::Sepal => Slot::Sepal(coat),
             OrganKind::Disc | OrganKind::Floret => Slot::Disc(coat),
             OrganKind::Body if coat == Coat::Natural => Slot::Body,
-            OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
+            OrganKind::Syncarp if coat == Coat::Natural => Slot::Syncarp,
+            OrganKind::Fruit | OrganKind::Syncarp | OrganKind::Body => Slot::Fruit(coat),
             OrganKind::Stamen | OrganKind::Anther | OrganKind::Pistil => Slot::Stamen(coat),
             OrganKind::Pot => Slot::Pot,
             OrganKind::Thorn => Slot::Thorn,

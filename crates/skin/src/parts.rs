@@ -35,6 +35,8 @@ pub(crate) enum Slot {
     Sepal(Coat),
     Disc(Coat),
     Fruit(Coat),
+    /// A fruit with eyes, in the colour of a pineapple.
+    Syncarp,
     Body,
     /// In the colour of its clay.
     Pot,
@@ -90,7 +92,7 @@ impl Slot {
             Self::Leaf(_) | Self::Needles(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
             Self::Petal(..) | Self::Sepal(_) => MaterialKind::Petal,
             Self::Disc(_) => MaterialKind::Disc,
-            Self::Fruit(_) => MaterialKind::Fruit,
+            Self::Fruit(_) | Self::Syncarp => MaterialKind::Fruit,
             Self::Stamen(_) => MaterialKind::Stamen,
             Self::Pot => MaterialKind::Other,
         }
@@ -123,6 +125,7 @@ impl Slot {
             Self::Disc(_) => ("discs", "disc".into()),
             Self::Fruit(Coat::Drawn) => ("fruits-drawn", "fruit-drawn".into()),
             Self::Fruit(_) => ("fruits", "fruit".into()),
+            Self::Syncarp => ("fruits-with-eyes", "fruit-with-eyes".into()),
             Self::Body => ("bodies", "body".into()),
             Self::Pot => ("pots", "pot".into()),
             Self::Stamen(_) => ("stamens", "stamen".into()),
@@ -159,6 +162,7 @@ impl Slot {
             Self::Disc(_) => Motif::PaleDisc,
             Self::Fruit(Coat::Natural) => Motif::Fruit,
             Self::Fruit(_) => Motif::PaleFruit,
+            Self::Syncarp => Motif::Eyes,
             Self::Body => Motif::Body,
             Self::Pot => Motif::Clay,
             Self::Stamen(_) => Motif::Stamen,
@@ -221,6 +225,7 @@ impl Slot {
             Self::Petal(Coat::Natural, color) => color.linear(),
             Self::Disc(Coat::Natural) => [0.55, 0.25, 0.02],
             Self::Fruit(Coat::Natural) => [0.56, 0.06, 0.02],
+            Self::Syncarp => [0.36, 0.22, 0.05],
             Self::Body => [0.06, 0.16, 0.05],
             Self::Stamen(Coat::Natural) => [0.72, 0.55, 0.15],
             Self::Thorn => [0.28, 0.16, 0.08],
@@ -286,6 +291,7 @@ impl Slot {
         (m.roughness, m.translucency) = match kind {
             // Measured veins are solid.
             _ if self == Self::Veins => (0.65, 0.0),
+            _ if self == Self::Syncarp => (0.8, 0.0),
             MaterialKind::Leaf => (0.55, 0.4),
             MaterialKind::Petal => (0.65, 0.4),
             MaterialKind::Stem => (0.65, 0.0),

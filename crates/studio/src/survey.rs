@@ -99,7 +99,7 @@ pub const fn part_of_organ(kind: OrganKind) -> u8 {
         OrganKind::Leaf => 5,
         OrganKind::Petal => 6,
         OrganKind::Disc => 7,
-        OrganKind::Fruit => 8,
+        OrganKind::Fruit | OrganKind::Syncarp => 8,
         OrganKind::Stamen => 9,
         OrganKind::Pistil => 10,
         OrganKind::Thorn => 11,

@@ -227,7 +227,7 @@ impl<W: Write> Writer<'_, W> {
         let (symbol, kind) = match organ.kind {
             OrganKind::Petal => ('K', "petal"),
             OrganKind::Disc => ('D', "disc"),
-            OrganKind::Fruit => ('U', "fruit"),
+            OrganKind::Fruit | OrganKind::Syncarp => ('U', "fruit"),
             OrganKind::Stamen => ('S', "stamen"),
             OrganKind::Pistil => ('C', "pistil"),
             OrganKind::Sepal => ('E', "sepal"),

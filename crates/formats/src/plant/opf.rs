@@ -75,7 +75,7 @@ fn organ_class(kind: OrganKind) -> (&'static str, &'static str, [f64; 3]) {
     match kind {
         OrganKind::Petal => ("Petal", "petal", [0.95, 0.85, 0.88]),
         OrganKind::Disc => ("Disc", "disc", [0.75, 0.6, 0.15]),
-        OrganKind::Fruit => ("Fruit", "fruit", [0.7, 0.25, 0.15]),
+        OrganKind::Fruit | OrganKind::Syncarp => ("Fruit", "fruit", [0.7, 0.25, 0.15]),
         OrganKind::Stamen => ("Stamen", "stamen", [0.9, 0.8, 0.4]),
         OrganKind::Pistil => ("Pistil", "pistil", GREEN),
         OrganKind::Sepal => ("Sepal", "sepal", GREEN),

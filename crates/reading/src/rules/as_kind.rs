@@ -12,7 +12,7 @@ use super::{CLOSED, STANDS, STRIDE, WITHIN, openness, share_inside, unsure, whol
 use crate::built::pointed;
 use crate::contour::neck;
 use crate::corolla::dips;
-use crate::draft::Draft;
+use crate::draft::{Draft, HALVES_GAPS};
 use crate::flowers::together;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
@@ -31,6 +31,9 @@ const FRUIT: f64 = 0.05;
 const COVERED: f64 = 0.15;
 /// The outline of a trunk and its limbs fills less than this share of its hull.
 const HOLLOW: f64 = 0.65;
+/// Sides of limbs meet at tips no wider than this, and are longer than that, shares of the drawing's diagonal.
+const TIP: f64 = 0.1;
+const SIDE_OF_LIMB: f64 = 0.1;
 /// A level line below this is the ground under a palm, and under a cactus below that.
 const LOW: f64 = 0.2;
 const LOWEST: f64 = 0.1;
@@ -55,6 +58,19 @@ const LEAFLET: f64 = 0.4;
 /// its skin.
 const BODY: f64 = 0.25;
 const SKIN: f64 = 0.7;
+/// What stands above this share of a fruit's height, and has less than that share of its area, is a leaf on it.
+const TOP: f64 = 0.7;
+const LESS_THAN_BODY: f64 = 0.8;
+/// An arc of a body encloses more than this share of the area of the largest part.
+const ARC: f64 = 0.05;
+/// So many bodies are a bunch, and the form of a leaf on it is that much less round than theirs, or its area larger.
+const BUNCH: usize = 3;
+const UNLIKE: f64 = 0.7;
+/// A mushroom's stem begins below the first share of its cap's height, reaches below it by more than the second, and if it is
+/// drawn as one line, has more than the third of its area.
+const CAP_FOOT: f64 = 0.5;
+const STEM_LONG: f64 = 0.25;
+const STEM_AREA: f64 = 0.08;
 /// What is smooth is the body under a tuft if its area is more than this share of the tuft's.
 const BESIDE_TUFT: f64 = 0.5;
 /// A pot drawn in lines, shares of the drawing: its lines begin below the first, one of them below the second and wider than
@@ -173,6 +189,13 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
     let mut found = wood(&trunk);
     let main: Vec<&&Part> = green.iter().filter(|p| p.area > MAIN_CROWN * largest && !p.is_level()).collect();
     if kind != Kind::Bush && is_bare(draft, parts, &main) {
+        let sides = sides_of_limbs(draft, parts, all);
+        if !sides.is_empty() {
+            let rest = parts.iter().filter(|p| !sides.contains(&p.stroke));
+            found = rest.map(|p| (p.stroke, StrokeClass::Axis)).collect();
+            found.extend(sides.iter().map(|&k| (k, StrokeClass::TrunkOutline)));
+            return found;
+        }
         let ground = |p: &Part| p.is_level() && p.lo.y < all.0.y + FOOT;
         let class = |p: &Part| if ground(p) { StrokeClass::Ground } else { StrokeClass::Axis };
         found.extend(green.iter().map(|p| (p.stroke, class(p))));
@@ -199,6 +222,24 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
         found.push((p.stroke, class));
     }
     found
+}
+
+/// A bare tree in three lines or more that go up one side of a limb and down its other: all around, they meet at the tips.
+fn sides_of_limbs(draft: &Draft<'_>, parts: &[Part], (low, high): (DVec2, DVec2)) -> Vec<usize> {
+    let lines: Vec<&Part> =
+        parts.iter().filter(|p| p.wide().max(p.tall()) > SIDE_OF_LIMB && !p.is_level()).collect();
+    let points: Vec<&[DVec2]> = lines.iter().map(|p| draft.ink.strokes[p.stroke].points.as_slice()).collect();
+    let on_ground = |p: DVec2| p.y < low.y + FOOT * (high.y - low.y);
+    let around = |ring: &Ring| {
+        let tips = ring.gaps.iter().map(|&g| ring.gap(g)).filter(|(a, b)| !(on_ground(*a) && on_ground(*b)));
+        let met = tips.clone().all(|(a, b)| a.distance(b) < TIP);
+        let hull = signed_area(&convex_hull(&ring.points));
+        let stands = tips.count() + 1 == ring.gaps.len();
+        let filled = signed_area(&ring.points).abs() / hull.max(f64::MIN_POSITIVE);
+        ring.parts.len() > 2 && met && stands && (COVERED..HOLLOW).contains(&filled)
+    };
+    let found = rings(&points).into_iter().find(around);
+    found.map_or_else(Vec::new, |r| r.parts.iter().map(|&p| lines[p].stroke).collect())
 }
 
 /// An outline with hollows and no neck goes round a trunk and its limbs, unless it is that of a fir.
@@ -362,6 +403,19 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
         .iter()
         .filter(|p| p.area > BODY * largest && (lines || p.open < 0.5 || p.area >= largest) && !tuft(p))
         .collect();
+    let (low, high) = (under.unwrap_or(widest).lo.y, under.unwrap_or(widest).hi.y);
+    let on_top = |p: &&Part| {
+        p.area < LESS_THAN_BODY * largest
+            && p.lo.y > low + TOP * (high - low)
+            && draft.kind == Some(Kind::Fruit)
+    };
+    let (upper, lower): (Vec<&Part>, Vec<&Part>) = bodies.iter().copied().partition(on_top);
+    // Of a bunch each is a body but for a leaf.
+    let bodies = if lower.len() == 1 { lower } else { without_leaf(bodies) };
+    let on_top = |p: &Part| bodies.len() == 1 && upper.iter().any(|u| u.stroke == p.stroke);
+    let stem =
+        if draft.kind == Some(Kind::Vegetable) { below_cap(parts, (low, high), largest) } else { Vec::new() };
+    let halves = halves(draft, parts, largest);
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
         bodies.iter().any(|b| {
@@ -374,17 +428,70 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let class = |p: &Part| {
         if within(p) {
             StrokeClass::Other
-        } else if body(p) {
+        } else if body(p) || stem.contains(&p.stroke) || halves.contains(&p.stroke) {
             StrokeClass::Fruit
         } else if tuft(p) {
             StrokeClass::Corolla
-        } else if p.open < MOUTH {
+        } else if p.open < MOUTH || on_top(p) {
             StrokeClass::Blade
         } else {
             StrokeClass::Axis
         }
     };
     parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// Arcs that go round one body together.
+fn halves(draft: &Draft<'_>, parts: &[Part], largest: f64) -> Vec<usize> {
+    let arcs: Vec<&Part> = parts.iter().filter(|p| p.open > MOUTH && p.area > ARC * largest).collect();
+    let points: Vec<&[DVec2]> = arcs.iter().map(|p| draft.ink.strokes[p.stroke].points.as_slice()).collect();
+    let closes = |ring: &Ring| {
+        let gaps: f64 = ring.gaps.iter().map(|&g| ring.gap(g)).map(|(a, b)| a.distance(b)).sum();
+        let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
+        let around = signed_area(&convex_hull(&ring.points));
+        ring.parts.len() > 1 && gaps < HALVES_GAPS * drawn && around > largest
+    };
+    let found = rings(&points).into_iter().filter(closes);
+    found.flat_map(|r| r.parts).map(|p| arcs[p].stroke).collect()
+}
+
+/// Of many bodies the highest one is a leaf if it is much more pointed or larger than the usual one.
+fn without_leaf(mut bodies: Vec<&Part>) -> Vec<&Part> {
+    if bodies.len() < BUNCH {
+        return bodies;
+    }
+    let few = bodies.len() == BUNCH;
+    let slender = |p: &Part| p.wide().min(p.tall()) / p.wide().max(p.tall()).max(f64::MIN_POSITIVE);
+    let full = |p: &Part| p.area / (p.wide() * p.tall()).max(f64::MIN_POSITIVE);
+    let usual = |of: &dyn Fn(&Part) -> f64| {
+        let mut all: Vec<f64> = bodies.iter().map(|p| of(p)).collect();
+        base::sort_by(&mut all, f64::total_cmp);
+        all[all.len() / 2]
+    };
+    let form = |p: &Part| slender(p) * full(p);
+    let (area, round) = (usual(&|p| p.area), usual(&form));
+    let highest = bodies.iter().map(|p| p.lo.midpoint(p.hi).y).fold(f64::NEG_INFINITY, f64::max);
+    bodies.retain(|p| {
+        let top = p.lo.midpoint(p.hi).y >= highest;
+        let (unlike, larger) = (form(p) < UNLIKE * round, UNLIKE * p.area > area);
+        // Of three a large one may be all that the others lie on.
+        !(top && if few { unlike && !larger } else { unlike || larger })
+    });
+    bodies
+}
+
+/// The stem of a mushroom that was drawn open at its cap, in one line down and up again or as its two sides; its strokes.
+fn below_cap(parts: &[Part], (low, high): (f64, f64), largest: f64) -> Vec<usize> {
+    let hangs = |p: &&Part| {
+        p.hi.y < low + CAP_FOOT * (high - low) && low - p.lo.y > STEM_LONG * (high - low) && p.open > MOUTH
+    };
+    let (cups, sides): (Vec<&Part>, Vec<&Part>) =
+        parts.iter().filter(hangs).partition(|p| p.area > STEM_AREA * largest);
+    match (&cups[..], &sides[..]) {
+        ([cup], _) => vec![cup.stroke],
+        (_, [a, b]) if a.tall().min(b.tall()) > 0.5 * a.tall().max(b.tall()) => vec![a.stroke, b.stroke],
+        _ => Vec::new(),
+    }
 }
 
 /// What stands in the pot is no tree.

@@ -15,6 +15,8 @@ use crate::draft::Draft;
 const NARROW: f64 = 0.6;
 /// At least this share of the tree's height is bare trunk.
 const BARE: f64 = 0.1;
+/// That share where the trunk has an outline: nobody draws the sides of a trunk that is not to be seen.
+const BARE_OUTLINE: f64 = 0.04;
 /// A trunk's top is no farther from its crown than this.
 const REACH: f64 = 0.08;
 /// Feet within this share of the height of the lowest point stand on the ground.
@@ -151,7 +153,7 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
     let (wide, height) = (hi.x - lo.x, hi.y - lo.y);
     let tip = DVec2::new(foot.midpoint(top).x, top.y);
     let fits = top.x - foot.x < NARROW * wide
-        && lo.y - foot.y > BARE * tall
+        && lo.y - foot.y > if kind == Wood::Line { BARE } else { BARE_OUTLINE } * tall
         && height > CROWN_HEIGHT * tall
         && outside(&crown.hull, tip) < REACH
         && top.y < lo.y + INTO * height

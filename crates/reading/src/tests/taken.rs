@@ -181,3 +181,116 @@ fn the_tuft_on_a_fruit_is_leaves() {
         assert!(r.leaves.len() >= 4, "{:?}", r.strokes);
     }
 }
+
+/// Half of a ring about (0, 3), from its top down on one side.
+fn half(side: f64) -> Vec<DVec2> {
+    let at = |k: i32| ops::sin_cos(ops::PI * f64::from(k) / 30.0);
+    (0..=30).map(at).map(|(s, c)| DVec2::new(side * 2.4 * s, 3.0 + 3.0 * c)).collect()
+}
+
+#[test]
+fn two_halves_are_one_fruit_and_two_arcs_apart_are_two() {
+    use StrokeClass::{Axis, Fruit};
+    let count = |lines: &[Vec<DVec2>]| {
+        let ink = clean(&Drawing::from_polylines("apple", lines), &mut Report::default());
+        let classes: Vec<Classified> =
+            (0..lines.len()).map(|k| Classified::by_user(if k < 2 { Fruit } else { Axis })).collect();
+        read(&ink, &classes, &mut Report::default()).fruits.len()
+    };
+    let stalk = line((0.0, 6.0), (0.3, 7.5));
+    assert_eq!(count(&[half(1.0), half(-1.0), stalk.clone()]), 1);
+    let away =
+        |x: f64, line: Vec<DVec2>| line.into_iter().map(|p| p + DVec2::new(x, 0.0)).collect::<Vec<_>>();
+    assert_eq!(count(&[away(4.0, half(1.0)), away(-4.0, half(-1.0)), stalk]), 2);
+}
+
+#[test]
+fn a_leaf_on_a_fruit_is_no_body_and_an_open_stem_below_a_cap_is_one() {
+    let body = circle((0.0, 3.0), 3.0);
+    let leaf = leaf((0.0, 6.0), (3.5, 9.0), 2.4);
+    let r = taken(Kind::Fruit, &[body, leaf]);
+    assert_eq!((r.fruits.len(), r.leaves.len()), (1, 1), "{:?}", r.strokes);
+    let cap: Vec<DVec2> = path(&[(3.0, 4.0), (-3.0, 4.0)])
+        .into_iter()
+        .chain(
+            (0..=30)
+                .map(|k| ops::sin_cos(ops::PI * f64::from(k) / 30.0))
+                .map(|(s, c)| DVec2::new(-3.0 * c, 4.0 + 2.5 * s)),
+        )
+        .collect();
+    let sides = [line((-0.8, 3.9), (-0.9, 0.0)), line((0.8, 3.9), (0.9, 0.1))];
+    let cup = path(&[(-0.8, 3.9), (-0.9, 0.0), (0.9, 0.0), (0.8, 3.9)]);
+    for stem in [sides.to_vec(), vec![cup]] {
+        let r = taken(Kind::Vegetable, &[vec![cap.clone()], stem].concat());
+        assert_eq!((r.fruits.len(), r.axes.len()), (2, 0), "{:?}", r.strokes);
+    }
+    // One root is no stem.
+    let r = taken(Kind::Vegetable, &[cap, line((0.0, 3.9), (0.1, 0.0))]);
+    assert_eq!(r.fruits.len(), 1, "{:?}", r.strokes);
+}
+
+#[test]
+fn a_leaf_on_a_bunch_is_no_berry() {
+    let mut lines: Vec<Vec<DVec2>> =
+        (0..6).map(|k| circle((2.0 * f64::from(k % 3), 2.0 * f64::from(k / 3)), 0.95)).collect();
+    lines.push(leaf((2.0, 3.2), (6.5, 5.0), 1.8));
+    let r = taken(Kind::Fruit, &lines);
+    assert_eq!((r.fruits.len(), r.leaves.len()), (6, 1), "{:?}", r.strokes);
+}
+
+#[test]
+fn a_bare_tree_in_lines_around_its_limbs_has_a_trunk_and_limbs() {
+    let lines = [
+        path(&[(-1.0, 0.0), (-0.8, 4.0), (-3.6, 7.0)]),
+        path(&[(-3.2, 7.4), (-0.5, 5.0), (-0.4, 9.0)]),
+        path(&[(0.4, 9.0), (0.5, 5.0), (3.2, 7.4)]),
+        path(&[(3.6, 7.0), (0.8, 4.0), (1.0, 0.0)]),
+    ];
+    let r = taken(Kind::Tree, &lines);
+    assert!(r.woody && r.regions.is_empty(), "{:?}", r.strokes);
+    assert_eq!((thick(&r), r.axes.len()), (3, 3), "a trunk that goes on, and a limb on each side");
+    let highest = r.axes.iter().flat_map(|a| &a.points).map(|p| p.y).fold(0.0, f64::max);
+    let tallest = r.axes.iter().map(|a| a.half_width.iter().copied().fold(0.0, f64::max)).fold(0.0, f64::max);
+    assert!(tallest < 0.25 * highest, "no ball of wood: {tallest}");
+}
+
+#[test]
+fn cacti_have_no_wood() {
+    let column = path(&[(-1.0, 0.0), (-1.0, 6.0), (0.0, 7.0), (1.0, 6.0), (1.0, 0.0)]);
+    let arm = path(&[(1.0, 3.0), (3.0, 3.0), (3.0, 5.0)]);
+    let twigs = [line((3.0, 4.0), (4.0, 4.6)), line((3.5, 4.3), (3.6, 5.2))];
+    let lines = [vec![column, arm], twigs.to_vec()].concat();
+    let r = taken(Kind::Cactus, &lines);
+    assert!(!r.woody && r.axes.iter().all(|a| a.kind != AxisKind::Branch), "{:?}", r.axes);
+}
+
+#[test]
+fn a_foot_that_flares_is_as_wide_as_it_was_drawn_and_no_roots() {
+    use StrokeClass::{Crown, TrunkOutline};
+    let flared = path(&[
+        (-4.0, 0.0),
+        (-1.5, 1.0),
+        (-1.0, 3.0),
+        (-0.9, 7.0),
+        (0.9, 7.0),
+        (1.0, 3.0),
+        (1.5, 1.0),
+        (4.0, 0.0),
+        (0.0, 0.3),
+        (-4.0, 0.0),
+    ]);
+    let (r, _) = reading(&[(Crown, circle((0.0, 10.0), 4.0)), (TrunkOutline, flared)]);
+    assert_eq!(thick(&r), 1, "{:?}", r.axes);
+    let trunk = r.axes.iter().find(|a| !a.half_width.is_empty()).expect("a trunk");
+    let (foot, middle) = (trunk.half_width[0], trunk.half_width[trunk.half_width.len() / 2]);
+    assert!(foot > 1.3 * middle, "{:?}", trunk.half_width);
+}
+
+#[test]
+fn a_short_trunk_with_an_outline_makes_a_tree_and_a_short_line_a_bush() {
+    use StrokeClass::{Axis, Crown, TrunkOutline};
+    let crown = circle((0.0, 5.0), 4.5);
+    let sides = path(&[(-0.6, 1.8), (-0.7, 0.0), (0.7, 0.0), (0.6, 1.8)]);
+    assert_eq!(Kind::of(&reading(&[(Crown, crown.clone()), (TrunkOutline, sides)]).0), Kind::Tree);
+    assert_eq!(Kind::of(&reading(&[(Crown, crown), (Axis, line((0.0, 1.8), (0.0, 0.0)))]).0), Kind::Bush);
+}

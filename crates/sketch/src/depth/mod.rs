@@ -5,6 +5,7 @@
 mod axes;
 mod branch;
 mod flower;
+mod fruit;
 mod leaf;
 mod scene;
 mod solid;
@@ -12,6 +13,7 @@ mod solid;
 pub(crate) use axes::{Part, Plans};
 pub(crate) use branch::{bend_by_light_and_weight, branch_depths};
 pub(crate) use flower::place_flower;
+pub(crate) use fruit::place_fruit;
 pub(crate) use leaf::{LocalBlade, blade_key, leaf_shape, place_leaf};
 pub(crate) use scene::{Bearing, Scene, coloured, drawn_light};
-pub(crate) use solid::{place_fruit, place_pot, place_thorn};
+pub(crate) use solid::{place_pot, place_thorn};

@@ -1,13 +1,12 @@
-//! Fruits and pots as bodies of revolution, thorns as strands.
+//! Pots as bodies of revolution, thorns as strands.
 
 use base::{Draw, ops};
-use geom::{Pca2, pca2};
 use glam::{DVec2, DVec3};
-use plant::{AxisKind, Frame, Organ, OrganKind, Paint, Plant, Shape};
-use reading::{Attachment, FruitReading, PotReading};
+use plant::{Frame, Organ, OrganKind, Paint, Plant, Shape};
+use reading::{Attachment, PotReading};
 
 use super::axes::{Part, key_of};
-use super::scene::{Bearing, Scene, drawn_light, usable};
+use super::scene::{Scene, drawn_light, usable};
 
 /// Rings of the wall of a pot.
 const POT_RINGS: usize = 13;
@@ -20,85 +19,9 @@ const SOIL_BELOW: f64 = 0.12;
 /// Linear red, green and blue of fired clay and of soil.
 const CLAY: [f32; 3] = [0.48, 0.16, 0.07];
 const EARTH: [f32; 3] = [0.06, 0.04, 0.025];
-/// Rings of a fruit from pole to pole.
-const RINGS: usize = 13;
-
-/// Adds a drawn fruit: its outline turned about its long axis (a round one about the direction of its stalk).
-pub(crate) fn place_fruit(
-    plant: &mut Plant,
-    scene: &Scene<'_>,
-    fruit: &FruitReading,
-    rank: usize,
-    seat: Option<(Bearing, DVec3)>,
-) {
-    let outline: Vec<DVec2> = fruit.outline.iter().copied().filter(|&p| usable(p)).collect();
-    let Some(Pca2 { centre, major, lambda, .. }) = pca2(&outline) else { return };
-    let bearing = match seat {
-        Some((b, _)) => Some(b),
-        None => scene.bearing(plant, fruit.bearer),
-    };
-    let stalk = bearing.and_then(|b| (centre - b.drawn).try_normalize()).unwrap_or(DVec2::NEG_Y);
-    // Below 1.25 (ratio of the squares 1.56) a fruit looks round, and its stalk tells the axis better.
-    let along = if lambda[0] < 1.56 * lambda[1].max(1e-18) {
-        stalk
-    } else if major.dot(stalk) < 0.0 {
-        -major
-    } else {
-        major
-    };
-    let profile = profile(&outline, centre, along);
-    let Some((profile, low)) = profile else { return };
-    let s = scene.map.metres_per_ink;
-    let root = centre + along * low;
-    let mut origin = scene.seat(root, bearing.as_ref());
-    if let Some((_, at)) = seat {
-        origin.z = at.z;
-    }
-    let key = key_of(Part::Fruit, fruit.source, rank as u64, bearing.map_or(0, |b| b.key));
-    let link = key_of(Part::Link, None, 0, key);
-    let bearer = scene.stalk(plant, bearing.as_ref(), root, origin, AxisKind::Petiole, link);
-    let shape = Shape::Revolution { profile: profile.iter().map(|&p| p * s).collect() };
-    let shape = plant.add_shape(shape);
-    plant.organs.push(Organ {
-        kind: OrganKind::Fruit,
-        bearer,
-        flower: None,
-        shape,
-        frame: Frame::looking(origin, along.extend(0.0), DVec3::Z),
-        scale: 1.0,
-        paint: scene.paint(key, fruit.color),
-        key,
-        source: fruit.source,
-    });
-}
-
-/// Mean half width across `along` at rings from pole to pole, and the place of the lower pole. `(radius, y)`.
-fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<(Vec<DVec2>, f64)> {
-    let across = along.perp();
-    let local: Vec<DVec2> =
-        outline.iter().map(|&p| DVec2::new((p - centre).dot(across), (p - centre).dot(along))).collect();
-    let (low, high) =
-        local.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.y), h.max(p.y)));
-    if high - low < 1e-6 {
-        return None;
-    }
-    let mut rings = Vec::with_capacity(RINGS);
-    for i in 0..RINGS {
-        #[expect(clippy::cast_precision_loss, reason = "rings are few")]
-        let t = i as f64 / (RINGS - 1) as f64;
-        // Rings close up towards the poles, where the outline turns.
-        let share = 0.5 - 0.5 * ops::cos(ops::PI * t);
-        let y = low + (high - low) * share;
-        let [left, right] = span((0..local.len()).map(|k| [local[k], local[(k + 1) % local.len()]]), y);
-        let pole = i == 0 || i + 1 == RINGS;
-        let radius = if pole || right < left { 0.0 } else { 0.5 * (right - left) };
-        rings.push(DVec2::new(radius, y - low));
-    }
-    rings.iter().any(|r| r.x > 0.0).then_some((rings, low))
-}
 
 /// Where edges cross a height, farthest to the left and to the right; infinite where none does.
-fn span(edges: impl Iterator<Item = [DVec2; 2]>, y: f64) -> [f64; 2] {
+pub(super) fn span(edges: impl Iterator<Item = [DVec2; 2]>, y: f64) -> [f64; 2] {
     let crossing = edges.filter(|[a, b]| (a.y - y) * (b.y - y) <= 0.0 && a.y != b.y);
     let xs = crossing.map(|[a, b]| ops::lerp(a.x, b.x, ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0)));
     xs.fold([f64::INFINITY, f64::NEG_INFINITY], |[left, right], x| [left.min(x), right.max(x)])
@@ -237,31 +160,4 @@ pub(crate) fn place_thorn(
         key,
         source: thorn.2,
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_round_outline_gives_a_ball() {
-        let circle: Vec<DVec2> = (0..64)
-            .map(|i| {
-                let (s, c) = ops::sin_cos(ops::TAU * f64::from(i) / 64.0);
-                DVec2::new(0.3 + 0.1 * c, 0.5 + 0.1 * s)
-            })
-            .collect();
-        let (rings, low) = profile(&circle, DVec2::new(0.3, 0.5), DVec2::Y).expect("a body");
-        assert!((low + 0.1).abs() < 1e-6);
-        for r in &rings[1..RINGS - 1] {
-            assert!((r.x * r.x + (r.y - 0.1) * (r.y - 0.1) - 0.01).abs() < 2e-4, "{r}");
-        }
-        assert_eq!((rings[0].x, rings[RINGS - 1].x), (0.0, 0.0));
-    }
-
-    #[test]
-    fn outlines_without_extent_give_nothing() {
-        assert!(profile(&[DVec2::ZERO, DVec2::X], DVec2::ZERO, DVec2::Y).is_none());
-        assert!(profile(&[], DVec2::ZERO, DVec2::Y).is_none());
-    }
 }

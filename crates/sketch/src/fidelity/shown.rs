@@ -98,6 +98,19 @@ fn organ_lines(plant: &Plant, organ: &Organ, seen: impl Fn(DVec3) -> DVec2, line
             let side = |x: f64| profile.iter().map(move |p| DVec3::new(x * p.x, p.y, 0.0));
             show(side(1.0).chain(side(-1.0).rev()).map(at).collect(), true);
         }
+        // A body that bends.
+        Some(shape @ Shape::Strand { path, radius_m, .. }) if shape.is_bent_body() => {
+            let edge = |side: f64| -> Vec<DVec3> {
+                let flat: Vec<DVec2> = path.iter().map(|p| p.truncate()).collect();
+                let across = |k: usize| {
+                    let along = flat[(k + 1).min(flat.len() - 1)] - flat[k.saturating_sub(1)];
+                    along.normalize_or_zero().perp()
+                };
+                let radii = radius_m.iter().enumerate();
+                radii.map(|(k, r)| path[k] + (across(k) * (side * r)).extend(0.0)).collect()
+            };
+            show(edge(1.0).into_iter().chain(edge(-1.0).into_iter().rev()).map(at).collect(), true);
+        }
         Some(Shape::Strand { path, .. }) => {
             let thorn = organ.kind == OrganKind::Thorn;
             lines.push(ShownLine { points: path.iter().map(|&p| at(p)).collect(), outline: thorn });

@@ -104,6 +104,28 @@ pub(super) fn fruit(inks: &FruitInks, u: f64, v: f64) -> Paint {
     mix(skin, inks.dot, 0.5 * line(near, 0.10))
 }
 
+/// Skin of a fruit with eyes in spirals both ways, as a pineapple's: u around, v from its tip (0) to its tuft (1), where it is
+/// greener.
+pub(super) fn eyes(u: f64, v: f64) -> Paint {
+    const GOLD: Paint = [0.83, 0.56, 0.16];
+    const GREEN: Paint = [0.48, 0.48, 0.18];
+    const GROOVE: Paint = [0.36, 0.25, 0.10];
+    const SPINE: Paint = [0.30, 0.20, 0.10];
+    // As many spirals one way as the other, so that eyes are diamonds: a little wider than high on a body a half longer
+    // than wide.
+    const AROUND: f64 = 11.0;
+    const ALONG: f64 = 6.0;
+    let (left, right) = (AROUND * u + ALONG * v, AROUND * u - ALONG * v);
+    // From the middle of the eye, 0 to 1 at its edge, along both spirals.
+    let [a, b] = [left, right].map(|x| 2.0 * (x - x.floor()) - 1.0);
+    let patch = octaves(6.0 * u, 4.0 * v, (6, 4), 9, 3);
+    let skin = mix(GOLD, GREEN, ops::smoothstep(0.35, 1.1, v + 0.35 * patch));
+    let edge = a.abs().max(b.abs());
+    let eye = shade(skin, 1.12 - 0.35 * edge * edge);
+    let eye = mix(eye, GROOVE, 0.85 * ops::smoothstep(0.78, 0.97, edge));
+    mix(eye, SPINE, 0.8 * line(ops::hypot(a, b), 0.28))
+}
+
 /// The green body of a cactus: ribs with pale areoles, u around.
 pub(super) fn ribbed(u: f64, v: f64) -> Paint {
     const GROOVE: Paint = [0.15, 0.30, 0.15];

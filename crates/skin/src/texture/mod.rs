@@ -47,6 +47,8 @@ pub(crate) enum Motif {
     PaleDisc,
     Fruit,
     PaleFruit,
+    /// Of a fruit with eyes, such as a pineapple.
+    Eyes,
     /// A green, ribbed body, such as a cactus's.
     Body,
     /// Of pots and of soil, without a hue.
@@ -55,7 +57,7 @@ pub(crate) enum Motif {
     Thorn,
 }
 
-const MOTIFS: usize = 10;
+const MOTIFS: usize = 11;
 
 impl Motif {
     /// The texture, painted on first use (up to about 10 ms on one thread) and kept for the life of the process.
@@ -73,6 +75,7 @@ impl Motif {
             Self::PaleDisc => bodies::disc(executor, 256, &bodies::PALE_DISC),
             Self::Fruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
             Self::PaleFruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::PALE_FRUIT, u, v)),
+            Self::Eyes => canvas(256, 256, &bodies::eyes),
             Self::Body => canvas(256, 128, &bodies::ribbed),
             Self::Clay => canvas(128, 128, &bodies::clay),
             Self::Stamen => canvas(64, 64, &bodies::stamen),
@@ -143,6 +146,7 @@ mod tests {
             M::PaleDisc,
             M::Fruit,
             M::PaleFruit,
+            M::Eyes,
             M::Body,
             M::Clay,
             M::Stamen,
