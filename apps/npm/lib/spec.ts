@@ -1244,7 +1244,7 @@ export type SurfaceKind =
 export type SurfaceRootSpec = {
   /** How many leave each stem, 0 to 40, default 0; half of them fork. */
   count?: number;
-  /** How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 6; each by two fifths more or less. */
+  /** How far from the middle of the stem they show, in its radii at the foot, 1.5 to 40, default 5; each by two fifths more or less. */
   reach?: number;
 };
 
