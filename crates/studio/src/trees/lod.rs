@@ -74,7 +74,7 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
 /// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
 ///
 /// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
-/// are many for the size at which it is seen; flowers that are few have fewer petals from the second level on. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
+/// are many for the size at which it is seen; from the second level on there are no roots; flowers that are few have fewer petals from the second level on. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
 /// become fewer. With [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
 /// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
@@ -106,7 +106,8 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         let bearer = axis.bearer.and_then(|b| moved.get(b.index()).copied().flatten());
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         let orphan = axis.bearer.is_some_and(|b| gone[plant.nodes.axis[b.index()].index()]);
-        if rows.len() < 2 || orphan || (axis.order > 0 && length(axis) < least) {
+        let unseen = axis.kind == AxisKind::Root && level > 1;
+        if rows.len() < 2 || orphan || unseen || (axis.order > 0 && length(axis) < least) {
             gone[row] = true;
             moved[rows].fill(bearer);
             continue;
