@@ -605,7 +605,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.PropSpec.rise_m': '成年树的根离开主干的最大高度，米，0.01 至 50，默认 1.5。',
   'tree.SurfaceRootSpec':
     '自干基沿地面伸出、半埋土中直至没入的根。粗细由树干而定，很快变细。半径不足 12 厘米的干，根也较小；不足 2 厘米者无。',
-  'tree.SurfaceRootSpec.count': '每干的根数，0 至 40，默认 0；半数分叉。树木的主根有 4 至 11 条（Perry，Journal of Arboriculture 8，1982）。',
+  'tree.SurfaceRootSpec.count':
+    '每干的根数，0 至 40，默认 0；半数分叉。树木的主根有 4 至 11 条（Perry，Journal of Arboriculture 8，1982）。',
   'tree.SurfaceRootSpec.reach': '自干心露出多远，以干基半径计，1.5 至 40，默认 5；各根相差可达五分之二。',
   'tree.WoodSpec': '骨架如何长成木质。',
   'tree.WoodSpec.internode_share':
