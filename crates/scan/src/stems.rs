@@ -42,6 +42,9 @@ fn lowest(points: &[DVec3]) -> f64 {
     heights[heights.len() / 2000]
 }
 
+/// Roots and the foot of a stem that spreads into them lie below this share of the height.
+const ROOTED: f64 = 0.1;
+
 /// One thing that touches the ground.
 #[derive(Clone, Debug)]
 struct Contact {
@@ -65,31 +68,18 @@ pub(crate) struct Stems {
 impl Stems {
     pub(crate) fn find(ways: &Ways, site: &Site<'_>, spec: &TreeScanSpec) -> Result<Self, ScanTreeError> {
         let (piece, sizes) = ways.pieces(2, |_| true);
-        let low = |c: usize| site.over(ways.means[c]) < site.contact;
-        let (contact_of, counts) = ways.pieces(2, low);
-        let mut contacts: Vec<Contact> = counts
-            .iter()
-            .map(|_| Contact { cubes: vec![], middle: DVec3::ZERO, half: 0.0, piece: NONE })
-            .collect();
-        for (c, &k) in (0_u32..).zip(&contact_of) {
-            if k != NONE {
-                contacts[k as usize].cubes.push(c);
-            }
-        }
-        for k in &mut contacts {
-            let places = || k.cubes.iter().map(|&c| ways.means[c as usize]);
-            k.middle = places().sum::<DVec3>() / k.cubes.len() as f64;
-            let (a, b) =
-                places().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
-            k.half = 0.5 * (b - a).x.max((b - a).z);
-            k.piece = piece[k.cubes[0] as usize];
+        let solid = |k: &Contact| k.half < (0.12 * site.height).max(0.05) && k.cubes.len() >= 3;
+        let mut contacts = touching(ways, site, &piece, (0.0, site.contact));
+        if !contacts.iter().any(solid) {
+            // A stem that spreads into roots is slim above them.
+            let under = site.contact.max(ROOTED * site.height);
+            contacts = touching(ways, site, &piece, (0.5 * under, under));
         }
         // How high each piece reaches, and which contact a loose piece above belongs to: the nearest below it.
         let mut top = vec![0.0_f64; sizes.len()];
         for (c, &p) in piece.iter().enumerate() {
             top[p as usize] = top[p as usize].max(site.over(ways.means[c]));
         }
-        let solid = |k: &Contact| k.half < (0.12 * site.height).max(0.05) && k.cubes.len() >= 3;
         let mut score: Vec<f64> = contacts.iter().map(|k| f64::from(sizes[k.piece as usize])).collect();
         add_loose(ways, &piece, &sizes, &contacts, &mut score, &solid);
         for (s, k) in score.iter_mut().zip(&contacts) {
@@ -194,6 +184,32 @@ impl Stems {
         let first = stem.map_or(self.feet[0].middle, |r| r.middle);
         DVec3::new(first.x, site.level(first), first.z)
     }
+}
+
+/// What touches the ground, up to a height over it; its middle and width are those of what is above another one.
+fn touching(ways: &Ways, site: &Site<'_>, piece: &[u32], (from, under): (f64, f64)) -> Vec<Contact> {
+    let over = |c: usize| site.over(ways.means[c]);
+    let (contact_of, counts) = ways.pieces(2, |c| over(c) < under);
+    let none = Contact { cubes: vec![], middle: DVec3::ZERO, half: f64::INFINITY, piece: NONE };
+    let mut contacts = vec![none; counts.len()];
+    for (c, &k) in (0_u32..).zip(&contact_of) {
+        if k != NONE {
+            contacts[k as usize].cubes.push(c);
+        }
+    }
+    for k in &mut contacts {
+        k.piece = piece[k.cubes[0] as usize];
+        let high = |c: &&u32| from <= 0.0 || over(**c as usize) >= from;
+        let places: Vec<DVec3> = k.cubes.iter().filter(high).map(|&c| ways.means[c as usize]).collect();
+        if places.is_empty() {
+            continue;
+        }
+        k.middle = places.iter().sum::<DVec3>() / places.len() as f64;
+        let (a, b) =
+            places.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+        k.half = 0.5 * (b - a).x.max((b - a).z);
+    }
+    contacts
 }
 
 /// Loose pieces count for the contact that is nearest seen from above.
