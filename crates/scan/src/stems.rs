@@ -69,7 +69,7 @@ impl Stems {
     pub(crate) fn find(ways: &Ways, site: &Site<'_>, spec: &TreeScanSpec) -> Result<Self, ScanTreeError> {
         let (piece, sizes) = ways.pieces(2, |_| true);
         let solid = |k: &Contact| k.half < (0.12 * site.height).max(0.05) && k.cubes.len() >= 3;
-        let mut contacts = touching(ways, site, &piece, (0.0, site.contact));
+        let mut contacts = touching(ways, site, &piece, (f64::NEG_INFINITY, site.contact));
         if !contacts.iter().any(solid) {
             // A stem that spreads into roots is slim above them.
             let under = site.contact.max(ROOTED * site.height);
@@ -199,7 +199,7 @@ fn touching(ways: &Ways, site: &Site<'_>, piece: &[u32], (from, under): (f64, f6
     }
     for k in &mut contacts {
         k.piece = piece[k.cubes[0] as usize];
-        let high = |c: &&u32| from <= 0.0 || over(**c as usize) >= from;
+        let high = |c: &&u32| over(**c as usize) >= from;
         let places: Vec<DVec3> = k.cubes.iter().filter(high).map(|&c| ways.means[c as usize]).collect();
         if places.is_empty() {
             continue;

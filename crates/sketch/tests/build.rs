@@ -1,5 +1,7 @@
 //! Readings made by hand and at random -> plants.
 
+mod tools;
+
 use base::{CancelToken, Report, Run, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
@@ -9,18 +11,11 @@ use reading::{
     PotReading, Reading, RegionKind, RegionReading,
 };
 use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
-
-fn v(x: f64, y: f64) -> DVec2 {
-    DVec2::new(x, y)
-}
+use tools::{blade, made, v};
 
 fn around(k: u32, n: u32, phase: f64) -> DVec2 {
     let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / f64::from(n) + phase);
     v(c, s)
-}
-
-fn made(reading: &Reading, spec: &SketchSpec) -> Built {
-    build(reading, spec, Seed::new(1), &Run::plain(), &mut Report::default()).expect("not cancelled")
 }
 
 fn axis(points: Vec<DVec2>, bearer: Option<(usize, f64)>, source: u32) -> AxisReading {
@@ -30,27 +25,6 @@ fn axis(points: Vec<DVec2>, bearer: Option<(usize, f64)>, source: u32) -> AxisRe
         bearer: bearer.map(|(axis, at)| Attachment { axis, at }),
         half_width: vec![],
         source: Some(source),
-    }
-}
-
-/// A lens from root to tip.
-fn blade(root: DVec2, tip: DVec2, width: f64, source: u32) -> BladeReading {
-    let point = |i: i32, s: f64| {
-        let t = f64::from(i) / 12.0;
-        root.lerp(tip, t) - (tip - root).perp() * (s * width * 4.0 * t * (1.0 - t))
-    };
-    let outline = (0..=12).map(|i| point(i, 0.5)).chain((1..12).rev().map(|i| point(i, -0.5))).collect();
-    BladeReading {
-        outline,
-        root,
-        tip,
-        midrib: vec![root, root.lerp(tip, 0.5), tip],
-        veins: vec![],
-        bearer: None,
-        whorl: 0,
-        front: None,
-        source: Some(source),
-        color: None,
     }
 }
 

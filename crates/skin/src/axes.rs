@@ -59,6 +59,7 @@ struct Chain {
     surface: Surface,
     /// A leaf stalk: thin and one of many.
     stalk: bool,
+    root: bool,
     /// Roots leave its foot.
     rooted: bool,
 }
@@ -160,7 +161,7 @@ pub(crate) fn tubes<'p>(
         let wood = |i: usize| Wood {
             bearer: smooth(hosts[i]).zip(hosts[i]).map(|(bearer, (host, _))| (bearer, host)),
             reach: reaches[i],
-            borne: chains[i].bearer.is_some() && !is_root(plant, &chains[i]),
+            borne: chains[i].bearer.is_some() && !chains[i].root,
             key: chains[i].axes.first().map_or(0, |&a| plant.axis(a).key),
             spine: spines[i].as_ref(),
         };
@@ -194,7 +195,7 @@ pub(crate) fn tubes<'p>(
         let bearer = hosts[i].and_then(|(host, sample)| {
             Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], faces[host]))
         });
-        let surface = surface(chain, is_root(plant, chain), spine, thickest, budget);
+        let surface = surface(chain, spine, thickest, budget);
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
         let repeats = match surface {
             Surface::Bark => base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
@@ -219,14 +220,10 @@ pub(crate) fn tubes<'p>(
     Ok((tubes.into_iter().flatten().collect(), wind))
 }
 
-fn is_root(plant: &Plant, chain: &Chain) -> bool {
-    chain.axes.first().is_some_and(|&a| plant.axis(a).kind == AxisKind::Root)
-}
-
 /// What a chain is made of, as thick as it is beside the thickest and the whole plant. Roots are as old as the stem.
-fn surface(chain: &Chain, root: bool, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
+fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
     match chain.surface {
-        Surface::Bark if !root && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
+        Surface::Bark if !chain.root && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
             Surface::YoungBark
         }
         Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
@@ -406,6 +403,7 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
             bearer: axis.bearer,
             surface: Surface::of(plant, axis),
             stalk: axis.kind == AxisKind::Petiole,
+            root: axis.kind == AxisKind::Root,
             rooted: rooted[i],
         };
         places[i] = (chains.len(), 0);
