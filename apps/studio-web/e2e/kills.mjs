@@ -21,6 +21,15 @@ const POINTS = 16;
 const STEP = 10;
 /** A hand takes a new document after so many strokes. */
 const FULL = 150;
+/**
+ * A document that is not free after so many openings is held by a page that lives on where Playwright no longer sees it:
+ * then the whole browser is killed. One that is not free in a browser that was just started is a fault, so often in a row.
+ */
+const TRIES = 8;
+const STUCK = 3;
+/** A call to a page that was killed may never be answered, ms; and all of it takes no longer than this. */
+const ANSWER = 5000;
+const LIMIT = 20 * 60_000;
 
 let state = seed >>> 0;
 /** A number from 0 to 1 (mulberry32). */
@@ -40,7 +49,14 @@ process.on('uncaughtException', (e) => {
 
 const url = await serve(burgeon, folder);
 const profile = mkdtempSync(join(tmpdir(), 'burgeon-kills-'));
-process.on('exit', () => rmSync(profile, { recursive: true, force: true, maxRetries: 5 }));
+process.on('exit', () => {
+  try {
+    rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+  } catch (e) {
+    // Processes of the browser that are just ending may still write there.
+    console.error(`${profile} is left behind: ${e.message}`);
+  }
+});
 
 async function launch() {
   const context = await chromium.launchPersistentContext(profile, {
@@ -117,13 +133,15 @@ function lengthsOf(id) {
   });
 }
 
-const sums = { pages: 0, browsers: 0, strokes: 0, loading: 0, short: 0, under: 0, waited: 0 };
+const sums = { pages: 0, browsers: 0, strokes: 0, loading: 0, short: 0, under: 0, waited: 0, stuck: 0 };
 const wrong = [];
 const hands = Array.from({ length: HANDS }, () => ({ id: '', done: 0, saved: 0, known: 0, end: '' }));
 const pause = (ms) =>
   new Promise((r) => {
     setTimeout(r, ms);
   });
+
+const close = (page) => Promise.race([page.close().catch(() => {}), pause(ANSWER)]);
 
 /** Not with each frame: a tab behind another has none. */
 const until = (page, test) => page.waitForFunction(test, undefined, { polling: 50 });
@@ -141,12 +159,14 @@ async function open(hand) {
   await until(page, () => document.body.dataset.ready === 'true');
 }
 
+class NotFree extends Error {}
+
 /**
  * A page may fall with one that is killed beside it, before it has a process of its own. And one that was killed may have
  * its document still, while the system takes its process apart: until then the document can only be looked at.
  */
 async function openSurely(hand) {
-  for (;;) {
+  for (let k = 0; k < TRIES; k += 1) {
     hand.page = await context.newPage();
     try {
       await open(hand);
@@ -155,8 +175,9 @@ async function openSurely(hand) {
     } catch (e) {
       if (!e.message.includes('Target crashed')) throw e;
     }
-    await hand.page.close().catch(() => {});
+    await close(hand.page);
   }
+  throw new NotFree(`the document ${hand.id} was not free after ${TRIES} openings (${hand.end})`);
 }
 
 const readonly = ({ page }) => page.evaluate(() => document.body.dataset.kept === 'readonly');
@@ -184,7 +205,23 @@ async function turn(hand) {
 }
 
 const began = Date.now();
+setTimeout(() => {
+  console.error(
+    `not done after ${LIMIT / 60_000} minutes: ${JSON.stringify(sums)} ${JSON.stringify(hands.map((h) => h.end))}`,
+  );
+  process.exit(1);
+}, LIMIT).unref();
 let context = await launch();
+let stuckInARow = 0;
+
+/** Kills the browser with all its processes, and starts another. */
+async function killBrowser() {
+  // Playwright gives the browser a group of its own.
+  process.kill(-context.pid, 'SIGKILL');
+  await Promise.race([context.close().catch(() => {}), pause(ANSWER)]);
+  context = await launch();
+}
+
 for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
   const whole = round % WHOLE === WHOLE - 1;
   const browserAt = 300 + 1500 * random();
@@ -210,21 +247,25 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
     if (whole) return;
     const cdp = await context.newCDPSession(hand.page);
     // A page that is only being opened does not always say that it fell.
-    const fell = hand.page.waitForEvent('crash', { timeout: 5000 }).catch(() => {});
+    const fell = hand.page.waitForEvent('crash', { timeout: ANSWER }).catch(() => {});
     await Promise.race([cdp.send('Page.crash').catch(() => {}), fell]);
     sums.pages += 1;
-    await hand.page.close().catch(() => {});
+    await close(hand.page);
   });
-  if (whole) {
-    await Promise.all(work);
-    await pause(browserAt);
-    // Playwright gives the browser a group of its own.
-    process.kill(-context.pid, 'SIGKILL');
-    sums.browsers += 1;
-    await context.close().catch(() => {});
-    context = await launch();
-  } else await Promise.all(work);
+  const failed = (await Promise.allSettled(work)).flatMap((w) => (w.status === 'rejected' ? [w.reason] : []));
+  const other = failed.find((e) => !(e instanceof NotFree));
+  if (other) throw other;
+  stuckInARow = failed.length > 0 ? stuckInARow + 1 : 0;
+  if (stuckInARow === STUCK) throw failed[0];
+  if (whole || failed.length > 0) {
+    if (failed.length === 0) await pause(browserAt);
+    await killBrowser();
+    if (failed.length === 0) sums.browsers += 1;
+    else sums.stuck += 1;
+  }
 }
+// In a browser of its own: nothing is held by a page of before.
+await killBrowser();
 for (const hand of hands) {
   await openSurely(hand);
   await check(hand);
@@ -235,7 +276,7 @@ const pages = sums.pages + HANDS * sums.browsers;
 console.log(
   `${wrong.length === 0 ? 'ok      ' : 'FAILED  '}${pages} pages killed while ${sums.strokes} strokes were drawn: ` +
     `${sums.pages} by themselves, ${sums.browsers} times ${HANDS} with the whole browser, ${sums.loading} while they opened; ` +
-    `${sums.under} strokes that were under the pen are there, ${sums.short} finished ones lack their end; ${sums.waited} documents were not free at once (seed ${seed}, ` +
+    `${sums.under} strokes that were under the pen are there, ${sums.short} finished ones lack their end; ${sums.waited} documents were not free at once, ${sums.stuck} times the browser was killed for it (seed ${seed}, ` +
     `${((Date.now() - began) / 1000).toFixed(0)} s)`,
 );
 for (const each of wrong) console.log(`        ${each}`);
