@@ -96,6 +96,7 @@ export const PARTS = [
   'floret',
   'body',
   'pot',
+  'stub',
 ] as const;
 
 /** Fruits with a parachute each, all round the head: a dandelion's clock. */
@@ -1163,6 +1164,20 @@ export type RingRule =
   | /** The circle in which the ball touches the envelope of all balls: the exact surface. */
   "envelope";
 
+/** What is left on stems of branches that they lost: mean numbers, of which every seed has more or less. */
+export type ScarSpec = {
+  /** Limbs that broke off, 0 to 50, default 0. */
+  broken_limbs?: number;
+  /** Burls, 0 to 50, default 0. */
+  burls?: number;
+  /** Hollows, where a stub has rotted away, 0 to 50, default 0. */
+  hollows?: number;
+  /** Knots, where the stem has grown around a stub, by metre, 0 to 30, default 0. */
+  knots?: number;
+  /** Stubs of dead branches, by metre, 0 to 30, default 0. */
+  stubs?: number;
+};
+
 /** Everything that can be asked of the sketch maker; saved with the document. */
 export type SketchSpec = {
   /** Depth of branches. */
@@ -1424,6 +1439,8 @@ export type WoodSpec = {
   props?: PropSpec;
   /** How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at forks become acute and courses straighter; each time costs half an internode of size. */
   relax?: number;
+  /** What is left on stems of branches that they lost. */
+  scars?: ScarSpec;
   /** Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). */
   smooth?: boolean;
   /** Roots that show around the foot of each stem. */

@@ -62,5 +62,5 @@ mod _burgeon {
 
     /// What a point or triangle can lie on, by the number that is its label.
     #[pymodule_export]
-    const PARTS: [&str; 18] = burgeon::PARTS;
+    const PARTS: [&str; 19] = burgeon::PARTS;
 }

@@ -52,7 +52,7 @@ def test_tables_fit_together(small):
     assert set(np.unique(organs.part)) <= set(range(5, len(bg.PARTS)))
     assert set(organs.to_dict()) >= {"part", "position_x", "normal_z", "scale"}
     length = np.linalg.norm(np.diff(nodes.position, axis=0), axis=1)[np.diff(nodes.axis) == 0].sum()
-    wood = [bg.PARTS.index(p) for p in ("petiole", "root")]
+    wood = [bg.PARTS.index(p) for p in ("petiole", "root", "stub")]
     if not np.isin(axes.part, wood).any():
         assert np.isclose(length, small.measures()["length_m"])
 

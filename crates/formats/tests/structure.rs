@@ -47,8 +47,15 @@ fn wild(seed: u64, axes: usize) -> Plant {
             let step = if s.chance(0.05) { 0.0 } else { 1.0 };
             line.push(line[line.len() - 1] + DVec3::new(s.normal(), s.uniform(), s.normal()) * step);
         }
-        let kinds = [AxisKind::Branch, AxisKind::Twig, AxisKind::Stem, AxisKind::Petiole, AxisKind::Root];
-        let id = p.add_axis(kinds[if s.chance(0.7) { 0 } else { i % 5 }], bearer, i as u64, &line, None);
+        let kinds = [
+            AxisKind::Branch,
+            AxisKind::Twig,
+            AxisKind::Stem,
+            AxisKind::Petiole,
+            AxisKind::Root,
+            AxisKind::Stub,
+        ];
+        let id = p.add_axis(kinds[if s.chance(0.7) { 0 } else { i % 6 }], bearer, i as u64, &line, None);
         for node in p.axis(id).node_ids() {
             p.nodes.radius_m[node.index()] = s.uniform() * 0.1;
         }

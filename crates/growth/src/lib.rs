@@ -19,6 +19,7 @@
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |
 //! | `props` | roots that arch from the stem to the ground |
+//! | `scars` | stubs, knots, burls, hollows and broken limbs on stems |
 //! | `surface_roots` | roots that run along the ground from the foot of a stem |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
 //! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
@@ -40,6 +41,7 @@ mod lsystem;
 mod mesh_faults;
 mod obstacle;
 mod props;
+mod scars;
 mod self_organize;
 mod set_down;
 mod sieve;
@@ -73,7 +75,7 @@ pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tree::{FlowerPlace, Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;
-pub use wood::{PropSpec, SurfaceRootSpec, Wood, WoodSpec, make_wood};
+pub use wood::{PropSpec, ScarSpec, SurfaceRootSpec, Wood, WoodSpec, make_wood};
 
 /// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and
 /// meshes. As of an oak.

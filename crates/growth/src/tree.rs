@@ -11,6 +11,7 @@ use crate::competition::compete_each;
 use crate::envelope::crowns;
 use crate::life::{grown_by, younger};
 use crate::props::add_props;
+use crate::scars::add_scars;
 use crate::surface_roots::add_surface_roots;
 use crate::variation::Habit;
 use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
@@ -146,6 +147,7 @@ pub fn grow(
         (leaves.kept, leaves.fallen) = (leaves.kept - gone, leaves.fallen + gone);
     }
     run.cancel.reached(LEAFY);
+    add_scars(&mut plant, &wood_spec, &obstacles, seed);
     add_surface_roots(&mut plant, &wood_spec, &obstacles, seed);
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
     Ok(Grown { plant, skeleton, tally, leaves, flowers })

@@ -40,6 +40,8 @@ pub struct WoodSpec {
     pub props: PropSpec,
     /// Roots that show around the foot of each stem. Default none.
     pub surface_roots: SurfaceRootSpec,
+    /// What is left on stems of branches that they lost. Default none.
+    pub scars: ScarSpec,
     /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
     pub smooth: bool,
     /// How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at
@@ -64,6 +66,7 @@ impl Default for WoodSpec {
             swell: 1.0,
             props: PropSpec::default(),
             surface_roots: SurfaceRootSpec::default(),
+            scars: ScarSpec::default(),
             smooth: true,
             relax: 1,
             thin_out: 0.25,
@@ -121,6 +124,31 @@ impl Default for SurfaceRootSpec {
         Self { count: 0, reach: 5.0 }
     }
 }
+
+/// What is left on stems of branches that they lost: mean numbers, of which every seed has more or less. All lie about the
+/// stem below its crown and among its first limbs; a stem that is branched from the ground has few. Stems of 10 cm radius
+/// have all stubs and knots, those of 25 cm the rest too; those of 4 and 10 cm have none yet.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScarSpec {
+    /// Stubs of dead branches, by metre, 0 to 30, default 0.
+    #[schemars(range(min = 0.0, max = 30.0))]
+    pub stubs: f64,
+    /// Knots, where the stem has grown around a stub, by metre, 0 to 30, default 0.
+    #[schemars(range(min = 0.0, max = 30.0))]
+    pub knots: f64,
+    /// Burls, 0 to 50, default 0.
+    #[schemars(range(min = 0.0, max = 50.0))]
+    pub burls: f64,
+    /// Hollows, where a stub has rotted away, 0 to 50, default 0.
+    #[schemars(range(min = 0.0, max = 50.0))]
+    pub hollows: f64,
+    /// Limbs that broke off, 0 to 50, default 0.
+    #[schemars(range(min = 0.0, max = 50.0))]
+    pub broken_limbs: f64,
+}
+
+spec::schemas!(ScarSpec => crate::TreeSpec, "/$defs/ScarSpec");
 
 /// A plant made of a skeleton.
 #[derive(Clone, Debug, PartialEq)]
@@ -396,7 +424,9 @@ fn axes(
         if way.points.len() < 2 {
             continue;
         }
-        let bears = |i: usize| way.joint[i].is_some_and(|k| !side[chain[k]].is_empty());
+        // Scars lie anywhere on a stem: it keeps its nodes for them.
+        let scarred = bearer.is_none() && spec.scars != ScarSpec::default();
+        let bears = |i: usize| scarred || way.joint[i].is_some_and(|k| !side[chain[k]].is_empty());
         thin_out(&way, bears, &mut kept);
         let line: Vec<DVec3> = kept.iter().map(|&i| way.points[i]).collect();
         let id = plant.add_axis(AxisKind::Branch, bearer, key, &line, None);

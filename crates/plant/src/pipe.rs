@@ -91,8 +91,8 @@ fn carried(plant: &Plant) -> Carried {
             above[node] = sum;
         }
         axis[i] = sum;
-        // Roots draw nothing from the shoot.
-        if let Some(b) = a.bearer.filter(|_| a.kind != AxisKind::Root) {
+        // Roots and stubs draw nothing from the shoot.
+        if let Some(b) = a.bearer.filter(|_| !matches!(a.kind, AxisKind::Root | AxisKind::Stub)) {
             here[b.index()] += sum;
         }
     }

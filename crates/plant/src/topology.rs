@@ -22,6 +22,15 @@ pub enum AxisKind {
     Petiole,
     /// Below ground.
     Root,
+    /// Woody and dead: what a stem keeps of a branch that broke off or rotted away, and what grew over it.
+    Stub,
+}
+
+impl AxisKind {
+    /// Whether it is a living shoot that others may grow out of: not a leaf's stalk, nor a root, nor what is left of a branch.
+    pub const fn is_shoot(self) -> bool {
+        !matches!(self, Self::Petiole | Self::Root | Self::Stub)
+    }
 }
 
 /// One axis. Its nodes are consecutive rows, base first.

@@ -51,7 +51,7 @@ impl Branch {
 
     /// Bears twigs, rather than being a leaf's stalk or a root.
     pub(crate) fn is_shoot(&self) -> bool {
-        !matches!(self.kind, AxisKind::Petiole | AxisKind::Root)
+        self.kind.is_shoot()
     }
 }
 

@@ -3,7 +3,7 @@
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
 use growth::GuidedChange;
-use plant::{AxisId, AxisKind, Plant};
+use plant::{AxisId, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -480,7 +480,7 @@ impl Mirror {
     pub fn between_hands(plant: &Plant, right: DVec3) -> Option<Self> {
         let normal = right.with_y(0.0).try_normalize()?;
         let stems = plant.axes.iter().enumerate().filter(|(_, a)| a.bearer.is_none());
-        let stems = stems.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+        let stems = stems.filter(|(_, a)| a.kind.is_shoot());
         let lines = stems.map(|(i, _)| plant.axis_points(AxisId::new(i)));
         let long = lines.map(|line| (geom::polyline_length3(line), line));
         let (_, line) = long.reduce(|a, b| if b.0 > a.0 { b } else { a })?;

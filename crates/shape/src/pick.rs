@@ -3,7 +3,7 @@
 //! `ray + plant -> the nearest axis and the place on it`
 
 use glam::DVec3;
-use plant::{AxisId, AxisKind, Plant};
+use plant::{AxisId, Plant};
 
 /// A line of sight: from an eye through a pixel, or along a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
     let d = ray.direction.try_normalize().filter(|_| ray.origin.is_finite())?;
     let mut best: Option<(f64, Pick)> = None;
     for (i, axis) in plant.axes.iter().enumerate() {
-        if matches!(axis.kind, AxisKind::Petiole | AxisKind::Root) {
+        if !axis.kind.is_shoot() {
             continue;
         }
         let id = AxisId::new(i);

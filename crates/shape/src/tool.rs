@@ -5,7 +5,7 @@
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
 use growth::{GuidedChange, GuidedSpec, Tropism};
-use plant::{AxisId, AxisKind, Plant};
+use plant::{AxisId, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -784,14 +784,14 @@ fn wood_under(plant: &Plant, ray: &Ray, reach: Reach, but: AxisId) -> Option<Goa
     let pick = pick(plant, ray, reach)?;
     let kind = plant.axis(pick.axis).kind;
     let other = !plant.borne_by(but)[pick.axis.index()];
-    (other && !matches!(kind, AxisKind::Petiole | AxisKind::Root)).then_some(Goal::Wood(pick.axis, pick.at))
+    (other && kind.is_shoot()).then_some(Goal::Wood(pick.axis, pick.at))
 }
 
 /// The place on a shoot nearest to a point, on none that `but` bears or is.
 fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Goal> {
     let borne = plant.borne_by(but);
     let shoots = plant.axes.iter().enumerate();
-    let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+    let shoots = shoots.filter(|(_, a)| a.kind.is_shoot());
     let (axis, _, share) = shoots
         .map(|(i, _)| AxisId::new(i))
         .filter(|axis| at.is_finite() && !borne[axis.index()])

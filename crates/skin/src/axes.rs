@@ -11,6 +11,7 @@ use crate::rings::{drawn, planes, rings};
 use crate::sleeve::{Circle, Ribs, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec};
 use crate::spine::{Reach, Spine};
+use crate::stub_end::{End, follow, lay_bark};
 use crate::traced::Traced;
 use crate::wind::{self, Wind, Wood};
 
@@ -20,6 +21,8 @@ pub(crate) enum Surface {
     Bark,
     /// Thin branches, still smooth.
     YoungBark,
+    /// Where a stub ends: no bark.
+    DeadWood,
     Stem,
     /// Green and thick: the body and arms of a cactus.
     Flesh,
@@ -29,7 +32,7 @@ pub(crate) enum Surface {
 impl Surface {
     fn of(plant: &Plant, axis: &Axis) -> Self {
         match axis.kind {
-            AxisKind::Branch | AxisKind::Twig => Self::Bark,
+            AxisKind::Branch | AxisKind::Twig | AxisKind::Stub => Self::Bark,
             AxisKind::Root if on_the_ground(plant, axis) => Self::Bark,
             AxisKind::Root => Self::Root,
             // Stem, petiole, and kinds to come that are not known to be woody.
@@ -60,6 +63,8 @@ struct Chain {
     /// A leaf stalk: thin and one of many.
     stalk: bool,
     root: bool,
+    /// What is left of a branch.
+    stub: bool,
     /// Roots leave its foot.
     rooted: bool,
 }
@@ -84,7 +89,7 @@ type Place = (usize, usize);
 const GROUP: usize = 16;
 
 // Branches thinner than this share of the thickest are young: no plates yet.
-const YOUNG: f64 = 0.24;
+const YOUNG: f64 = 0.12;
 // A plant whose thickest branch is thinner than this share of its size has no old wood.
 const SLENDER: f64 = 0.02;
 
@@ -97,6 +102,9 @@ const LEVEL: f64 = 0.35;
 
 // Sides of a tube with ribs: two for each of as many as there can be.
 const MOST_SIDES: u32 = 64;
+
+// How high bark is pushed up in a crotch, over the spread of the fillet.
+const RIDGE: f64 = 0.25;
 
 // Below this detail ribs are painted alone.
 const COARSE: f64 = 0.3;
@@ -190,40 +198,78 @@ pub(crate) fn tubes<'p>(
     });
     run.budget.check(Counted::Triangles, sleeves.sum(), crate::FEWER)?;
     let coloured = Coloured::of(plant);
-    let tubes = grouped(run, chains.len(), |i| {
-        let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
-        let bearer = hosts[i].and_then(|(host, sample)| {
-            Some(lines[host].as_ref()?.bearer(spines[host].as_ref()?.s[sample], faces[host]))
+    let all = All { plant, budget, chains, spines, lines, hosts, faces, thickest, traced, wind, coloured };
+    let tubes =
+        grouped(run, all.chains.len(), |i| all.tubes_of(i, circles.get(sides[i] as usize)?, ribs[i]))?;
+    Ok((tubes.into_iter().flatten().flatten().flatten().collect(), all.wind))
+}
+
+/// What the tubes of all chains are made of; rows by chain.
+struct All<'a, 'p> {
+    plant: &'p Plant,
+    budget: &'a Budget,
+    chains: Vec<Chain>,
+    spines: Vec<Option<Spine>>,
+    lines: Vec<Option<Line>>,
+    hosts: Vec<Option<Host>>,
+    /// The sides as which each counts for what grows out of it.
+    faces: Vec<u32>,
+    thickest: f64,
+    traced: Option<&'a Traced>,
+    wind: Option<Wind<'p>>,
+    coloured: Option<Coloured<'p>>,
+}
+
+impl All<'_, '_> {
+    /// The tube of a chain, and the face of a stub.
+    fn tubes_of(&self, i: usize, circle: &Circle, ribs: Ribs) -> Option<[Option<Tube>; 2]> {
+        let (chain, spine, line) = (&self.chains[i], self.spines[i].as_ref()?, self.lines[i].as_ref()?);
+        let bearer = self.hosts[i].and_then(|(host, sample)| {
+            Some(self.lines[host].as_ref()?.bearer(self.spines[host].as_ref()?.s[sample], self.faces[host]))
         });
-        let surface = surface(chain, spine, thickest, budget);
-        // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
-        let repeats = match surface {
-            Surface::Bark => base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
-            _ => 1,
-        };
-        let circle = circles.get(sides[i] as usize)?;
-        let (mut mesh, fillet) = sleeve(line, bearer.as_ref(), circle, (repeats, ribs[i]));
-        if let Some(wind) = &wind {
+        let surface = surface(chain, spine, self.thickest, self.budget);
+        let repeats = if surface == Surface::Bark { repeats(spine, self.thickest) } else { 1 };
+        let end = end(self.plant, chain, spine, line);
+        let barked = matches!(surface, Surface::Bark | Surface::YoungBark) && !chain.root && !chain.stub;
+        let ridge = if barked { RIDGE } else { 0.0 };
+        let (mut mesh, fillet, face) = sleeve(line, bearer.as_ref(), circle, (repeats, ribs), (end, ridge));
+        if let (true, Some(reach), Some((host, _))) =
+            (chain.stub && !end.is_broken(), line.reach, self.hosts[i])
+            && let Some(host) = &self.spines[host]
+        {
+            let at = host.at(reach.on);
+            let scale = f64::from(self::repeats(host, self.thickest)) / (base::ops::TAU * at.radius);
+            lay_bark(&mut mesh, &reach.exit, &at, scale);
+        }
+        if let Some(wind) = &self.wind {
             let fillet =
-                fillet.zip(bearer.as_ref()).zip(hosts[i]).map(|((rows, b), (host, _))| (rows, b, host));
+                fillet.zip(bearer.as_ref()).zip(self.hosts[i]).map(|((rows, b), (host, _))| (rows, b, host));
             wind.tube(&mut mesh, i, spine, circle.sides(), fillet);
         }
-        let traced = traced.filter(|t| chain.axes.iter().all(|&a| t.has(plant.axis(a).source)));
+        let traced = self.traced.filter(|t| chain.axes.iter().all(|&a| t.has(self.plant.axis(a).source)));
         if let Some(traced) = traced {
             traced.tube(&mut mesh, spine);
         }
-        if let Some(coloured) = &coloured {
+        if let Some(coloured) = &self.coloured {
             coloured.tube(&mut mesh, &chain.axes, spine);
         }
-        Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
-    })?;
-    Ok((tubes.into_iter().flatten().collect(), wind))
+        let tube = |surface, mesh| Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh };
+        let face = face.map(|mut face| {
+            follow(&mut face, &mesh);
+            tube(Surface::DeadWood, face)
+        });
+        Some([Some(tube(surface, mesh)), face])
+    }
 }
 
 /// What a chain is made of, as thick as it is beside the thickest and the whole plant. Roots are as old as the stem.
 fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
     match chain.surface {
-        Surface::Bark if !chain.root && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
+        Surface::Bark
+            if !chain.root
+                && !chain.stub
+                && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) =>
+        {
             Surface::YoungBark
         }
         Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
@@ -340,13 +386,29 @@ impl Line {
     }
 }
 
-/// One tube: fillet or flat base, rings, round tip. Also the number of the fillet's rows below the first ring.
+/// How often bark repeats around a branch: three times around the thickest, so that its ridges are of like size on all.
+fn repeats(spine: &Spine, thickest: f64) -> u32 {
+    base::ops::whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3)
+}
+
+/// How a chain ends.
+fn end(plant: &Plant, chain: &Chain, spine: &Spine, line: &Line) -> End {
+    let Some((&last, &axis)) = spine.r.last().zip(chain.axes.first()).filter(|_| chain.stub) else {
+        return End::Round;
+    };
+    let beyond = spine.length() - line.reach.as_ref().map_or(0.0, |r| r.exit.s);
+    End::of_stub(plant.axis(axis).key, beyond, spine.stout(), last)
+}
+
+/// One tube: fillet or flat base, rings, and its end. Also the number of the fillet's rows below the first ring, and what of the
+/// end has no bark.
 fn sleeve(
     line: &Line,
     bearer: Option<&Bearer<'_>>,
     circle: &Circle,
     (repeats, ribs): (u32, Ribs),
-) -> (TriMesh, Option<usize>) {
+    (end, ridge): (End, f64),
+) -> (TriMesh, Option<usize>, Option<TriMesh>) {
     let Ends { steps, tip, .. } = line.ends;
     let mut rings = rings(&line.line, line.first);
     let mut mesh = TriMesh::default();
@@ -357,7 +419,7 @@ fn sleeve(
     mesh.triangles.reserve(2 * capacity);
     let mut out = Sleeve::new(&mut mesh, circle, repeats).ribbed(ribs);
     let fillet = line.reach.as_ref().zip(bearer).map(|(reach, bearer)| {
-        let collar = Collar::new(reach, &rings[0], bearer, circle, steps);
+        let collar = Collar::new(reach, &rings[0], bearer, circle, (steps, ridge));
         collar.write(&mut out, rings[0].radius);
         steps as usize + 1
     });
@@ -369,9 +431,9 @@ fn sleeve(
         out.flat_base(&rings[0]);
     }
     out.rings(&rings);
-    out.round_tip(&rings[rings.len() - 1], tip);
+    let face = end.close(&mut out, &rings[rings.len() - 1], circle, tip);
     drop_flat(&mut mesh);
-    (mesh, fillet)
+    (mesh, fillet, face)
 }
 
 /// Rings of a chain; stalks make do with a third.
@@ -404,6 +466,7 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
             surface: Surface::of(plant, axis),
             stalk: axis.kind == AxisKind::Petiole,
             root: axis.kind == AxisKind::Root,
+            stub: axis.kind == AxisKind::Stub,
             rooted: rooted[i],
         };
         places[i] = (chains.len(), 0);

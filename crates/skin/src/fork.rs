@@ -128,7 +128,16 @@ impl Collar {
     /// Its foot lies on the bearer's surface, sunk just below the flat faces, with the bearer's normals: light
     /// passes from one to the other without an edge. Where the bearer is given as it is drawn, the foot reaches it
     /// even if the smooth line runs elsewhere.
-    pub(crate) fn new(reach: &Reach, top: &Ring, bearer: &Bearer<'_>, circle: &Circle, steps: u32) -> Self {
+    ///
+    /// `ridge` is the height of the ridge of bark that is pushed up between the two on the upper side, over the thinner one's
+    /// radius.
+    pub(crate) fn new(
+        reach: &Reach,
+        top: &Ring,
+        bearer: &Bearer<'_>,
+        circle: &Circle,
+        (steps, ridge): (u32, f64),
+    ) -> Self {
         let at = &reach.exit;
         let (axis, hint) = bearer.spine.nearest(at.centre, bearer.sample);
         // Seen from the top ring, the branch comes from where it left the bearer.
@@ -148,11 +157,15 @@ impl Collar {
             let knee = bearer.surface(hit(q, back, &axis), hint);
             let out = (ray - knee.1 * ray.dot(knee.1)).normalize_or_zero();
             let foot = bearer.below(knee.0 + out * spread, hint);
+            // Highest in the crotch, and gone half-way round.
+            let hollow = (foot.0 + q - knee.0 * 2.0).normalize_or_zero();
+            let raised = hollow * (ridge * spread * out.dot(axis.tangent).max(0.0));
             for k in 0..=steps + 1 {
                 // Even steps of the parameter crowd a little at the knee, where the fillet turns.
                 let u = f64::from(k) / f64::from(steps + 1);
                 let (a, b, c) = ((1.0 - u) * (1.0 - u), 2.0 * u * (1.0 - u), u * u);
-                collar.corners[k as usize * width + j] = foot.0 * a + knee.0 * b + q * c;
+                let ridge = raised * (b * b * 4.0);
+                collar.corners[k as usize * width + j] = foot.0 * a + knee.0 * b + q * c + ridge;
             }
             collar.normals[j] = foot.1;
             collar.normals[width * (steps as usize + 1) + j] = top.normal(ray);

@@ -45,6 +45,7 @@ mod shoots;
 mod sleeve;
 mod spec;
 mod spine;
+mod stub_end;
 mod sway;
 mod texture;
 mod traced;
@@ -79,8 +80,8 @@ use crate::spec::Budget;
 /// Gives a plant its surface: meshes with normals, texture coordinates and materials.
 ///
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
-/// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it, to 0.07 % of the plant's
-/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, veins, petals, discs, fruits,
+/// ([`Model::validate`] is clean); every tube closed (a stub by its bark and the wood where it broke off together); wood is drawn where the plant has it, to 0.07 % of the plant's
+/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, dead wood, stems, roots, leaves, veins, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
 /// seed and key. On one that is tinted or drawn a texture without a hue of its own is used. What wears a material
 /// ([`SkinSpec::worn`]) has its colours, varied in the same way, and parts of its own after all others.
@@ -150,6 +151,7 @@ pub fn skin_laid_out(
     let slot = |surface| match surface {
         Surface::Bark => Slot::Bark,
         Surface::YoungBark => Slot::YoungBark,
+        Surface::DeadWood => Slot::DeadWood,
         Surface::Stem => Slot::Stem,
         Surface::Flesh => Slot::Body,
         Surface::Root => Slot::Root,

@@ -21,6 +21,8 @@ use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, VeinPattern, Wearer, Worn};
 pub(crate) enum Slot {
     Bark,
     YoungBark,
+    /// Wood without bark, in vertex colours.
+    DeadWood,
     Stem,
     Root,
     Leaf(Coat),
@@ -85,7 +87,7 @@ impl Slot {
             Self::Traced(kind) => kind,
             Self::Worn(Wearer::Leaf, _) => MaterialKind::Leaf,
             Self::Worn(Wearer::Petal | Wearer::Sepal, _) => MaterialKind::Petal,
-            Self::Bark => MaterialKind::Bark,
+            Self::Bark | Self::DeadWood => MaterialKind::Bark,
             Self::YoungBark => MaterialKind::YoungBark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
@@ -111,6 +113,7 @@ impl Slot {
             Self::Veins => ("veins", "leaf-veins".into()),
             Self::Bark => ("branches", "bark".into()),
             Self::YoungBark => ("twigs", "bark-young".into()),
+            Self::DeadWood => ("dead-wood", "dead-wood".into()),
             Self::Stem => ("stems", "stem".into()),
             Self::Root => ("roots", "root".into()),
             Self::Leaf(Coat::Drawn) => ("leaves-drawn", "leaf-drawn".into()),
@@ -153,7 +156,12 @@ impl Slot {
         Some(match self {
             Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) | Self::Traced(_) => return None,
             Self::Stamen(coat) if coat != Coat::Natural => return None,
-            Self::Bark | Self::YoungBark | Self::Leaf(_) | Self::Needles(_) | Self::Petal(..) => return None,
+            Self::Bark
+            | Self::YoungBark
+            | Self::DeadWood
+            | Self::Leaf(_)
+            | Self::Needles(_)
+            | Self::Petal(..) => return None,
             // Florets of a disc are organs of their own.
             Self::Disc(Coat::Own | Coat::Tinted) => return None,
             Self::Stem => Motif::Stem,
@@ -217,6 +225,7 @@ impl Slot {
         match self {
             Self::Bark => [0.126, 0.084, 0.055],
             Self::YoungBark => [0.13, 0.095, 0.055],
+            Self::DeadWood => [0.16, 0.115, 0.075],
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
             Self::Leaf(Coat::Natural) | Self::Needles(Coat::Natural) | Self::Form(_, Coat::Natural) => {

@@ -213,6 +213,38 @@ impl<'a> Sleeve<'a> {
         }
     }
 
+    /// A row beyond the last ring: so wide and so far on, over its radius, with normals that lean from the ray towards the
+    /// tangent by an angle; each corner is further on by its own number.
+    pub(crate) fn beyond(&mut self, end: &Ring, (width, rise, lean): (f64, f64, f64), further: &[f64]) {
+        let circle = self.circle;
+        let du = self.repeats / self.sides();
+        let centre = end.centre + end.tangent * (rise * end.radius);
+        self.advance(centre, end.radius);
+        let first = self.next();
+        let (v, mut u) = (self.v, 0.0);
+        let (sin, cos) = ops::sin_cos(lean);
+        for (column, (corner, further)) in circle.0.iter().zip(further).enumerate() {
+            let ray = end.ray(*corner);
+            let wide = self.corner(end, column, (ray, ray), 1.0).0;
+            let p = centre + (ray * (wide * width) + end.tangent * *further) * end.radius;
+            self.vertex(p, ray * cos + end.tangent * sin, u, v);
+            u += du;
+        }
+        self.seam(first, u, v);
+        self.join(first, centre);
+    }
+
+    /// Closes the tube behind the last row written, at `apex`.
+    pub(crate) fn close(&mut self, apex: DVec3, normal: DVec3) {
+        let Some((first, _)) = self.last else { return };
+        let du = self.repeats / self.sides();
+        // One apex vertex per side: a single one would smear the texture around the point.
+        for j in 0..index(self.circle.sides()) {
+            let tip = self.vertex(apex, normal, du * (f64::from(j) + 0.5), self.v);
+            self.mesh.triangles.push([first + j, first + j + 1, tip]);
+        }
+    }
+
     /// Closes the tube with `rows` shrinking rows and an apex, nine tenths of a ball.
     pub(crate) fn round_tip(&mut self, end: &Ring, rows: u32) {
         let circle = self.circle;
@@ -235,12 +267,7 @@ impl<'a> Sleeve<'a> {
         }
         let apex = end.centre + end.tangent * (0.9 * end.radius);
         self.advance(apex, end.radius);
-        let Some((first, _)) = self.last else { return };
-        // One apex vertex per side: a single one would smear the texture around the point.
-        for j in 0..index(self.circle.sides()) {
-            let tip = self.vertex(apex, end.tangent, du * (f64::from(j) + 0.5), self.v);
-            self.mesh.triangles.push([first + j, first + j + 1, tip]);
-        }
+        self.close(apex, end.tangent);
     }
 }
 

@@ -77,9 +77,9 @@ base::coded!(SurveyError {} wraps {
 });
 
 /// What a point lies on, by the row that is its label.
-pub const PARTS: [&str; 18] = [
+pub const PARTS: [&str; 19] = [
     "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
-    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot",
+    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub",
 ];
 
 /// The row of [`PARTS`] of an axis.
@@ -89,6 +89,7 @@ pub const fn part_of_axis(kind: AxisKind) -> u8 {
         AxisKind::Twig => 1,
         AxisKind::Stem => 2,
         AxisKind::Petiole => 3,
+        AxisKind::Stub => 18,
         _ => 4,
     }
 }

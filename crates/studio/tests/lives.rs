@@ -2,7 +2,7 @@
 
 use base::ops;
 use burgeon::growth::{Grown, Method, grow};
-use burgeon::plant::{Axis, AxisKind};
+use burgeon::plant::Axis;
 use burgeon::{PRESETS, Preset, Report, Run, Seed, TreeSpec, tree_blade};
 
 fn tree(spec: &TreeSpec, seed: u64) -> Grown {
@@ -30,7 +30,7 @@ fn fork_exponent(grown: &Grown) -> f64 {
     let plant = &grown.plant;
     let radius = &plant.nodes.radius_m;
     let mut sides: Vec<Vec<f64>> = vec![Vec::new(); radius.len()];
-    for axis in plant.axes.iter().filter(|a| a.kind != AxisKind::Root) {
+    for axis in plant.axes.iter().filter(|a| a.kind.is_shoot()) {
         if let Some(bearer) = axis.bearer {
             // The foot of a borne axis has the radius of its first internode.
             sides[bearer.index()].push(radius[axis.nodes.start as usize + 1]);
@@ -109,7 +109,7 @@ fn leader(grown: &Grown) -> (f64, f64) {
     let stems = (0..plant.axes.len()).filter(|&a| plant.axes[a].bearer.is_none());
     let top = |a: usize| plant.nodes.position[plant.axes[a].nodes.end as usize - 1].y;
     let Some(stem) = stems.reduce(|a, b| if top(b) > top(a) { b } else { a }) else { return (0.0, 1.0) };
-    let shoots = plant.axes.iter().filter(|a| a.kind != AxisKind::Root);
+    let shoots = plant.axes.iter().filter(|a| a.kind.is_shoot());
     let on_stem = shoots.filter_map(|a| a.bearer).filter(|b| {
         let rows = &plant.axes[stem].nodes;
         (rows.start as usize..rows.end as usize).contains(&b.index())

@@ -9,7 +9,7 @@ use burgeon::document::{CommandError, Document, Editor, Maker, PlantId, ShapeCom
 use burgeon::geom;
 use burgeon::glam::{DQuat, DVec2, DVec3};
 use burgeon::mesh::Model;
-use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
+use burgeon::plant::{Axis, AxisId, Plant};
 use burgeon::shape::{
     self, AxisKey, Growth, HandEdit, Input, Mirror, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind,
     ViewPlane, lean_of_thumb,
@@ -196,7 +196,7 @@ impl Grown {
     fn of(before: &Plant, shown: Option<&Plant>, rounds: u32) -> Self {
         let wood = |plant: &Plant| {
             let shoots = plant.axes.iter().enumerate();
-            let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+            let shoots = shoots.filter(|(_, a)| a.kind.is_shoot());
             shoots.fold((0, 0.0), |(count, length), (i, _)| {
                 (count + 1, length + geom::polyline_length3(plant.axis_points(AxisId::new(i))))
             })
@@ -466,7 +466,7 @@ fn turned(edit: &HandEdit) -> Option<f64> {
 
 /// The branch at the end of a step.
 fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
-    let woody = |a: &Axis| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root);
+    let woody = |a: &Axis| a.kind.is_shoot();
     let bearer = |a: &Axis| Some(*plant.nodes.axis.get(a.bearer?.index())?);
     let from = from.map(|f| f as usize).filter(|&f| plant.axes.get(f).is_some_and(woody));
     let borne_by = |by: Option<AxisId>| -> Vec<usize> {
@@ -494,10 +494,7 @@ fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
 fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
     let axis = u32::try_from(pick.axis.index()).ok()?;
     let shoots = plant.borne_by(pick.axis);
-    let shoots = shoots
-        .iter()
-        .zip(&plant.axes)
-        .filter(|(is, a)| **is && !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+    let shoots = shoots.iter().zip(&plant.axes).filter(|(is, a)| **is && a.kind.is_shoot());
     Some(Picked {
         axis,
         at: pick.at,

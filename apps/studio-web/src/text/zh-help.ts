@@ -603,6 +603,13 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.PropSpec.radius_m': '平均半径，米，0.001 至 5，默认 0.025。',
   'tree.PropSpec.reach_m': '最高的根落地处离主干的距离，米，0.01 至 50，默认 1.5；各根相差可达一半。',
   'tree.PropSpec.rise_m': '成年树的根离开主干的最大高度，米，0.01 至 50，默认 1.5。',
+  'tree.ScarSpec':
+    '枝条脱落后留在树干上的痕迹：均为平均数，每个种子有多有少。都在树冠之下和最低几条大枝之间；自地面分枝的干很少有。半径 10 厘米的干有全部断桩与节疤，25 厘米者其余亦有；4 厘米与 10 厘米者尚无。',
+  'tree.ScarSpec.broken_limbs': '折断的大枝，0 至 50，默认 0。',
+  'tree.ScarSpec.burls': '树瘤，0 至 50，默认 0。',
+  'tree.ScarSpec.hollows': '断桩腐朽留下的树洞，0 至 50，默认 0。',
+  'tree.ScarSpec.knots': '树干包住断桩形成的节疤，每米，0 至 30，默认 0。',
+  'tree.ScarSpec.stubs': '枯枝的断桩，每米，0 至 30，默认 0。',
   'tree.SurfaceRootSpec':
     '自干基沿地面伸出、半埋土中直至没入的根。粗细由树干而定，很快变细。半径不足 12 厘米的干，根也较小；不足 2 厘米者无。',
   'tree.SurfaceRootSpec.count':
@@ -614,6 +621,7 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.WoodSpec.pipe_exponent':
     '管道模型 r^t = Σ r_i^t 的指数 t（Yang 等（2019） 式 4），1 至 4，默认 2.4；实测树木为 1.8 至 2.6。',
   'tree.WoodSpec.props': '自主干拱向地面的根。默认无。',
+  'tree.WoodSpec.scars': '脱落的枝条留在树干上的痕迹。默认无。',
   'tree.WoodSpec.surface_roots': '每株树干基部露出地面的根。默认无。',
   'tree.WoodSpec.swell': '主干比树冠所需粗多少倍，1 至 20，默认 1：猴面包树和瓶干树以此贮水。大枝粗细不变。',
   'tree.WoodSpec.relax':

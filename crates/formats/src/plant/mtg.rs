@@ -217,6 +217,7 @@ impl<W: Write> Writer<'_, W> {
             AxisKind::Stem => "stem",
             AxisKind::Petiole => "petiole",
             AxisKind::Root => "root",
+            AxisKind::Stub => "stub",
             _ => "axis",
         };
         stack.push(Frame { axis: id, node: usize::from(axis.bearer.is_some()), waiting: Vec::new() });

@@ -285,6 +285,7 @@ impl<W: Write> Writer<'_, W> {
             AxisKind::Stem => "stem",
             AxisKind::Petiole => "petiole",
             AxisKind::Root => "root",
+            AxisKind::Stub => "stub",
             _ => "axis",
         };
         stack.push(Frame { axis: id, tag, node: 1, waiting: None });

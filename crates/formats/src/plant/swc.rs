@@ -32,7 +32,7 @@ const FIRST_OWN: u32 = 5;
 /// ```
 pub fn write_swc(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
     writeln!(out, "# SWC: id type x y z radius parent")?;
-    writeln!(out, "# type: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root")?;
+    writeln!(out, "# type: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root, 10 stub")?;
     let mut row_of = vec![0_usize; plant.nodes.position.len()];
     let mut row = 0;
     for (id, _) in numbered(plant) {
@@ -43,6 +43,7 @@ pub fn write_swc(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
                 AxisKind::Stem => 2,
                 AxisKind::Petiole => 3,
                 AxisKind::Root => 4,
+                AxisKind::Stub => 5,
                 _ => 0,
             };
         let mut parent = axis.bearer.map_or(0, |b| row_of[standing_on(plant, b).index()]);

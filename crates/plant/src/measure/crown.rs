@@ -88,7 +88,11 @@ fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
         let axis = plant.nodes.axis[node.index()].index();
         shoot[axis] && plant.axes[axis].bearer.is_none()
     };
-    let axes = plant.axes.iter().zip(live).filter(|(a, live)| **live && a.kind != crate::AxisKind::Root);
+    let axes = plant
+        .axes
+        .iter()
+        .zip(live)
+        .filter(|(a, live)| **live && !matches!(a.kind, crate::AxisKind::Root | crate::AxisKind::Stub));
     let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
     let bearers = axes.filter_map(|(a, _)| a.bearer).chain(leaves.filter_map(|o| o.bearer));
     let heights = bearers.filter(|b| on_main(*b)).map(|b| plant.nodes.position[b.index()].y);

@@ -8,7 +8,7 @@ mod wood;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{AxisKind, Plant};
+use crate::Plant;
 
 pub use branching::{RadiusExponent, Strahler};
 pub use wood::OrderMeasures;
@@ -97,11 +97,11 @@ impl Plant {
         }
     }
 
-    /// Which axes belong to the shoot of a sound plant: no roots, no leaf stalks, and nothing that these bear.
+    /// Which axes belong to the shoot of a sound plant: no roots, no leaf stalks, no stubs, and nothing that these bear.
     pub fn shoot(&self) -> Vec<bool> {
         let mut shoot = vec![false; self.axes.len()];
         for (i, axis) in self.axes.iter().enumerate() {
-            let own = !matches!(axis.kind, AxisKind::Root | AxisKind::Petiole);
+            let own = axis.kind.is_shoot();
             shoot[i] = own && axis.bearer.is_none_or(|b| shoot[self.nodes.axis[b.index()].index()]);
         }
         shoot

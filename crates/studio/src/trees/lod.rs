@@ -106,7 +106,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         let bearer = axis.bearer.and_then(|b| moved.get(b.index()).copied().flatten());
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         let orphan = axis.bearer.is_some_and(|b| gone[plant.nodes.axis[b.index()].index()]);
-        let unseen = axis.kind == AxisKind::Root && level > 1;
+        let unseen = matches!(axis.kind, AxisKind::Root | AxisKind::Stub) && level > 1;
         if rows.len() < 2 || orphan || unseen || (axis.order > 0 && length(axis) < least) {
             gone[row] = true;
             moved[rows].fill(bearer);
