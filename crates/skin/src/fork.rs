@@ -311,7 +311,7 @@ mod tests {
             let reach = reach(&branch, &bearer).unwrap();
             let (line, first) = drawn(&branch, Some(&reach), 20.0, |_| f64::INFINITY);
             let rings = rings(&line, first);
-            let collar = Collar::new(&reach, &rings[0], &bearer, &circle, 3);
+            let collar = Collar::new(&reach, &rings[0], &bearer, &circle, (3, 0.0));
             for foot in &collar.corners[..collar.width] {
                 let r = (foot.x * foot.x + foot.z * foot.z).sqrt();
                 // Inside even the flat faces of the eight-sided bearer.
