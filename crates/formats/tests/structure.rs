@@ -248,7 +248,7 @@ proptest! {
         let at = |r: &[f64]| DVec3::new(r[2], r[3], r[4]);
         let mut length = 0.0;
         for (i, r) in rows.iter().enumerate() {
-            prop_assert!(r.len() == 7 && r[0] as usize == i + 1 && (5.0..=9.0).contains(&r[1]));
+            prop_assert!(r.len() == 7 && r[0] as usize == i + 1 && (5.0..=10.0).contains(&r[1]));
             prop_assert!(r[6] == -1.0 || (r[6] >= 1.0 && r[6] <= i as f64), "bearers come first: {r:?}");
             if r[6] > 0.0 {
                 length += at(r).distance(at(&rows[r[6] as usize - 1]));
