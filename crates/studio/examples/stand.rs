@@ -7,58 +7,27 @@
 #![expect(clippy::print_stdout, reason = "it tells what it measured")]
 
 use burgeon::formats::write_png;
-use burgeon::geom::signed_area;
-use burgeon::growth::{Grown, grow};
-use burgeon::plant::{Organ, Shape};
+use burgeon::growth::grow;
+use burgeon::plant::Measures;
 use burgeon::render::{PictureSpec, contact_sheet, render};
 use burgeon::spec::from_toml;
 use burgeon::{Preset, Report, Run, Seed, TreeOptions, TreeSpec, make_tree, tree_blade};
 
-/// What a forester measures.
-struct Measures {
-    height_m: f64,
-    dbh_m: f64,
-    crown_m2: f64,
-    leaves: usize,
-    leaf_area: f64,
-}
-
-/// Of all trees of a plant together; the diameter is that of the thickest stem.
-fn measure(grown: &Grown) -> Measures {
-    let plant = &grown.plant;
-    let height_m = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
-    let mut dbh_m = 0.0_f64;
-    for axis in plant.axes.iter().filter(|a| a.bearer.is_none()) {
-        let rows: Vec<usize> = (axis.nodes.start as usize..axis.nodes.end as usize).collect();
-        for w in rows.windows(2) {
-            let (a, b) = (plant.nodes.position[w[0]].y, plant.nodes.position[w[1]].y);
-            if a <= 1.3 && b > 1.3 {
-                dbh_m = dbh_m.max(2.0 * plant.nodes.radius_m[w[0]]);
-            }
-        }
-    }
-    // A quarter of a metre: the grid on which crowns are mapped.
-    let cell = |v: f64| (v / 0.25).floor().to_bits();
-    let tips = plant.organs.iter().map(|o| o.frame.origin);
-    let cells: std::collections::BTreeSet<(u64, u64)> = tips.map(|p| (cell(p.x), cell(p.z))).collect();
-    let area = |o: &Organ| match &plant.shapes[o.shape.index()] {
-        Shape::Blade(b) => signed_area(&b.outline).abs() * o.scale * o.scale,
-        _ => 0.0,
-    };
-    let leaf_area = plant.organs.iter().map(area).sum();
-    Measures { height_m, dbh_m, crown_m2: cells.len() as f64 * 0.0625, leaves: plant.organs.len(), leaf_area }
-}
-
+/// Mean and coefficient of variation of those that have such a measure.
 fn told(values: &[f64]) -> String {
-    let n = values.len().max(1) as f64;
+    if values.is_empty() {
+        return "none".into();
+    }
+    let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let sd = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
     format!("{mean:.3} (cv {:.1} %)", 100.0 * sd / mean.max(1e-12))
 }
 
-fn one(spec: &TreeSpec, seed: u64) -> Result<Grown, String> {
+fn one(spec: &TreeSpec, seed: u64) -> Result<Measures, String> {
     let blade = tree_blade(&spec.blade);
-    grow(spec, Some(blade), Seed::new(seed), &Run::plain(), &mut Report::default()).map_err(|e| e.to_string())
+    let grown = grow(spec, Some(blade), Seed::new(seed), &Run::plain(), &mut Report::default());
+    Ok(grown.map_err(|e| e.to_string())?.plant.measure())
 }
 
 fn sheet(spec: &TreeSpec, path: &str, count: u64, size: u32) -> Result<(), String> {
@@ -90,11 +59,11 @@ fn main() -> Result<(), String> {
     let seeds = number("--seeds", 0);
     let mut rows: [Vec<f64>; 4] = Default::default();
     for seed in 1..=seeds {
-        let m = measure(&one(&spec, seed)?);
+        let m = one(&spec, seed)?;
         for (row, value) in
-            rows.iter_mut().zip([m.height_m, m.dbh_m, m.crown_m2, m.leaf_area / m.crown_m2.max(1e-9)])
+            rows.iter_mut().zip([Some(m.height_m), m.dbh_m, Some(m.crown_projection_m2), m.lai])
         {
-            row.push(value);
+            row.extend(value);
         }
     }
     if seeds > 0 {
@@ -102,14 +71,14 @@ fn main() -> Result<(), String> {
         println!("{what}: height {h} m, dbh {d} m, crown {c} m2, leaf area index {l}");
     }
     for age in option("--ages").unwrap_or_default().split(',').filter_map(|a| a.parse().ok()) {
-        let m = measure(&one(&TreeSpec { age: Some(age), ..spec.clone() }, 1)?);
+        let m = one(&TreeSpec { age: Some(age), ..spec.clone() }, 1)?;
         println!(
             "{what} at {age}: height {:.2} m, dbh {:.1} cm, crown {:.1} m2, leaves {} ({:.1} m2)",
             m.height_m,
-            100.0 * m.dbh_m,
-            m.crown_m2,
+            100.0 * m.dbh_m.unwrap_or(0.0),
+            m.crown_projection_m2,
             m.leaves,
-            m.leaf_area
+            m.leaf_area_m2
         );
     }
     if let Some(path) = option("--png") {
