@@ -80,9 +80,12 @@ for (const [name, journey, options] of all) {
     console.log(`ok      ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
   } catch (e) {
     failed += 1;
-    console.log(
-      `FAILED  ${name}: ${e.message}${troubles.length > 0 ? `\n        ${troubles.join('\n        ')}` : ''}`,
-    );
+    const where = (e.stack ?? '').split('\n').filter((l) => l.includes('/e2e/'));
+    const data = await page
+      .evaluate(() => JSON.stringify(document.body.dataset))
+      .catch(() => 'the page is gone');
+    const more = [...troubles, ...where.map((l) => l.trim()), data.slice(0, 2000)];
+    console.log(`FAILED  ${name}: ${e.message}\n        ${more.join('\n        ')}`);
     await page.screenshot({ path: join(out, `failed-${name.replace(/\W+/g, '-')}.png`) }).catch(() => {});
   }
   await context.close();

@@ -464,7 +464,9 @@ async function marks({ page, url, shot }) {
   await begin(page, url);
   await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
   await until(page, 'triangles', ['above', 500], 'a leaf from marks');
+  const through = await settled(page);
   await page.selectOption('[data-path="/surface"]', 'approximate');
+  await changed(page, through, 'another surface');
   const plain = await settled(page);
   await page.waitForTimeout(900);
   assert.equal((await data(page, 'balls')) ?? '', '');
