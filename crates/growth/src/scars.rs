@@ -30,9 +30,10 @@ const APART: f64 = 1.8;
 /// The angle between a branch that broke off and its stem, and how much it differs, radians.
 const ANGLE: f64 = 1.2;
 const SPREAD: f64 = 0.35;
-/// A dome's height over its radius, and the nodes of its course.
+/// A dome's height over its radius.
 const DOME: f64 = 0.55;
-const DOME_STEPS: u32 = 6;
+/// Pieces between the nodes of what stands out of the bark.
+const STEPS: u32 = 6;
 /// How far a rim stands out, over its radius.
 const RIM: f64 = 0.4;
 
@@ -160,6 +161,11 @@ impl<'a> Stem<'a> {
     }
 }
 
+/// How far along what stands out of the bark its nodes lie, 0 to 1.
+fn shares() -> impl Iterator<Item = f64> {
+    (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS))
+}
+
 /// The course of a scar: from the middle of the stem outwards.
 struct Course {
     what: Scar,
@@ -212,20 +218,14 @@ impl Course {
         })
     }
 
-    /// Its nodes; the first is the bearer's place.
+    /// Its nodes; the first is the bearer's place. Of one that leaves the stem at a slant less shows, as `r` is measured along it.
     fn points(&self, centre: DVec3, r: f64) -> Vec<DVec3> {
-        // On its slant way it takes longer to come out of the stem.
-        let within = r;
         let bend = match self.what {
             Scar::BrokenLimb => DVec3::Y * (0.12 * self.beyond),
             _ => DVec3::ZERO,
         };
-        let at = |t: f64| centre + self.way * (within + t * self.beyond) + bend * (t * t);
-        core::iter::once(centre).chain(self.shares().map(at)).collect()
-    }
-
-    fn shares(&self) -> impl Iterator<Item = f64> + use<> {
-        (0..=DOME_STEPS).map(|k| f64::from(k) / f64::from(DOME_STEPS))
+        let at = |t: f64| centre + self.way * (r + t * self.beyond) + bend * (t * t);
+        core::iter::once(centre).chain(shares().map(at)).collect()
     }
 
     /// The radius of each node.
@@ -237,7 +237,7 @@ impl Course {
             // A ball that rises from the bark.
             Scar::Burl => (1.0 - 0.98 * t * t).sqrt(),
         };
-        core::iter::once(self.radius).chain(self.shares().map(|t| self.radius * at(t))).collect()
+        core::iter::once(self.radius).chain(shares().map(|t| self.radius * at(t))).collect()
     }
 }
 

@@ -69,6 +69,13 @@ struct Chain {
     rooted: bool,
 }
 
+impl Chain {
+    /// Neither a root nor what is left of a branch.
+    fn is_shoot(&self) -> bool {
+        !self.root && !self.stub
+    }
+}
+
 /// One finished tube.
 #[derive(Debug)]
 pub(crate) struct Tube {
@@ -230,7 +237,7 @@ impl All<'_, '_> {
         let surface = surface(chain, spine, self.thickest, self.budget);
         let repeats = if surface == Surface::Bark { repeats(spine, self.thickest) } else { 1 };
         let end = end(self.plant, chain, spine, line);
-        let barked = matches!(surface, Surface::Bark | Surface::YoungBark) && !chain.root && !chain.stub;
+        let barked = matches!(surface, Surface::Bark | Surface::YoungBark) && chain.is_shoot();
         let ridge = if barked { RIDGE } else { 0.0 };
         let (mut mesh, fillet, face) = sleeve(line, bearer.as_ref(), circle, (repeats, ribs), (end, ridge));
         if let (true, Some(reach), Some((host, _))) =
@@ -266,9 +273,7 @@ impl All<'_, '_> {
 fn surface(chain: &Chain, spine: &Spine, thickest: f64, budget: &Budget) -> Surface {
     match chain.surface {
         Surface::Bark
-            if !chain.root
-                && !chain.stub
-                && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) =>
+            if chain.is_shoot() && spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) =>
         {
             Surface::YoungBark
         }

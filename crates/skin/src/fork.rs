@@ -129,8 +129,8 @@ impl Collar {
     /// passes from one to the other without an edge. Where the bearer is given as it is drawn, the foot reaches it
     /// even if the smooth line runs elsewhere.
     ///
-    /// `ridge` is the height of the ridge of bark that is pushed up between the two on the upper side, over the thinner one's
-    /// radius.
+    /// `ridge` is the height of the ridge of bark that is pushed up between the two on the upper side, over how far the foot
+    /// spreads.
     pub(crate) fn new(
         reach: &Reach,
         top: &Ring,
