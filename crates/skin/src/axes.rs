@@ -7,6 +7,7 @@ use plant::{Axis, AxisId, AxisKind, NodeId, Plant};
 
 use crate::coloured::Coloured;
 use crate::fork::{Bearer, Collar, reach};
+use crate::hollow::Opening;
 use crate::rings::{drawn, planes, rings};
 use crate::sleeve::{Circle, Ribs, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec};
@@ -113,6 +114,9 @@ const MOST_SIDES: u32 = 64;
 // How high bark is pushed up in a crotch, over the spread of the fillet.
 const RIDGE: f64 = 0.25;
 
+// Sides of the rim of a hollow at least: one looks at it and into it.
+const ROUND: u32 = 18;
+
 // Below this detail ribs are painted alone.
 const COARSE: f64 = 0.3;
 
@@ -205,9 +209,25 @@ pub(crate) fn tubes<'p>(
     });
     run.budget.check(Counted::Triangles, sleeves.sum(), crate::FEWER)?;
     let coloured = Coloured::of(plant);
-    let all = All { plant, budget, chains, spines, lines, hosts, faces, thickest, traced, wind, coloured };
+    let openings = Vec::new();
+    let mut all = All {
+        plant,
+        budget,
+        chains,
+        spines,
+        lines,
+        hosts,
+        faces,
+        thickest,
+        traced,
+        wind,
+        coloured,
+        openings,
+    };
+    all.openings = all.find_openings();
+    let sides = |i: usize| if all.is_hollow(i) { sides[i].max(ROUND) } else { sides[i] };
     let tubes =
-        grouped(run, all.chains.len(), |i| all.tubes_of(i, circles.get(sides[i] as usize)?, ribs[i]))?;
+        grouped(run, all.chains.len(), |i| all.tubes_of(i, circles.get(sides(i) as usize)?, ribs[i]))?;
     Ok((tubes.into_iter().flatten().flatten().flatten().collect(), all.wind))
 }
 
@@ -225,6 +245,8 @@ struct All<'a, 'p> {
     traced: Option<&'a Traced>,
     wind: Option<Wind<'p>>,
     coloured: Option<Coloured<'p>>,
+    /// Hollows: by chain of the rim, the chain of its stem.
+    openings: Vec<(usize, usize, Opening)>,
 }
 
 impl All<'_, '_> {
@@ -236,7 +258,10 @@ impl All<'_, '_> {
         });
         let surface = surface(chain, spine, self.thickest, self.budget);
         let repeats = if surface == Surface::Bark { repeats(spine, self.thickest) } else { 1 };
-        let end = end(self.plant, chain, spine, line);
+        let end = match self.openings.iter().find(|(rim, ..)| *rim == i) {
+            Some((_, _, opening)) => End::Hollow(*opening),
+            None => end(self.plant, chain, spine, line),
+        };
         let barked = matches!(surface, Surface::Bark | Surface::YoungBark) && chain.is_shoot();
         let ridge = if barked { RIDGE } else { 0.0 };
         let (mut mesh, fillet, face) = sleeve(line, bearer.as_ref(), circle, (repeats, ribs), (end, ridge));
@@ -260,12 +285,42 @@ impl All<'_, '_> {
         if let Some(coloured) = &self.coloured {
             coloured.tube(&mut mesh, &chain.axes, spine);
         }
+        for (_, _, opening) in self.openings.iter().filter(|(_, host, _)| *host == i) {
+            opening.cut(&mut mesh);
+        }
         let tube = |surface, mesh| Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh };
         let face = face.map(|mut face| {
             follow(&mut face, &mesh);
             tube(Surface::DeadWood, face)
         });
         Some([Some(tube(surface, mesh)), face])
+    }
+}
+
+impl All<'_, '_> {
+    /// Whether a chain is the rim of a hollow.
+    fn is_hollow(&self, i: usize) -> bool {
+        self.openings.iter().any(|(rim, ..)| *rim == i)
+    }
+
+    /// The rims of stems that are hollow behind them.
+    fn find_openings(&self) -> Vec<(usize, usize, Opening)> {
+        let of = |i: usize| {
+            let (chain, spine, line) = (&self.chains[i], self.spines[i].as_ref()?, self.lines[i].as_ref()?);
+            let End::Rim(_) = end(self.plant, chain, spine, line) else { return None };
+            let (host, reach) = (self.hosts[i]?.0, line.reach.as_ref()?);
+            let stem = self.spines[host].as_ref()?.at(reach.on);
+            let key = self.plant.axis(*chain.axes.first()?).key;
+            let opening = Opening::new(&reach.exit, &stem, key, self.budget.detail)?;
+            self.chains[host].is_shoot().then_some((i, host, opening))
+        };
+        let found: Vec<_> = (0..self.chains.len()).filter(|&i| self.chains[i].stub).filter_map(of).collect();
+        let others =
+            |i: usize, host: usize| found.iter().filter(move |(rim, on, _)| *rim != i && *on == host);
+        let beside = |&(i, host, opening): &(usize, usize, Opening)| {
+            (i, host, others(i, host).fold(opening, |opening, (.., other)| opening.beside(other)))
+        };
+        found.iter().map(beside).collect()
     }
 }
 
@@ -425,7 +480,7 @@ fn sleeve(
     let mut out = Sleeve::new(&mut mesh, circle, repeats).ribbed(ribs);
     let fillet = line.reach.as_ref().zip(bearer).map(|(reach, bearer)| {
         let collar = Collar::new(reach, &rings[0], bearer, circle, (steps, ridge));
-        collar.write(&mut out, rings[0].radius);
+        collar.write(&mut out, rings[0].radius, !matches!(end, End::Hollow(_)));
         steps as usize + 1
     });
     if fillet.is_none() {

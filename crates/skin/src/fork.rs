@@ -194,8 +194,9 @@ impl Collar {
         }
     }
 
-    /// Writes the closed base and every row but the last, which is the tube's first ring.
-    pub(crate) fn write(&self, out: &mut Sleeve<'_>, radius: f64) {
+    /// Writes every row but the last, which is the tube's first ring; and the base that closes it, unless the bearer is open
+    /// there.
+    pub(crate) fn write(&self, out: &mut Sleeve<'_>, radius: f64, closed: bool) {
         let rows = self.corners.len() / self.width - 1;
         for k in 0..rows {
             let row = k * self.width..(k + 1) * self.width;
@@ -203,7 +204,7 @@ impl Collar {
             #[expect(clippy::cast_precision_loss, reason = "at most 64 sides")]
             let centre = corners[1..].iter().sum::<DVec3>() / (self.width - 1) as f64;
             out.row(centre, radius, corners, &self.normals[row]);
-            if k == 0 {
+            if k == 0 && closed {
                 out.hidden_base(self.inside, (self.inside - centre).try_normalize().unwrap_or(DVec3::NEG_Y));
             }
         }

@@ -12,6 +12,7 @@
 //! | `spec` | [`SkinSpec`], [`LeafMeshSpec`], [`PetalColor`]; how triangles are shared out |
 //! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
+//! | `stub_end`, `hollow` | ends of stubs; cavities in stems |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `layout`, `copies` | [`Layout`]: what of a plant lies where in its parts; [`copies()`]: leaves that are one form |
 //! | `needles` | shoots in needles, painted on cards |
@@ -30,6 +31,7 @@ mod body;
 mod coloured;
 mod copies;
 mod fork;
+mod hollow;
 mod layout;
 mod leaf;
 mod lean;
@@ -80,7 +82,7 @@ use crate::spec::Budget;
 /// Gives a plant its surface: meshes with normals, texture coordinates and materials.
 ///
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
-/// ([`Model::validate`] is clean); every tube closed (a stub by its bark and the wood where it broke off together); wood is drawn where the plant has it, to 0.07 % of the plant's
+/// ([`Model::validate`] is clean); every tube closed (a stub by its bark and the wood where it broke off together; the bark of a hollow stem is open behind the rim, where a cavity begins); wood is drawn where the plant has it, to 0.07 % of the plant's
 /// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, dead wood, stems, roots, leaves, veins, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
 /// seed and key. On one that is tinted or drawn a texture without a hue of its own is used. What wears a material

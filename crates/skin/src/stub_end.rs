@@ -1,8 +1,9 @@
-//! How stubs end: broken off, or in a rim of bark around what has rotted away. Wood without bark is a mesh of its own.
+//! How stubs end: broken off, in a rim of bark around a knot, or in one around a hollow. Wood without bark is a mesh of its own.
 
 use base::{Draw, Seed, ops};
 use mesh::TriMesh;
 
+use crate::hollow::{MOUTH, Opening};
 use crate::rings::Ring;
 use crate::sleeve::{Circle, Sleeve, narrow2, wide};
 use crate::spine::Station;
@@ -13,8 +14,10 @@ pub(crate) enum End {
     Round,
     /// Where it broke off, by a seed of its own.
     Broken(Seed),
-    /// In a rim of bark around a hollow so deep, metres.
+    /// In a rim of bark around a dark bottom so deep, metres.
     Rim(f64),
+    /// In a rim of bark around the mouth of a cavity in the stem.
+    Hollow(Opening),
 }
 
 /// A stub that ends thicker than this share of its thickness broke off or is a rim; others are round.
@@ -27,7 +30,8 @@ const SPLINTER: f64 = 1.1;
 const SHADE: f64 = 6.0;
 /// How wide the wood within the bark is, over the radius.
 const WOOD: f64 = 0.84;
-const MOUTH: f64 = 0.7;
+/// The roll of bark around a mouth: width and rise over the radius, and the lean of the normals.
+const ROLL: [(f64, f64, f64); 3] = [(0.95, 0.07, 0.7), (0.84, 0.09, 1.5), (MOUTH, 0.0, 2.4)];
 
 impl End {
     /// Of a stub with such a key that stands out so far and grows from one radius to the other, metres: one that ends thick broke
@@ -72,8 +76,14 @@ impl End {
                 let rows = [(WOOD, 0.0, 0.9, &bark), (0.45, 0.0, 1.2, &wood)];
                 Some(face(last, circle, &rows, 0.1))
             }
+            Self::Hollow(opening) => {
+                for row in ROLL {
+                    out.beyond(last, row, &even);
+                }
+                Some(opening.cavity(last, circle))
+            }
             Self::Rim(depth) => {
-                for row in [(0.95, 0.07, 0.7), (0.84, 0.09, 1.5), (MOUTH, 0.0, 2.4)] {
+                for row in ROLL {
                     out.beyond(last, row, &even);
                 }
                 let deep = depth / last.radius.max(f64::MIN_POSITIVE);
