@@ -37,8 +37,8 @@ pub struct Measures {
     pub crown_projection_m2: f64,
     /// Leaves.
     pub leaves: usize,
-    /// Area of one side of all leaves, square metres; needles and other round leaves count half their surface (Chen
-    /// and Black 1992).
+    /// Area of one side of all leaves, square metres; round leaves count half their surface (Chen and Black 1992). Of shoots in
+    /// needles or scales, what these cover ([`Shape::one_side_m2`](crate::Shape::one_side_m2)).
     pub leaf_area_m2: f64,
     /// Leaf area over crown projection area (Watson 1947); none without a projection.
     pub lai: Option<f64>,

@@ -241,6 +241,25 @@ fn leaf_area_is_that_of_the_bent_sheet() {
 }
 
 #[test]
+fn a_shoot_counts_what_its_needles_cover() {
+    let mut p = Plant::default();
+    let stem = axis(&mut p, None, &[DVec3::ZERO, DVec3::Y], &[0.01; 2]);
+    let at = node(&p, stem, 1);
+    let flat = Blade { relief: Relief::default(), ..Blade::shoot(Needles::of_length(0.1), 3, 1.0) };
+    let outline = geom::signed_area(&flat.outline).abs();
+    let covered = NeedleMap::of(&flat).expect("needles").covered();
+    let shoot = p.add_shape(Shape::Blade(flat.clone()));
+    leaf(&mut p, at, shoot, DVec3::X, 0.2);
+    near(p.measure().leaf_area_m2, covered * 0.04);
+    assert!(covered < 0.75 * outline, "{covered} of {outline}");
+    // Without needles it is a leaf like any other.
+    let plain = p.add_shape(Shape::Blade(Blade { needles: None, ..flat }));
+    p.organs.clear();
+    leaf(&mut p, at, plain, DVec3::X, 0.2);
+    near(p.measure().leaf_area_m2, outline * 0.04);
+}
+
+#[test]
 fn roots_and_stalks_are_no_shoots() {
     let mut p = Plant::default();
     let stem = axis(&mut p, None, &[DVec3::ZERO, DVec3::Y], &[0.01; 2]);

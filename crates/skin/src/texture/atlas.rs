@@ -5,7 +5,7 @@ use std::sync::Arc;
 use base::{Digest, Executor, map_indexed, ops};
 use glam::DVec2;
 use mesh::{Maps, Texture};
-use plant::Blade;
+use plant::{Blade, SeenNeedle};
 
 use super::blades::LeafInks;
 use super::foliage::{LEAF_DEPTH, Plan};
@@ -13,7 +13,7 @@ use super::relief::{Sheet, Spot, Surface, surface};
 use super::{Paint, byte, mix, shade};
 use crate::BladeChart;
 use crate::natural::VeinPattern;
-use crate::needles::{Cut, SeenNeedle};
+use crate::needles::Cut;
 use crate::shoots::{Shoots, Tile, chart_place, columns};
 
 /// What an atlas shows.
