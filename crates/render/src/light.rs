@@ -18,11 +18,13 @@ const SUN_LAMPS: usize = 14;
 const SUN_RADIUS: f64 = 0.035;
 /// Cells along an edge of the ground's light grid.
 const GROUND_CELLS: usize = 96;
-/// Light of the sun on a surface that faces it, as reflected by pure white.
-pub(crate) const SUN: DVec3 = DVec3::new(0.98, 0.91, 0.80);
-const ZENITH: DVec3 = DVec3::new(0.44, 0.50, 0.59);
-const HORIZON: DVec3 = DVec3::new(0.51, 0.51, 0.50);
-const BOUNCE: DVec3 = DVec3::new(0.30, 0.29, 0.26);
+/// Light of the sun on a surface that faces it, as reflected by pure white: level ground in sun and sky is nearly white.
+pub(crate) const SUN: DVec3 = DVec3::new(0.83, 0.77, 0.68);
+/// Of the sky: a white plane that sees all of it and no sun is as bright as what is shown of it (`shade::backdrop`), by a test.
+const ZENITH: DVec3 = DVec3::new(0.61, 0.70, 0.83);
+const HORIZON: DVec3 = DVec3::new(0.71, 0.71, 0.70);
+/// Of the ground, which is pale and in the sun.
+const BOUNCE: DVec3 = DVec3::new(0.42, 0.41, 0.37);
 
 /// Light from a direction of the sky (or of the pale ground below the horizon).
 fn radiance(d: DVec3) -> DVec3 {
@@ -274,6 +276,12 @@ impl Sky {
         });
         let raw: Vec<DVec3> = rows.into_iter().flatten().collect();
         self.ground = blurred(&blurred(&raw));
+    }
+
+    /// The light of sky and ground on a surface of unit normal `n` with nothing else around, as reflected by pure white. Of a sky
+    /// of one brightness above a ground of one that is exact.
+    pub(crate) fn free(&self, n: DVec3) -> DVec3 {
+        BOUNCE.lerp(self.open, 0.5 + 0.5 * n.y)
     }
 
     /// The sky's light on the ground below `p`.

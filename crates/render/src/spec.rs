@@ -38,7 +38,7 @@ pub enum View {
 /// What is behind the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
-    /// A pale sky above a pale ground.
+    /// A light blue sky above a pale ground, as bright as the light that comes from it.
     #[default]
     Sky,
     /// Nothing: alpha is 0 where there is neither model nor shadow.
