@@ -311,7 +311,10 @@ impl All<'_, '_> {
             let (host, reach) = (self.hosts[i]?.0, line.reach.as_ref()?);
             let stem = self.spines[host].as_ref()?.at(reach.on);
             let key = self.plant.axis(*chain.axes.first()?).key;
-            let opening = Opening::new(&reach.exit, &stem, key, self.budget.detail)?;
+            // The foot of a stem is drawn wider than it grew.
+            let grown = *self.plant.nodes.radius_m.get(chain.bearer?.index())?;
+            let share = spine.stout() / grown.max(f64::MIN_POSITIVE);
+            let opening = Opening::new(&reach.exit, &stem, (key, share), self.budget.detail)?;
             self.chains[host].is_shoot().then_some((i, host, opening))
         };
         let found: Vec<_> = (0..self.chains.len()).filter(|&i| self.chains[i].stub).filter_map(of).collect();

@@ -77,15 +77,14 @@ pub(crate) struct Opening {
 
 impl Opening {
     /// Of a rim with such a key that leaves a stem at stations of its own and of the stem; `None` of one so small that nothing
-    /// behind it rotted, and where all is drawn coarsely.
-    pub(crate) fn new(rim: &Station, stem: &Station, key: u64, detail: f64) -> Option<Self> {
+    /// behind it rotted, by its thickness over that of the stem as it grew, and where all is drawn coarsely.
+    pub(crate) fn new(rim: &Station, stem: &Station, (key, share): (u64, f64), detail: f64) -> Option<Self> {
         let out = rim.tangent;
         let up = (stem.tangent - out * stem.tangent.dot(out)).try_normalize()?;
-        let share = Seed::new(key).stream(Draw::Habit).uniform();
-        let deep = stem.radius * ops::lerp(DEEP[0], DEEP[1], share);
+        let deep = ops::lerp(DEEP[0], DEEP[1], Seed::new(key).stream(Draw::Habit).uniform()) * stem.radius;
         let side = up.cross(out);
         let (radius, stem) = (rim.radius, stem.radius);
-        (detail >= COARSE && radius >= HOLLOW * stem).then_some(Self {
+        (detail >= COARSE && share >= HOLLOW).then_some(Self {
             bark: rim.centre,
             out,
             up,
@@ -395,6 +394,14 @@ mod tests {
             assert!(same.iter().any(|&i| plain.position(i).y > 4.0), "{detail}: {}", same.len());
             assert!(same.iter().all(|&i| rim.positions[i as usize] == plain.positions[i as usize]));
         }
+    }
+
+    #[test]
+    fn a_hollow_in_the_flare_of_the_foot_is_one_too() {
+        // The foot is drawn wider than it grew, so that the rim is narrow beside it.
+        let model = skinned(&stem(&[(0.28 * STEM, 0.3, 0.0)]), 1.0);
+        let deep = first_hit(&model, DVec3::new(2.0, 0.3, 0.0), -DVec3::X);
+        assert!(deep > 2.0 - 0.6 * STEM, "{deep}");
     }
 
     #[test]
