@@ -160,11 +160,11 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
     }
     if again {
-        let drawings: Vec<Drawing> = people(&folder, part)?.into_iter().map(|c| c.drawing).collect();
+        let drawings: Vec<Drawing> = people(&folder, part, OF_SPG)?.into_iter().map(|c| c.drawing).collect();
         say(&format!("{} drawings of people:\n\n{}", drawings.len(), changed::table(&drawings)));
         return Ok(());
     }
-    let mut cases = if hundred { by_lot(people(&folder, part)?) } else { cases(&folder, part)? };
+    let mut cases = if hundred { by_lot(people(&folder, part, OF_SPG)?) } else { cases(&folder, part)? };
     if !hundred {
         cases.extend(ways(part));
     }
@@ -322,7 +322,7 @@ impl Chosen {
 
 /// All drawings of a part.
 fn cases(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
-    let mut cases = people(folder, part)?;
+    let mut cases = people(folder, part, OF_SPG)?;
     let together = together(&cases, part, SIDE_BY_SIDE);
     cases.extend(together);
     cases.extend(made(part));
@@ -344,8 +344,11 @@ fn by_lot(mut all: Vec<Case>) -> Vec<Case> {
     all
 }
 
-/// The drawings of people of one part.
-fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
+/// Of so many drawings of the SPG set one is read to judge by: they show three things only.
+const OF_SPG: usize = 4;
+
+/// The drawings of people of one part; of the SPG set one of so many.
+fn people(folder: &Path, part: Part, of_spg: usize) -> Outcome<Vec<Case>> {
     let mut cases = Vec::new();
     for (sub, prefix) in
         [("quickdraw", ""), ("quickdraw_more", ""), ("spg", "spg "), ("trees_by_hand", "by hand ")]
@@ -361,7 +364,7 @@ fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
                 say(&format!("skipped: {set}, because nobody said what it shows"));
                 continue;
             };
-            let every = if sub == "spg" && part != Part::Train { 4 } else { 1 };
+            let every = if sub == "spg" { of_spg } else { 1 };
             let lines = json_lines(&file)?;
             let own = lines.iter().filter(|l| Part::of(l) == Some(part)).step_by(every);
             cases.extend(own.map(|line| Case {
@@ -403,8 +406,7 @@ pub(crate) enum Origin {
 
 /// Drawings of a part whose plants are known. Trees by hand are not among them: nothing is learnt from those.
 pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
-    let people = people(folder, part)?.into_iter();
-    let people: Vec<Case> = people.collect();
+    let people = people(folder, part, 1)?;
     let sets = if part == Part::Train { 4 * SIDE_BY_SIDE } else { SIDE_BY_SIDE };
     let together = together(&people, part, sets).into_iter().map(|c| Labelled {
         drawing: c.drawing,

@@ -12,7 +12,7 @@ use crate::branches::{Forest, Line};
 use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::kept::{alike, same_bits};
-use crate::rings::{Ring, rings};
+use crate::rings::{Ring, rings, rings_and_arms};
 use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, STRAIGHT, WELL_SHORT};
 use crate::{Attachment, Kind, OrganWord, RegionKind};
 
@@ -131,7 +131,7 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
     };
     let mut found: Vec<(f64, Ring)> = Vec::new();
     let alone = !draft.class.iter().any(|c| [StrokeClass::Blade, StrokeClass::Crown].contains(c));
-    for mut ring in rings(&points) {
+    for mut ring in rings_and_arms(&points) {
         if alone {
             plumb(&mut ring);
         }

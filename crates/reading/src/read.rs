@@ -6,7 +6,6 @@ use base::Report;
 use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
-use crate::built::pointed;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::thresholds::FEWEST_PETALS;
@@ -182,12 +181,12 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
 const FEW_PLANTS: f64 = 0.1;
 const ALONE: f64 = 0.6;
 /// Another kind is tried if it explains the drawing at least so well, and so many times as well as what was read first.
-const SURE: f64 = 0.5;
+const SURE: f64 = 0.3;
 const BETTER: f64 = 2.0;
 /// Strokes of which the classifier is so sure speak for what was read first: another kind must then explain the drawing
 /// this many times as well.
 const CLEAR: f64 = 0.55;
-const MUCH_BETTER: f64 = 10.0;
+const MUCH_BETTER: f64 = 5.0;
 /// What is no plant at least by this share gives a warning.
 const NO_PLANT: f64 = 0.6;
 /// The code of that warning.
@@ -289,14 +288,14 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     reading
 }
 
-/// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood without a crown
-/// is a bare tree and a pointed crown down to the ground a fir, two fronds on a trunk are a palm, a body without leaves is a
-/// cactus, whatever it stands in, and blades that nothing bears are grass.
+/// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood is a tree, bare or
+/// with a crown down to the ground, two fronds on a trunk are a palm, a body without leaves is a cactus, whatever it stands in,
+/// and blades that nothing bears are grass.
 fn is_built(kind: Kind, reading: &Reading) -> bool {
     let no_flower = reading.flowers.is_empty() && reading.fruits.is_empty();
     let bare = reading.regions.is_empty();
     let needed = match kind {
-        Kind::Tree | Kind::Conifer => reading.woody && reading.regions.iter().all(|r| pointed(&r.outline)),
+        Kind::Tree | Kind::Conifer => reading.woody,
         Kind::Palm => bare && reading.woody && reading.leaves.len() >= FEWEST_FRONDS,
         Kind::Cactus => {
             bare && reading.leaves.is_empty() && reading.axes.iter().any(|a| !a.half_width.is_empty())

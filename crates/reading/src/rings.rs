@@ -8,6 +8,11 @@ const MOST_PARTS: usize = 64;
 /// Two strokes are joined over a gap of at most this share of the shorter one. Flared trunks reach 1.2.
 const WIDEST_JOIN: f64 = 1.3;
 
+/// An end this near to a line lies on it, a share of the drawing's diagonal; the side of a line is without the first and last
+/// of so many parts.
+const TOUCHES: f64 = 0.03;
+const SIDE_BEGINS: usize = 10;
+
 /// A closed outline made of one or more strokes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ring {
@@ -53,6 +58,35 @@ pub(crate) fn rings(strokes: &[&[DVec2]]) -> Vec<Ring> {
         }
     }
     out
+}
+
+/// [`rings`], but for strokes that begin and end on the side of another one: arms on a body, each a ring of its own.
+pub(crate) fn rings_and_arms(strokes: &[&[DVec2]]) -> Vec<Ring> {
+    let few = strokes.len() <= MOST_PARTS;
+    let (arms, rest): (Vec<usize>, Vec<usize>) = (0..strokes.len()).partition(|&k| few && is_arm(strokes, k));
+    let mut found = Vec::new();
+    for group in core::iter::once(rest).chain(arms.into_iter().map(|k| vec![k])) {
+        let own: Vec<&[DVec2]> = group.iter().map(|&k| strokes[k]).collect();
+        found.extend(rings(&own).into_iter().map(|mut ring| {
+            ring.parts.iter_mut().for_each(|p| *p = group[*p]);
+            ring
+        }));
+    }
+    found
+}
+
+/// Whether both ends of a stroke lie on the side of the same longer one.
+fn is_arm(strokes: &[&[DVec2]], k: usize) -> bool {
+    let (Some(&a), Some(&b)) = (strokes[k].first(), strokes[k].last()) else { return false };
+    let length = polyline_length(strokes[k]);
+    let touches = |side: &[DVec2], p: DVec2| side.iter().any(|q| q.distance(p) < TOUCHES);
+    let bears = |s: &&[DVec2]| {
+        let cut = s.len() / SIDE_BEGINS;
+        let side = &s[cut..s.len() - cut];
+        polyline_length(s) > length && touches(side, a) && touches(side, b)
+    };
+    let mut others = strokes.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, s)| s);
+    others.any(bears)
 }
 
 /// Every stroke's ends matched with one another.
@@ -139,6 +173,18 @@ mod tests {
             (geom::signed_area(&found[0].points).abs() - 0.3).abs() < 1e-9,
             "the trunk between the lines"
         );
+    }
+
+    #[test]
+    fn an_arm_that_ends_near_the_foot_of_its_body_is_its_own() {
+        let body = [line((0.0, 0.0), (0.0, 1.0)), line((0.0, 1.0), (0.4, 1.0)), line((0.4, 1.0), (0.4, 0.0))]
+            .concat();
+        let arm = [line((0.4, 0.8), (0.7, 0.6)), line((0.7, 0.6), (0.4, 0.3))].concat();
+        assert_eq!(rings(&[&body, &arm]).len(), 1, "by its ends alone it would be a piece of the body");
+        let parts: Vec<_> = rings_and_arms(&[&body, &arm]).into_iter().map(|r| r.parts).collect();
+        assert_eq!(parts, [vec![0], vec![1]]);
+        let side = line((0.7, 0.0), (0.7, 0.9));
+        assert_eq!(rings_and_arms(&[&body, &side]).len(), rings(&[&body, &side]).len());
     }
 
     #[test]

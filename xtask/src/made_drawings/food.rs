@@ -197,20 +197,43 @@ pub(super) fn strawberry(r: &mut Stream) -> Lines {
 
 pub(super) fn pineapple(r: &mut Stream) -> Lines {
     let size = v(r.range(0.2, 0.32), r.range(0.3, 0.42));
-    let mut lines = vec![round(v(0.0, size.y), size, 0, 0.0, r)];
-    for _ in 0..r.below(5) {
+    let middle = v(0.0, size.y);
+    let body = match r.below(4) {
+        // With shoulders, so that its top is flat.
+        0 => {
+            let (top, foot) = (r.range(0.5, 1.0) * size.x, r.range(0.5, 1.0) * size.x);
+            let corner = |x: f64, y: f64| v(x, y * size.y);
+            let (left, right) = ([(-top, 1.9), (-size.x, 1.2)], [(size.x, 1.2), (top, 1.9)]);
+            let below = [(-foot, 0.05), (foot, 0.05)];
+            let round = [&left[..], &below[..], &right[..], &left[..1]].concat();
+            soft(&round.into_iter().map(|(x, y)| corner(x, y)).collect::<Vec<_>>(), r)
+        }
+        // Open above, where the tuft stands.
+        1 => {
+            let open = r.range(0.15, 0.6);
+            arc(middle, size, 0.5 * PI + open, 2.5 * PI - open, 0, 0.0, r)
+        }
+        _ => round(middle, size, 0, 0.0, r),
+    };
+    let mut lines = vec![body];
+    let skin = r.below(5);
+    for _ in 0..r.below(6) {
         let t = r.range(-0.6, 0.6);
-        lines.push(pen(
-            &[v(-size.x * 0.8, size.y * (1.0 + t) - 0.1), v(size.x * 0.8, size.y * (1.0 + t) + 0.1)],
-            r,
-        ));
-        lines.push(pen(
-            &[v(size.x * 0.8, size.y * (1.0 + t) - 0.1), v(-size.x * 0.8, size.y * (1.0 + t) + 0.1)],
-            r,
-        ));
+        let (side, y) = (0.8 * size.x * (1.0 - t * t).sqrt(), size.y * (1.0 + t));
+        match skin {
+            0 => lines.push(pen(&[v(-side, y), v(side, y + r.range(-0.03, 0.03))], r)),
+            1 => lines.push(round(v(r.range(-0.7, 0.7) * side, y), DVec2::splat(0.03), 0, 0.0, r)),
+            2 => lines.push(pen(&[v(side * t, 0.3 * size.y), v(side * t, 1.7 * size.y)], r)),
+            _ => {
+                lines.push(pen(&[v(-side, y - 0.1), v(side, y + 0.1)], r));
+                lines.push(pen(&[v(side, y - 0.1), v(-side, y + 0.1)], r));
+            }
+        }
     }
-    let green = r.range(0.25, 0.45);
-    lines.extend(tuft(r, v(0.0, 2.0 * size.y), green));
+    for _ in 0..1 + r.below(5) / 4 {
+        let green = r.range(0.25, 0.45);
+        lines.extend(tuft(r, v(0.0, 2.0 * size.y), green));
+    }
     lines
 }
 

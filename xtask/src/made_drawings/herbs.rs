@@ -241,7 +241,32 @@ pub(super) fn potted(r: &mut Stream) -> Lines {
     }
 }
 
+/// A stem and its leaves in one line: round each leaf on the way up, the last at the top or below it.
+fn sprout_in_one_go(r: &mut Stream) -> Lines {
+    let (top, n) = (v(r.range(-0.15, 0.15), 1.0), 1 + r.below(5));
+    let mut line = vec![DVec2::ZERO];
+    let mut from = DVec2::ZERO;
+    let ends_in_leaf = r.chance(0.3);
+    for k in 0..n {
+        let last = ends_in_leaf && k + 1 == n;
+        let at = if last { top } else { top * ((k as f64 + r.range(0.6, 1.3)) / (n as f64 + 0.6)) };
+        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let way =
+            if last { v(r.range(-0.2, 0.2), 0.4) } else { v(side * r.range(0.2, 0.5), r.range(0.05, 0.4)) };
+        line.extend(pen(&[from, at], r));
+        line.extend(leafy_blade(at, way, r.range(0.15, 0.3) * way.length(), r));
+        from = at;
+    }
+    if !ends_in_leaf {
+        line.extend(pen(&[from, top], r));
+    }
+    vec![line]
+}
+
 pub(super) fn sprout(r: &mut Stream) -> Lines {
+    if r.chance(0.3) {
+        return sprout_in_one_go(r);
+    }
     let top = v(r.range(-0.1, 0.1), 1.0);
     let mut lines = vec![soft(&[v(0.0, 0.0), top * 0.5 + v(r.range(-0.1, 0.1), 0.0), top], r)];
     let n = 2 + r.below(6);

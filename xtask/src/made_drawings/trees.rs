@@ -301,7 +301,7 @@ fn fir_trunk(r: &mut Stream, foot: f64) -> Lines {
 }
 
 pub(super) fn zigzag_fir(r: &mut Stream) -> Lines {
-    let (foot, half) = (r.range(0.08, 0.3), r.range(0.2, 0.42));
+    let (foot, half) = (r.range(0.08, 0.45), r.range(0.2, 0.42));
     let mut left = fir_side(r, -1.0, 1.0, foot, half);
     let right = fir_side(r, 1.0, 1.0, foot, half);
     let mut lines = if r.chance(0.5) {

@@ -10,22 +10,22 @@
 use base::{Draw, Seed, Stream, ops};
 
 /// Networks whose mean is taken, and units of each.
-const NETWORKS: usize = 5;
-const OWN_UNITS: usize = 24;
+const NETWORKS: usize = 3;
+const OWN_UNITS: usize = 48;
 /// Units of the mean.
 pub(super) const UNITS: usize = NETWORKS * OWN_UNITS;
 /// Times that each row is looked at, on the average.
-const ROUNDS: usize = 14;
+const ROUNDS: usize = 40;
 const BATCH: usize = 256;
 /// Length of the first step; later ones are shorter, along half a cosine.
 const RATE: f64 = 2e-3;
 /// Pull towards 0, a share of the step.
 const PULL: f64 = 0.01;
 /// Share of numbers and of units that is left out of each look.
-const DROP_NUMBERS: f64 = 0.1;
+const DROP_NUMBERS: f64 = 0.2;
 const DROP_UNITS: f64 = 0.3;
 /// Noise on numbers whose spread is 1.
-const NOISE: f64 = 0.1;
+const NOISE: f64 = 0.4;
 
 /// Coefficients, row by row.
 pub(super) struct Network {
