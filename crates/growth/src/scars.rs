@@ -34,6 +34,8 @@ const SPREAD: f64 = 0.35;
 const DOME: f64 = 0.55;
 /// Pieces between the nodes of what stands out of the bark.
 const STEPS: u32 = 6;
+/// Hollows lie above this height, in radii of the foot: below, the flare of the stem as it is drawn would bury them.
+const ABOVE_FLARE: f64 = 2.5;
 /// How far a rim stands out, over its radius.
 const RIM: f64 = 0.4;
 
@@ -112,12 +114,14 @@ impl<'a> Stem<'a> {
         let stubs = 0.25 * self.clear..(1.3 * self.clear).min(0.8 * whole);
         let knots = 0.12 * self.clear..(1.5 * self.clear).min(0.7 * whole);
         let low = 0.05 * self.clear..(1.1 * self.clear).min(0.6 * whole);
+        let above = low.start.max(ABOVE_FLARE * foot);
+        let hollows = above..low.end.max(above);
         let high = 0.9 * self.clear..(0.75 * whole).max(self.clear);
         let metres = |range: &Range<f64>| range.end - range.start;
         let wanted = [
             (Scar::BrokenLimb, old * spec.broken_limbs, high),
-            (Scar::Burl, old * spec.burls, low.clone()),
-            (Scar::Hollow, old * spec.hollows, low),
+            (Scar::Burl, old * spec.burls, low),
+            (Scar::Hollow, old * spec.hollows, hollows),
             (Scar::Knot, shed * spec.knots * metres(&knots), knots),
             (Scar::Stub, shed * spec.stubs * metres(&stubs), stubs),
         ];
@@ -303,5 +307,17 @@ mod tests {
         let stubs = walled.axes.iter().filter(|a| a.kind == AxisKind::Stub);
         let ends: Vec<f64> = stubs.map(|a| walled.nodes.position[a.nodes.end as usize - 1].x).collect();
         assert!(ends.len() > 5 && ends.iter().all(|x| *x < 0.2), "{ends:?}");
+    }
+
+    #[test]
+    fn hollows_lie_above_the_flare_of_the_foot() {
+        let hollows = ScarSpec { hollows: 3.0, ..ScarSpec::default() };
+        for seed in 0..20 {
+            let plant = scarred(0.4, &hollows, &Obstacles::none(), seed);
+            for hollow in plant.axes.iter().filter(|a| a.kind == AxisKind::Stub) {
+                let place = plant.nodes.position[hollow.bearer.expect("borne").index()].y;
+                assert!(place > ABOVE_FLARE * 0.4 - 0.05, "{place}");
+            }
+        }
     }
 }
