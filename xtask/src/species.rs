@@ -136,8 +136,8 @@ fn shrink(path: &Path, colours: usize) -> Outcome {
     writer.finish().map_err(|e| fault(&e))
 }
 
-/// Colours that stand for all of `seen`: the box of colours with the longest side is halved at its median until there
-/// are `count` boxes (Heckbert 1982); each gives its mean.
+/// Colours that stand for all of `seen`: a box of colours is halved at its median until there are `count` boxes (Heckbert 1982);
+/// each gives its mean. The next one is that with the most pixels times its longest side squared, so that a wide sky has many.
 fn median_cut(seen: Vec<[u8; 3]>, count: usize) -> Vec<[u8; 3]> {
     let mut boxes = vec![seen];
     let side = |colours: &[[u8; 3]], i: usize| {
@@ -145,8 +145,9 @@ fn median_cut(seen: Vec<[u8; 3]>, count: usize) -> Vec<[u8; 3]> {
         of.clone().max().unwrap_or(0) - of.min().unwrap_or(0)
     };
     while boxes.len() < count {
-        let longest = (0..boxes.len()).flat_map(|b| (0..3).map(move |i| (b, i)));
-        let Some((b, i)) = longest.max_by_key(|&(b, i)| side(&boxes[b], i)) else { break };
+        let sides = (0..boxes.len()).flat_map(|b| (0..3).map(move |i| (b, i)));
+        let much = |(b, i): (usize, usize)| boxes[b].len() * usize::from(side(&boxes[b], i)).pow(2);
+        let Some((b, i)) = sides.max_by_key(|&at| much(at)) else { break };
         if side(&boxes[b], i) == 0 {
             break;
         }

@@ -22,18 +22,21 @@ const STEPS: u32 = 16;
 /// Cross-section of all roots where they leave the stem, over that of the stem's foot: they swell where they join.
 const COLLAR: f64 = 9.0;
 /// The share of its thickness that a root loses in the zone of rapid taper, and how long that is, as a share of its length.
-const TAPER: f64 = 0.85;
-const ZONE: f64 = 0.4;
+const TAPER: f64 = 0.62;
+const ZONE: f64 = 0.3;
 /// How far from the middle of the stem it leaves it, in radii of the foot.
 const WITHIN: f64 = 1.4;
 /// How high the middle of a root lies above the ground where it leaves the stem, in its own radius there.
-const RAISED: f64 = 0.3;
+const RAISED: f64 = 0.45;
 /// How fast it comes down: the power of what is left of its length.
 const FALL: f64 = 2.0;
-/// How deep the end lies in the ground, in its own radius: out of sight.
-const SUNK: f64 = 1.5;
-/// The most that a root turns aside between two nodes, radians.
-const WANDER: f64 = 0.3;
+/// How deep the end lies in the ground, in its own radius: out of sight. It sinks from the first share of its length on, so that
+/// it narrows by what the ground covers and not to a spike.
+const SUNK: f64 = 1.2;
+const SINKS: f64 = 0.1;
+/// The most that a root turns aside between two nodes, radians, and how much of a turn goes on at the next one.
+const WANDER: f64 = 0.25;
+const GOES_ON: f64 = 0.3;
 /// The share of roots that fork.
 const FORKS: f64 = 0.5;
 
@@ -116,20 +119,21 @@ impl Roots<'_> {
         let start = plant.nodes.position[bearer.index()];
         let end = thick * (1.0 - TAPER) * 0.5;
         let (mut points, mut radii) = (vec![start], vec![thick]);
-        let (mut at, mut turn) = (DVec3::new(start.x, 0.0, start.z), turn);
+        let (mut at, mut turn, mut turns) = (DVec3::new(start.x, 0.0, start.z), turn, 0.0);
         for step in 1..=STEPS {
             let way = f64::from(step) / f64::from(STEPS);
             let t = ((way - hidden) / (1.0 - hidden)).max(0.0);
             if t > 0.0 {
-                turn += WANDER * (draw.uniform() - 0.5) * 2.0;
+                turns = GOES_ON * turns + WANDER * (draw.uniform() - 0.5) * 2.0;
+                turn += turns;
             }
             let (sin, cos) = ops::sin_cos(turn);
             at += DVec3::new(cos, 0.0, sin) * (length / f64::from(STEPS));
             let rapid = TAPER * (1.0 - ops::exp(-t / ZONE)) / (1.0 - ops::exp(-1.0 / ZONE));
             let r = (thick * (1.0 - rapid) * (1.0 - 0.5 * t)).max(end);
             let bob = 0.3 * r * (draw.uniform() - 0.5) * t.sqrt();
-            let y =
-                lift * ops::powf(1.0 - t, FALL) * (way / hidden.max(1e-9)).min(1.0) - SUNK * end * t + bob;
+            let sunk = SUNK * r * ops::smoothstep(SINKS, 1.0, t);
+            let y = lift * ops::powf(1.0 - t, FALL) * (way / hidden.max(1e-9)).min(1.0) - sunk + bob;
             points.push(DVec3::new(at.x, self.ground + y, at.z));
             radii.push(r);
         }

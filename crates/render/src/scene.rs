@@ -35,6 +35,10 @@ pub(crate) struct Triangle {
     pub(crate) surface: u32,
 }
 
+/// So much of a plant, by its height, may be in the ground before all of it is shown: tips of leaves and roots that sink into the
+/// ground, no taproot. As on the Studio's stage.
+const IN_THE_GROUND: f64 = 0.06;
+
 pub(crate) struct Scene {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) triangles: Vec<Triangle>,
@@ -76,9 +80,9 @@ impl Scene {
         }
         if !scene.bounds.is_empty() {
             // Plants stand on y = 0 even when a leaf hangs a little lower; other things stand on their lowest
-            // point. 0.03: a hanging leaf tip, not a root.
+            // point.
             let (low, height) = (scene.bounds.min.y, scene.bounds.size().y);
-            scene.ground = if low.abs() <= 0.03 * height { 0.0 } else { low };
+            scene.ground = if low.abs() <= IN_THE_GROUND * height { 0.0 } else { low };
         }
         scene
     }
