@@ -295,9 +295,7 @@ impl All<'_, '_> {
         });
         Some([Some(tube(surface, mesh)), face])
     }
-}
 
-impl All<'_, '_> {
     /// Whether a chain is the rim of a hollow.
     fn is_hollow(&self, i: usize) -> bool {
         self.openings.iter().any(|(rim, ..)| *rim == i)

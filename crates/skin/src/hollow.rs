@@ -201,9 +201,7 @@ impl Opening {
     ) -> Option<u32> {
         let [p, q] = [a, b].map(|i| self.local(wide(mesh.positions[i as usize])));
         let length = mesh.position(a).distance(mesh.position(b));
-        let course = q.0 - p.0;
-        let nearest = (-p.0.dot(course) / course.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let far = (p.0 + course * nearest).length() > NEAR * self.radius + 0.5 * length;
+        let far = geom::distance_to_segment(p.0, q.0, DVec2::ZERO) > NEAR * self.radius + 0.5 * length;
         if length <= FINE * self.radius || far || p.1.max(q.1) < -BEHIND * self.stem {
             return None;
         }
