@@ -2,6 +2,7 @@
 //! Node needs nothing else.
 
 mod ablation;
+mod adam;
 mod archive;
 mod bare_numbers;
 mod blender;
@@ -28,6 +29,7 @@ mod skips;
 mod species;
 mod studio;
 mod toolchain;
+mod train_glance;
 mod train_kinds;
 mod train_strokes;
 mod web;
@@ -59,6 +61,7 @@ cargo xtask COMMAND
                  or whether they are read alike when they are drawn in another way (--changed)
   read-in-turn   draws drawings stroke by stroke in several orders: how often strokes become something else (docs/strokes.md)
   train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
+  train-glance   learns what drawings look like at a glance, from pictures that npm has (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   test-python    the Python part of `test` alone (docs/python.md)
@@ -89,6 +92,7 @@ fn main() -> ExitCode {
             [layers::check, circles::check, names::check, skips::check].iter().try_for_each(|check| check())
         }
         Some("train-kinds") => train_kinds::run(rest),
+        Some("train-glance") => train_glance::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
         Some("read-drawings") => read_drawings::run(rest),
         Some("read-in-turn") => read_in_turn::run(rest),

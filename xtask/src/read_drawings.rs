@@ -434,6 +434,13 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
     Ok(known.chain(together).chain(rows).chain(kinds).collect())
 }
 
+/// Drawings of a part by people who were asked for a word, with the word.
+pub(crate) fn asked_for(folder: &Path, part: Part) -> Outcome<Vec<(String, Drawing)>> {
+    let people =
+        people(folder, part, 1)?.into_iter().filter(|c| !c.set.contains("spg") && !c.set.contains("by hand"));
+    Ok(people.map(|c| (c.set, c.drawing)).collect())
+}
+
 /// Made drawings of each way to draw a kind.
 const MADE_TO_LEARN: u64 = 120;
 const MADE_TO_TEST: u64 = 12;

@@ -122,11 +122,11 @@ fn model(mut learnt: Vec<Row>, mut held_out: Vec<Row>) -> String {
     let rows = net.direct.chunks(COLUMNS).zip(net.inner.chunks(UNITS));
     for ((name, (mean, spread)), (direct, inner)) in numbers.zip(rows) {
         let _ = write!(text, "\n{name},{mean:.3},{spread:.3}");
-        text.extend(direct.iter().chain(inner).map(|c| format!(",{}", short(*c))));
+        text.extend(direct.iter().chain(inner).map(|c| format!(",{}", short(*c, 2))));
     }
     for (name, outer) in units.zip(net.outer.chunks(COLUMNS)) {
         let _ = write!(text, "\n{name},0,1");
-        text.extend(outer.iter().map(|c| format!(",{}", short(*c))));
+        text.extend(outer.iter().map(|c| format!(",{}", short(*c, 2))));
     }
     text.push('\n');
     text
@@ -238,9 +238,9 @@ impl Scale {
     }
 }
 
-/// A coefficient in few bytes: two decimals.
-fn short(c: f64) -> String {
-    let text = format!("{c:.2}");
+/// A coefficient in few bytes.
+pub(crate) fn short(c: f64, decimals: usize) -> String {
+    let text = format!("{c:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     let short = text.replacen("0.", ".", 1);
     if short.is_empty() || short == "-" || short == "-." { "0".to_owned() } else { short }

@@ -59,6 +59,11 @@ impl Kind {
         Self::None,
     ];
 
+    /// Its place in [`ALL`](Self::ALL).
+    pub const fn place(self) -> usize {
+        self as usize
+    }
+
     /// The word in reports and options.
     pub const fn word(self) -> &'static str {
         match self {

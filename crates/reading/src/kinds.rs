@@ -2,7 +2,8 @@
 //!
 //! A small network over numbers of the whole drawing, with a softmax over the kinds. Its coefficients are data
 //! (`data/kinds.csv`), learnt by `cargo xtask train-kinds` from drawings of people and made ones of the part to learn
-//! from. `docs/strokes.md` says how, and how good it is.
+//! from. What it says of the kinds that are words is weighed by how the drawing looks at a [glance](mod@crate::glance).
+//! `docs/strokes.md` says how, and how good it is.
 
 use std::sync::OnceLock;
 
@@ -263,12 +264,16 @@ pub(crate) struct Shares {
     pub(crate) several: f64,
 }
 
-/// What the model says of a row of [`kind_features`].
-pub(crate) fn shares(row: &[f64]) -> Shares {
+/// A kind that a glance does not see at all keeps this much of its share: a picture so small can mislead.
+const UNSEEN: f64 = 0.03;
+
+/// What the model says of a row of [`kind_features`], and of what is seen at a glance: the share of each of [`Kind::ALL`].
+pub(crate) fn shares(row: &[f64], seen: &[f64; Kind::ALL.len()]) -> Shares {
     let Some(model) = trained() else { return Shares::default() };
     let sums = model.sums(row);
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    let mut powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    weigh(&mut powers, &model.kinds, seen);
     let total: f64 = powers.iter().sum();
     let of = |wanted: Option<Kind>| {
         let own = model.kinds.iter().zip(&powers).filter(|(k, _)| **k == wanted);
@@ -283,6 +288,19 @@ pub(crate) fn shares(row: &[f64]) -> Shares {
     Shares { kinds, no_plant, several }
 }
 
+/// Two that look in different ways at the same thing, and err independently: the product of what they say. Only of the kinds
+/// that both know; together they keep their share against what only the numbers know.
+fn weigh(powers: &mut [f64], kinds: &[Option<Kind>], seen: &[f64; Kind::ALL.len()]) {
+    let seen: Vec<f64> = kinds.iter().map(|k| k.map_or(0.0, |k| seen[k.place()])).collect();
+    let known = |powers: &[f64]| -> f64 {
+        powers.iter().zip(&seen).filter(|(_, s)| **s > 0.0).map(|(p, _)| *p).sum()
+    };
+    let before = known(powers);
+    powers.iter_mut().zip(&seen).filter(|(_, s)| **s > 0.0).for_each(|(p, s)| *p *= s + UNSEEN);
+    let part = before / known(powers).max(f64::MIN_POSITIVE);
+    powers.iter_mut().zip(&seen).filter(|(_, s)| **s > 0.0).for_each(|(p, _)| *p *= part);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -295,7 +313,21 @@ mod tests {
         assert!(model.units.iter().flatten().all(|c| c.is_finite()) && !model.units.is_empty());
         let row = kind_features(&Ink::default(), &[], &Reading::default());
         assert!(row.iter().all(|x| x.is_finite()));
-        let sum: f64 = shares(&row).kinds.iter().map(|s| s.score).sum();
+        let sum: f64 = shares(&row, &[0.0; Kind::ALL.len()]).kinds.iter().map(|s| s.score).sum();
         assert!((sum - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_glance_moves_shares_only_among_the_kinds_that_it_knows() {
+        let kinds = [Some(Kind::Tree), Some(Kind::Fruit), Some(Kind::Stem), None];
+        let mut seen = [0.0; Kind::ALL.len()];
+        (seen[Kind::Tree.place()], seen[Kind::Fruit.place()]) = (0.1, 0.9);
+        let mut powers = [0.4, 0.2, 0.3, 0.1];
+        weigh(&mut powers, &kinds, &seen);
+        assert!((powers[0] + powers[1] - 0.6).abs() < 1e-12 && powers[2..] == [0.3, 0.1], "{powers:?}");
+        assert!((powers[0] / powers[1] - 2.0 * 0.13 / 0.93).abs() < 1e-12, "{powers:?}");
+        let before = powers;
+        weigh(&mut powers, &kinds, &[0.0; Kind::ALL.len()]);
+        assert_eq!(powers, before, "who sees nothing changes nothing");
     }
 }

@@ -16,6 +16,7 @@
 //! | `attach` | what bears what | beyond |
 //! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
+//! | [`glance`](mod@glance) | what a drawing looks like, whatever its strokes are | beyond |
 //! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
 //! | `kept` | what single strokes gave, kept while they stay as they are | |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
@@ -31,6 +32,7 @@ mod contour;
 mod corolla;
 mod draft;
 mod flowers;
+pub mod glance;
 mod grid;
 mod inertia;
 mod kept;

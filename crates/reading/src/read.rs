@@ -11,7 +11,7 @@ use crate::rules::GREEN_LEAVES;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
+    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -124,7 +124,7 @@ impl First {
                 ..kinds::Shares::default()
             }
         } else {
-            kinds::shares(&kinds::kind_features(ink, classes, &reading))
+            kinds::shares(&kinds::kind_features(ink, classes, &reading), &glance::glance(ink))
         };
         Self { reading, said, shares }
     }

@@ -4,10 +4,12 @@
 //! Two networks that begin with other coefficients err in other drawings, so several are learnt and their sums averaged. Sums
 //! are linear in units: the mean of networks is one network with the units of all.
 //!
-//! Adam (Kingma and Ba 2015) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units, and a
-//! pull of every coefficient towards 0. The same rows give the same network.
+//! [Adam](crate::adam) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units. The same rows
+//! give the same network.
 
 use base::{Draw, Seed, Stream, ops};
+
+use crate::adam::{self, Moments};
 
 /// Networks whose mean is taken, and units of each.
 const NETWORKS: usize = 3;
@@ -107,11 +109,11 @@ impl Network {
                 let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
                 net.look(examples[at], r, &mut slope);
             }
-            let rate = RATE * 0.5 * (1.0 + ops::cos(ops::PI * step as f64 / steps as f64));
+            let rate = adam::rate(RATE, step, steps);
             let slopes = [&slope.direct, &slope.inner, &slope.outer];
             let own = [&mut net.direct, &mut net.inner, &mut net.outer];
             for ((own, slope), moments) in own.into_iter().zip(slopes).zip(&mut moments) {
-                moments.step(own, slope, step + 1, rate);
+                moments.step(own, slope, step + 1, rate, PULL);
             }
         }
         net
@@ -173,29 +175,6 @@ impl Network {
     pub(super) fn told(&self, x: &[f64]) -> Vec<f64> {
         let heard: Vec<f64> = self.units(x).into_iter().map(|u| u.max(0.0)).collect();
         self.shares(x, &heard)
-    }
-}
-
-/// Means of slopes and of their squares.
-struct Moments {
-    slope: Vec<f64>,
-    square: Vec<f64>,
-}
-
-impl Moments {
-    fn new(n: usize) -> Self {
-        Self { slope: vec![0.0; n], square: vec![0.0; n] }
-    }
-
-    fn step(&mut self, own: &mut [f64], slope: &[f64], number: usize, rate: f64) {
-        const MEMORY: [f64; 2] = [0.9, 0.999];
-        let seen = MEMORY.map(|m| 1.0 - ops::powf(m, number as f64));
-        let moments = self.slope.iter_mut().zip(&mut self.square);
-        for ((c, s), (mean, square)) in own.iter_mut().zip(slope).zip(moments) {
-            *mean = MEMORY[0] * *mean + (1.0 - MEMORY[0]) * s;
-            *square = MEMORY[1] * *square + (1.0 - MEMORY[1]) * s * s;
-            *c -= rate * ((*mean / seen[0]) / ((*square / seen[1]).sqrt() + 1e-8) + PULL * *c);
-        }
     }
 }
 

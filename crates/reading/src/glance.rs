@@ -1,0 +1,172 @@
+//! What a drawing looks like at a glance: `ink -> share of each kind that people were asked to draw`.
+//!
+//! A small convolutional network (`LeCun`, Bottou, Bengio and Haffner 1998) looks at a picture of the drawing; strokes, their
+//! order and their directions do not exist for it. It learnt from pictures of drawings that many people made of a word, which
+//! is what the numbers of [`kinds`](crate::kinds) lack most. Its coefficients are data (`data/glance.csv`), learnt by `cargo
+//! xtask train-glance`; `docs/strokes.md` says how, and what it is worth.
+
+mod layers;
+
+use std::sync::OnceLock;
+
+use base::ops;
+use geom::bounds;
+use glam::DVec2;
+use ink::Ink;
+
+pub use layers::{CHANNELS, GLIMPSE, HIDDEN, Layer, Seen, Sight, pooled};
+
+use crate::Kind;
+
+/// Cells along each side of a [`Picture`].
+pub const SIDE: usize = 28;
+/// Cells from the first to the last line of a drawing's longer side. The others leave room for what lines share.
+const SPAN: f64 = (SIDE - 1) as f64;
+/// How dark each cell of a drawing is, 0 to 1, row by row from the top.
+pub type Picture = Vec<f32>;
+
+/// The words that people were asked to draw and that name a kind.
+pub const WORDS: [(&str, Kind); 25] = [
+    ("tree", Kind::Tree),
+    ("bush", Kind::Bush),
+    ("palm tree", Kind::Palm),
+    ("cactus", Kind::Cactus),
+    ("flower", Kind::Flower),
+    ("grass", Kind::Grass),
+    ("leaf", Kind::Leaf),
+    ("house plant", Kind::HousePlant),
+    ("apple", Kind::Fruit),
+    ("banana", Kind::Fruit),
+    ("blackberry", Kind::Fruit),
+    ("blueberry", Kind::Fruit),
+    ("grapes", Kind::Fruit),
+    ("pear", Kind::Fruit),
+    ("pineapple", Kind::Fruit),
+    ("strawberry", Kind::Fruit),
+    ("watermelon", Kind::Fruit),
+    ("asparagus", Kind::Vegetable),
+    ("broccoli", Kind::Vegetable),
+    ("carrot", Kind::Vegetable),
+    ("mushroom", Kind::Vegetable),
+    ("onion", Kind::Vegetable),
+    ("peas", Kind::Vegetable),
+    ("potato", Kind::Vegetable),
+    ("string bean", Kind::Vegetable),
+];
+
+/// A drawing in [`SIDE`] by [`SIDE`] cells, its middle in theirs, its longer side as long as they allow.
+///
+/// A line darkens the two cells between which it crosses the middle of a column (of a row, where it is steeper), each by its
+/// share, as Wu (1991) draws lines without steps; a cell is as dark as what darkens it most. A stroke's first point is a dot.
+/// Linear in points.
+pub fn picture(ink: &Ink) -> Picture {
+    let mut cells = vec![0.0; SIDE * SIDE];
+    let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
+    let Some((lo, hi)) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { return cells };
+    let scale = SPAN / (hi - lo).max_element().max(f64::MIN_POSITIVE);
+    let middle = lo.midpoint(hi);
+    let place = |p: DVec2| (p - middle) * DVec2::new(scale, -scale) + SPAN / 2.0;
+    for stroke in &ink.strokes {
+        let points: Vec<DVec2> = stroke.points.iter().map(|p| place(*p)).collect();
+        points.first().into_iter().for_each(|p| darken(&mut cells, p.round(), 1.0));
+        points.windows(2).for_each(|pair| line(&mut cells, pair[0], pair[1]));
+    }
+    cells
+}
+
+/// Darkens the cells of one piece of a line.
+fn line(cells: &mut Picture, from: DVec2, to: DVec2) {
+    let way = to - from;
+    let steep = way.y.abs() > way.x.abs();
+    let turned = |p: DVec2| if steep { DVec2::new(p.y, p.x) } else { p };
+    let (from, way) = (turned(from), turned(way));
+    if way.x == 0.0 {
+        return;
+    }
+    let (first, last) = (from.x.min(from.x + way.x).ceil(), from.x.max(from.x + way.x).floor());
+    let mut x = first;
+    while x <= last {
+        let y = from.y + way.y * (x - from.x) / way.x;
+        let share = y - y.floor();
+        darken(cells, turned(DVec2::new(x, y.floor())), 1.0 - share);
+        darken(cells, turned(DVec2::new(x, y.floor() + 1.0)), share);
+        x += 1.0;
+    }
+}
+
+/// `at`: the middle of a cell.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "within the picture, as was asked"
+)]
+fn darken(cells: &mut Picture, at: DVec2, share: f64) {
+    if at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::splat(SIDE as f64)).all() {
+        let cell = &mut cells[at.y as usize * SIDE + at.x as usize];
+        *cell = cell.max(share as f32);
+    }
+}
+
+/// How a drawing looks: the share of each of [`Kind::ALL`] among those that [`WORDS`] name. The same from left and right.
+pub(crate) fn glance(ink: &Ink) -> [f64; Kind::ALL.len()] {
+    let mut shares = [0.0; Kind::ALL.len()];
+    let Some(sight) = trained() else { return shares };
+    let picture = picture(ink);
+    let mut mirrored = picture.clone();
+    mirrored.chunks_mut(SIDE).for_each(<[f32]>::reverse);
+    let (one, other) = (sight.look(&picture).words, sight.look(&mirrored).words);
+    let sums: Vec<f64> = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) + f64::from(*b)) / 2.0).collect();
+    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    let total: f64 = powers.iter().sum();
+    for ((_, kind), power) in WORDS.iter().zip(powers) {
+        shares[kind.place()] += power / total;
+    }
+    shares
+}
+
+fn trained() -> Option<&'static Sight> {
+    static SIGHT: OnceLock<Option<Sight>> = OnceLock::new();
+    SIGHT.get_or_init(|| Sight::parse(include_str!("../data/glance.csv"), WORDS.len())).as_ref()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ink(lines: &[Vec<DVec2>]) -> Ink {
+        ink::clean(&ink::Drawing::from_polylines("drawn", lines), &mut base::Report::default())
+    }
+
+    #[test]
+    fn a_line_between_two_columns_darkens_both_by_half() {
+        // A level line above, an upright one in the middle, between the columns 13 and 14.
+        let line = |a: [f64; 2], b: [f64; 2]| {
+            (0..=20).map(|k| DVec2::from(a).lerp(DVec2::from(b), f64::from(k) / 20.0)).collect::<Vec<_>>()
+        };
+        let seen = picture(&ink(&[line([0.0, 10.0], [10.0, 10.0]), line([5.0, 10.0], [5.0, 0.0])]));
+        assert!(seen[..SIDE].iter().all(|c| (c - 1.0).abs() < 1e-6), "{:?}", &seen[..SIDE]);
+        for row in seen.chunks(SIDE).skip(2) {
+            assert!((row[13] - 0.5).abs() < 1e-6 && (row[14] - 0.5).abs() < 1e-6, "{row:?}");
+            assert!(row[..12].iter().chain(&row[16..]).all(|c| *c == 0.0));
+        }
+    }
+
+    #[test]
+    fn the_committed_sight_looks_at_every_kind_that_a_word_names_and_does_not_mind_left_and_right() {
+        assert!(trained().is_some(), "data/glance.csv is of another form: run `cargo xtask train-glance`");
+        let bent: Vec<DVec2> = (0..30).map(|k| DVec2::new(f64::from(k * k) / 9.0, f64::from(k))).collect();
+        let mirrored = bent.iter().map(|p| DVec2::new(-p.x, p.y)).collect();
+        let (one, other) = (glance(&ink(&[bent])), glance(&ink(&[mirrored])));
+        assert!((one.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        for kind in Kind::ALL {
+            assert_eq!(one[kind.place()] > 0.0, WORDS.iter().any(|w| w.1 == kind), "{kind:?}");
+            assert!((one[kind.place()] - other[kind.place()]).abs() < 1e-6, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_drawn_is_no_fault() {
+        assert!(glance(&Ink::default()).iter().all(|s| s.is_finite()));
+    }
+}
