@@ -48,7 +48,8 @@ cargo xtask COMMAND
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, npm, Python, Studio
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
-  species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
+  species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
+                 the presets that are named alone
   sheets [KEY..] makes a page of each species, or of these, to look at: nine seeds, four ages, three levels (out/sheets)
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   types          writes the schemas of specs and the TypeScript types of what travels between page and core
@@ -83,7 +84,7 @@ fn main() -> ExitCode {
         Some("test") => test(),
         Some("bless") => golden::bless(rest),
         Some("gallery") => gallery::run(),
-        Some("species") => species::run(),
+        Some("species") => species::run(rest),
         Some("sheets") => sheets::run(rest),
         Some("flowers") => flowers::run(),
         Some("types") => types(),
