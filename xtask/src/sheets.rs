@@ -128,7 +128,8 @@ fn pictures(burgeon: &Path, key: &str, folder: &Path) -> Outcome<Vec<PathBuf>> {
     let years = years(burgeon, key)?;
     let mut ages = SHARES.map(|share| (share * years).round().to_string()).to_vec();
     ages.dedup();
-    for age in ages.into_iter().filter(|age| age != "0") {
+    let whole = years.to_string();
+    for age in ages.into_iter().filter(|age| *age != "0" && *age != whole) {
         let png = place(format!("age-{age}.png"));
         grow(&["--age", &age, "--png", &png])?;
         keep(format!("age {age}"), png)?;
