@@ -50,6 +50,8 @@ const FRONDS_FIRST: f64 = 0.4;
 /// Stems thicken by this power of the height at least, so that no young tree is stouter than the whole one (elastic similarity:
 /// McMahon, Science 179, 1973).
 const ELASTIC: f64 = 1.5;
+/// Twigs of the youngest are no thinner than this share of those of the whole tree.
+const SLIMMEST: f64 = 0.3;
 
 /// The share of the final length at a share of a life of so many years.
 pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
@@ -143,7 +145,7 @@ pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec
     };
     let slim = |((high, thick), (now, r)): ((f64, f64), (f64, f64))| {
         let usual = thick * ops::powf((now / high.max(1e-9)).clamp(0.0, 1.0), ELASTIC);
-        if fronds || r <= 0.0 { 1.0 } else { (usual / r).clamp(0.05, 1.0) }
+        if fronds || r <= 0.0 { 1.0 } else { (usual / r).clamp(SLIMMEST, 1.0) }
     };
     measured(full).into_iter().zip(measured(young)).map(slim).collect()
 }

@@ -20,6 +20,8 @@ const WIDE: f64 = 1.5;
 /// and how slender it is at least, half its width over its length: corners of its form alone would leave its arch out.
 const ARCHED: f64 = 0.93;
 const SLENDER: f64 = 0.16;
+/// More triangles make no better arch.
+const MOST_ARCHED: f64 = 16.0;
 
 /// A slender blade that arches over, as of a grass or a palm, in equal steps along its midrib; none of others.
 fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
@@ -33,7 +35,7 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     if leans || straight > ARCHED * along || half_width(outline) > SLENDER * tip.y {
         return None;
     }
-    let steps = base::ops::whole(0.5 * triangles.clamp(4.0, 60.0)) as usize;
+    let steps = base::ops::whole(0.5 * triangles.clamp(2.0, MOST_ARCHED)) as usize;
     // What of a line across the blade lies in it.
     let across = |y: f64| {
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
