@@ -48,7 +48,7 @@ const ON_A_STEM: f64 = 0.25;
 /// Fronds of a young palm are this power of the stem's share as long as those of the whole one: they come before the stem.
 const FRONDS_FIRST: f64 = 0.4;
 /// Stems thicken by this power of the height at least, so that no young tree is stouter than the whole one (elastic similarity:
-/// McMahon, Science 179, 1973).
+/// `McMahon`, Science 179, 1973).
 const ELASTIC: f64 = 1.5;
 /// Twigs of the youngest are no thinner than this share of those of the whole tree.
 const SLIMMEST: f64 = 0.3;
