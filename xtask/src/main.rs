@@ -24,6 +24,7 @@ mod quickdraw;
 mod read_drawings;
 mod read_in_turn;
 mod scenes;
+mod sheets;
 mod shell;
 mod skips;
 mod species;
@@ -49,7 +50,9 @@ cargo xtask COMMAND
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, npm, Python, Studio
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
-  species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
+  species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
+                 the presets that are named alone
+  sheets [KEY..] makes a page of each species, or of these, to look at: nine seeds, four ages, three levels (out/sheets)
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   types          writes the schemas of specs and the TypeScript types of what travels between page and core
   habits         checks licences and versions of dependencies, spelling, numbers without a name, and that the crates could be
@@ -84,7 +87,8 @@ fn main() -> ExitCode {
         Some("test") => test(),
         Some("bless") => golden::bless(rest),
         Some("gallery") => gallery::run(),
-        Some("species") => species::run(),
+        Some("species") => species::run(rest),
+        Some("sheets") => sheets::run(rest),
         Some("flowers") => flowers::run(),
         Some("types") => types(),
         Some("habits") => habits::check(),

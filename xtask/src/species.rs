@@ -1,5 +1,6 @@
 //! `cargo xtask species`: grows every preset and writes the table of docs/trees.md, the pictures of that page and of
-//! docs/shaping.md, and the small ones that the Studio shows.
+//! docs/shaping.md, and the small ones that the Studio shows. `cargo xtask species pine fig` does so for the rows and pictures of
+//! two.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -8,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::pixels::{Pixels, length, rgba};
-use crate::shell::{Outcome, built_burgeon, command, repository, say};
+use crate::shell::{Outcome, command, release_burgeon, repository, say};
 
 const FROM: &str = "<!-- species: written by cargo xtask species -->\n";
 const TO: &str = "<!-- end of species -->\n";
@@ -17,14 +18,18 @@ const FEW: usize = 16;
 /// Colours of a picture of the page: enough for a sky.
 const MANY: usize = 96;
 
-pub(crate) fn run() -> Outcome {
-    let burgeon = built_burgeon()?;
+pub(crate) fn run(only: &[String]) -> Outcome {
+    let burgeon = release_burgeon()?;
     let root = repository();
     let small = root.join("apps/studio-web/public/presets");
     std::fs::create_dir_all(&small).map_err(|e| format!("cannot make {}: {e}", small.display()))?;
     let list = std::process::Command::new(&burgeon).args(["presets", "--json"]).output();
     let list = list.map_err(|e| format!("cannot run {}: {e}", burgeon.display()))?;
     let list: Value = serde_json::from_slice(&list.stdout).map_err(|e| e.to_string())?;
+    let page = root.join("docs/trees.md");
+    let text = std::fs::read_to_string(&page).map_err(|e| format!("cannot read {}: {e}", page.display()))?;
+    let (before, rest) = text.split_once(FROM).ok_or("docs/trees.md has lost the mark before its table")?;
+    let (old, after) = rest.split_once(TO).ok_or("docs/trees.md has lost the mark after its table")?;
     let mut table = String::from(
         "| picture | species | growth | branches | leaves | triangles |\n\
          |---|---|---|---|---|---|\n",
@@ -34,6 +39,11 @@ pub(crate) fn run() -> Outcome {
         let key = word("preset");
         // Those are made by `cargo xtask flowers`.
         if word("method") == "flower" {
+            continue;
+        }
+        let kept = old.lines().find(|line| line.contains(&format!("**`{key}`**")));
+        if let Some(row) = kept.filter(|_| !only.is_empty() && only.iter().all(|o| o != key)) {
+            let _ = writeln!(table, "{row}");
             continue;
         }
         let picture = root.join(format!("docs/pictures/trees/{key}.png"));
@@ -69,12 +79,11 @@ pub(crate) fn run() -> Outcome {
             n(counts, "triangles"),
         );
     }
-    let page = root.join("docs/trees.md");
-    let text = std::fs::read_to_string(&page).map_err(|e| format!("cannot read {}: {e}", page.display()))?;
-    let (before, rest) = text.split_once(FROM).ok_or("docs/trees.md has lost the mark before its table")?;
-    let (_, after) = rest.split_once(TO).ok_or("docs/trees.md has lost the mark after its table")?;
     std::fs::write(&page, format!("{before}{FROM}{table}{TO}{after}"))
         .map_err(|e| format!("cannot write {}: {e}", page.display()))?;
+    if !only.is_empty() {
+        return Ok(());
+    }
     crate::scenes::make()?;
     say("docs/trees.md, its pictures, those of docs/shaping.md and those of the Studio are made anew");
     Ok(())

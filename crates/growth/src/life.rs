@@ -42,6 +42,16 @@ const GAP: f64 = 0.08;
 const COUNTS: f64 = 0.01;
 /// The least share of an internode that is drawn at the tip of a growing shoot.
 const BEGUN: f64 = 0.12;
+/// As many branches at one joint are the fronds of a palm or a tree fern, if a stem of this share of the height bears them.
+const FRONDS: usize = 8;
+const ON_A_STEM: f64 = 0.25;
+/// Fronds of a young palm are this power of the stem's share as long as those of the whole one: they come before the stem.
+const FRONDS_FIRST: f64 = 0.4;
+/// Stems thicken by this power of the height at least, so that no young tree is stouter than the whole one (elastic similarity:
+/// `McMahon`, Science 179, 1973).
+const ELASTIC: f64 = 1.5;
+/// Twigs of the youngest are no thinner than this share of those of the whole tree.
+const SLIMMEST: f64 = 0.3;
 
 /// The share of the final length at a share of a life of so many years.
 pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
@@ -72,6 +82,8 @@ pub(crate) fn younger(
         let Some(p) = full.parent[j].map(JointId::index) else { continue };
         (grown[j], opened[j]) = if axes.head[j] == axes.head[p] {
             (grown[p], opened[p])
+        } else if axes.rosette[p] {
+            (ops::powf(grown[p], FRONDS_FIRST), 1.0)
         } else {
             let share = axes.branch(j, p, grown[p], opened[p]);
             (share, axes.open(j, share))
@@ -98,8 +110,50 @@ pub(crate) fn younger(
     (young, ids)
 }
 
+/// The joints that bear the fronds of a palm or a tree fern.
+fn rosettes(full: &Skeleton) -> Vec<bool> {
+    let mut children = vec![0_usize; full.len()];
+    full.parent.iter().flatten().for_each(|p| children[p.index()] += 1);
+    let foot = full.position.first().map_or(0.0, |p| p.y);
+    let high = full.position.iter().map(|p| p.y - foot).fold(0.0, f64::max);
+    let on_a_stem = |j: usize| full.position[j].y - foot >= ON_A_STEM * high;
+    (0..full.len()).map(|j| children[j] >= FRONDS && on_a_stem(j)).collect()
+}
+
+/// By how much leaves that are a part of the tree's own height are shorter at a share of its life.
+pub(crate) fn fronds_by(full: &Skeleton, life: f64, years: u32) -> f64 {
+    let grown = grown_by(life, years);
+    if rosettes(full).contains(&true) { ops::powf(grown, FRONDS_FIRST) } else { grown }
+}
+
+/// By how much all wood of each tree is thinner than the pipes of a young one ask for, which has the foot of most of its limbs:
+/// 1 or less. Stems of palms and ferns have their thickness before their height.
+pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec<f64> {
+    let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
+    let fronds = rosettes(full).contains(&true);
+    let measured = |s: &Skeleton| {
+        let (thick, mut of) = (radii(s, wood), vec![(0.0_f64, 0.0_f64); trees]);
+        let mut foot = vec![0.0; trees];
+        for (j, parent) in s.parent.iter().enumerate() {
+            let t = s.tree[j] as usize;
+            if parent.is_none() {
+                foot[t] = s.position[j].y;
+            }
+            of[t] = (of[t].0.max(s.position[j].y - foot[t]), of[t].1.max(thick[j]));
+        }
+        of
+    };
+    let slim = |((high, thick), (now, r)): ((f64, f64), (f64, f64))| {
+        let usual = thick * ops::powf((now / high.max(1e-9)).clamp(0.0, 1.0), ELASTIC);
+        if fronds || r <= 0.0 { 1.0 } else { (usual / r).clamp(SLIMMEST, 1.0) }
+    };
+    measured(full).into_iter().zip(measured(young)).map(slim).collect()
+}
+
 /// The axes of a whole tree: which joints make each, and how they grow.
 struct Axes {
+    /// Which joints bear fronds.
+    rosette: Vec<bool>,
     /// The first joint of each joint's axis, roots for trunks.
     head: Vec<usize>,
     /// By joint, metres along its axis from where that leaves its bearer.
@@ -122,11 +176,14 @@ impl Axes {
         let n = full.len();
         let mut main = main_children(full, &radii(full, wood));
         lead_to_the_top(full, &mut main);
+        let rosette = rosettes(full);
+        main.iter_mut().zip(&rosette).filter(|(_, r)| **r).for_each(|(m, _)| *m = None);
         let on_bole = boles(full, &main);
         let pipes = pipes(full, wood.internode_share);
         let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
         let none = || vec![0.0; n];
         let mut axes = Self {
+            rosette,
             head: (0..n).collect(),
             along: none(),
             shot: none(),

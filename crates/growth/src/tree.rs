@@ -9,7 +9,7 @@ use plant::{Blade, Frame, NodeId, Plant};
 use crate::colonize::{colonize_part, grow_frame, plant_roots};
 use crate::competition::compete_each;
 use crate::envelope::crowns;
-use crate::life::{grown_by, younger};
+use crate::life::{fronds_by, grown_by, slimmer, younger};
 use crate::props::add_props;
 use crate::scars::add_scars;
 use crate::surface_roots::add_surface_roots;
@@ -107,9 +107,12 @@ pub fn grow(
         // One exponent and one tip for the wood that growth kept account of.
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
-    let thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
+    let mut thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
     take_limbs(&spec.variation, &wood_spec, seed, &mut bones);
-    age(spec, &wood_spec, &mut bones);
+    let slim = age(spec, &wood_spec, &mut bones);
+    // One number for all, or one for each.
+    thick.resize(thick.len().max(slim.len()), thick.first().copied().unwrap_or(1.0));
+    thick.iter_mut().zip(slim).for_each(|(thick, slim)| *thick *= slim);
     strip_twigs(&wood_spec, &mut bones);
     let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
     let grown = bones.skeleton.len();
@@ -240,9 +243,9 @@ fn limbs(skeleton: &Skeleton, wood: &WoodSpec) -> Vec<usize> {
     limbs
 }
 
-/// The tree as it was at its age.
-fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
-    let Some(age) = spec.age else { return };
+/// The tree as it was at its age; by how much each one's wood is thinner than its pipes ask for.
+fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) -> Vec<f64> {
+    let Some(age) = spec.age else { return Vec::new() };
     match (&spec.method, spec.years) {
         // Light and rules without years were followed so far and no further.
         _ if bones.aged => {}
@@ -252,9 +255,12 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
             let (young, ids) = younger(&bones.skeleton, wood, life, years);
             // Fronds and blades that are a part of the tree's own height grow with it.
             if spec.leaves.length_m > 0.05 * bones.skeleton.size() {
-                bones.marks.iter_mut().for_each(|m| m.scale *= grown_by(life, years));
+                let shorter = fronds_by(&bones.skeleton, life, years);
+                bones.marks.iter_mut().for_each(|m| m.scale *= shorter);
             }
+            let slim = slimmer(&bones.skeleton, &young, wood);
             bones.become_of(young, &ids);
+            return slim;
         }
         (_, Some(_)) => {}
         (_, None) => {
@@ -264,6 +270,7 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
             bones.become_of(young, &ids);
         }
     }
+    Vec::new()
 }
 
 /// Takes the fine twigs of dead limbs, which the wind breaks first; the rest stays as thick as it was.

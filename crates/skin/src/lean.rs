@@ -16,6 +16,64 @@ pub(crate) const COPIED_WIDER: f64 = 6.0;
 /// How much wider than its outline a blade of a coarser copy is drawn before its bays are closed instead.
 const WIDE: f64 = 1.5;
 
+/// How much shorter the way from root to tip is than along the midrib where a blade of a coarser copy is drawn in steps along it,
+/// and how slender it is at least, half its width over its length: corners of its form alone would leave its arch out.
+const ARCHED: f64 = 0.93;
+const SLENDER: f64 = 0.16;
+/// More triangles make no better arch.
+const MOST_ARCHED: f64 = 16.0;
+
+/// A slender blade that arches over, as of a grass or a palm, in equal steps along its midrib; none of others.
+fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
+    const PARTS: u32 = 12;
+    let (outline, surface) = (&blade.outline, blade.surface());
+    let tip = *blade.midrib.last()?;
+    let way: Vec<_> = (0..=PARTS).map(|k| surface.point(tip * (f64::from(k) / f64::from(PARTS)))).collect();
+    let along: f64 = way.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let straight = way[0].distance(way[way.len() - 1]);
+    let leans = tip.x.abs() > SLENDER * tip.y;
+    if leans || straight > ARCHED * along || half_width(outline) > SLENDER * tip.y {
+        return None;
+    }
+    let steps = base::ops::whole(0.5 * triangles.clamp(2.0, MOST_ARCHED)) as usize;
+    // What of a line across the blade lies in it.
+    let across = |y: f64| {
+        let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+        let at = ends
+            .filter(|(a, b)| (a.y <= y) != (b.y <= y))
+            .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
+        at.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let (mut right, mut left) = (vec![DVec2::ZERO], vec![tip]);
+    for k in 1..=steps {
+        let y = tip.y * k as f64 / (steps + 1) as f64;
+        let (low, high) = across(y);
+        right.push(DVec2::new(high, y));
+        left.insert(1, DVec2::new(low, y));
+    }
+    let points = [right, left].concat();
+    if points.iter().any(|p| !p.is_finite()) || geom::signed_area(&points) <= 0.0 {
+        return None;
+    }
+    let wider = DVec2::new((geom::signed_area(outline) / geom::signed_area(&points)).clamp(1.0, widest), 1.0);
+    let (mut mesh, chart) = (TriMesh::default(), BladeChart::new(blade));
+    for &p in &points {
+        mesh.push(surface.point(p * wider));
+        let uv = chart.uv(p);
+        mesh.uvs.push(narrow2(uv.x, uv.y));
+    }
+    let n = points.len();
+    mesh.triangles.push([0, 1, n - 1].map(crate::sleeve::index));
+    for k in 1..steps {
+        let (a, b, c, d) = (k, k + 1, n - k - 1, n - k);
+        mesh.triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(crate::sleeve::index)));
+    }
+    mesh.triangles.push([steps, steps + 1, steps + 2].map(crate::sleeve::index));
+    drop_flat(&mut mesh);
+    mesh.compute_normals();
+    Some(mesh)
+}
+
 /// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
 /// its outline has, up to `widest` times.
 ///
@@ -27,6 +85,11 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let outline = &blade.outline;
     if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
         return None;
+    }
+    if widest > WIDE
+        && let Some(mesh) = arched(blade, triangles, widest)
+    {
+        return Some(mesh);
     }
     let end = *blade.midrib.last()?;
     let tip = nearest(outline, end)?;
@@ -242,6 +305,21 @@ mod tests {
             let mesh = lean_mesh(&fingers, wish, COPIED_WIDER).expect("a simple outline");
             let wide = mesh.positions.iter().map(|p| f64::from(p[0].abs())).fold(0.0, f64::max);
             assert!(wide <= WIDE * half_width(&fingers.outline), "{wish}: {wide}");
+        }
+    }
+
+    /// As a grass's.
+    #[test]
+    fn an_arched_blade_keeps_its_reach() {
+        let mut grass = blade(&[(0.05, 0.2), (0.08, 0.5), (0.05, 0.8)]);
+        grass.relief = Relief { bend_a: 0.15, bend_b: 0.45, keep_length: true, ..Relief::default() };
+        let reach =
+            |mesh: &TriMesh| mesh.positions.iter().map(|p| f64::from(p[1].hypot(p[2]))).fold(0.0, f64::max);
+        let fine = reach(&crate::blade_mesh(&grass, 200.0));
+        for wish in [4.0, 8.0, 12.0] {
+            let mesh = lean_mesh(&grass, wish, COPIED_WIDER).expect("a simple outline");
+            assert_eq!(mesh.validate().next(), None, "{wish}");
+            assert!(mesh.triangles.len() as f64 <= wish && reach(&mesh) > 0.95 * fine, "{wish}");
         }
     }
 

@@ -4,13 +4,13 @@ use std::io::Write;
 use std::sync::Arc;
 
 use glam::DVec3;
-use mesh::{Model, TriMesh};
+use mesh::{MaterialKind, Model, TriMesh};
 use serde_json::{Value, json};
 
 use super::glb_write::{Encoded, Level, Writer, check_levels, row};
 use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
 use super::meshopt::{encode_attributes, encode_triangles};
-use super::meshopt_filter::{OCTAHEDRAL, octahedral};
+use super::meshopt_filter::{COARSE, FINE, OCTAHEDRAL, octahedral};
 use super::picture::{WEBP_TYPE, webp};
 use super::{PngCache, share, unit};
 use crate::error::WriteError;
@@ -23,8 +23,9 @@ pub(super) const COMPRESSION: &str = "EXT_meshopt_compression";
 /// compress.
 const STEP_M: f64 = 0.001;
 const STEPS: f64 = 8192.0;
-/// Textures within the range of compressed coordinates, of which each has 512 steps.
+/// Textures within the range of compressed coordinates, of which each has 512 steps, and of a large plant 255, which fit into a byte.
 const TEXTURES: f32 = 65_535.0 / 512.0;
+const TEXTURES_OF_LARGE: f32 = 257.0;
 /// What sixteen bits count to.
 const MOST: f64 = 65_535.0;
 /// Of JPEG textures: differences are hardly seen beside the picture.
@@ -37,8 +38,9 @@ pub enum Packing {
     /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
     Quantized,
     /// Those, compressed (`EXT_meshopt_compression`), with positions in steps of a millimetre or of an 8,192th of the model's
-    /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, and textures
-    /// with holes as WebP without loss (`EXT_texture_webp`; as PNG without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
+    /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, normals to a
+    /// degree (of plants of more than eight metres: a 255th within 257, normals of leaves to four degrees), and textures with
+    /// holes as WebP without loss (`EXT_texture_webp`; as PNG without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
     /// Blender does not.
     Compressed,
 }
@@ -118,7 +120,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(level: &Level<'_>, material: usize, packing: Packing) -> Self {
+    fn of(level: &Level<'_>, material: usize, packing: Packing, large: bool) -> Self {
         let parts = level.model.parts.iter().map(|p| (p.material, &p.mesh));
         let all = parts.chain(level.copies.iter().map(|c| (c.material, &c.mesh)));
         let own = all.filter(|(m, _)| m.index() == material);
@@ -128,7 +130,12 @@ impl Frame {
                 (low[k], high[k]) = (low[k].min(uv[k]), high[k].max(uv[k]));
             }
         }
-        let least = if packing == Packing::Compressed { TEXTURES } else { 0.0 };
+        let many = large && level.copies.iter().all(|c| c.material.index() != material);
+        let least = match packing {
+            Packing::Quantized => 0.0,
+            Packing::Compressed if many => TEXTURES_OF_LARGE,
+            Packing::Compressed => TEXTURES,
+        };
         Self { low, size: [0, 1].map(|k| (high[k] - low[k]).max(least)) }
     }
 
@@ -198,8 +205,11 @@ impl Packer {
     /// Materials and meshes of a level, below a node.
     fn level(&mut self, level: &Level<'_>, under: u32, cache: &mut PngCache) -> Result<(), WriteError> {
         let model = level.model;
+        // One whose positions are in steps of a millimetre.
+        let bounds = model.bounds();
+        let large = !bounds.is_empty() && bounds.size().max_element() >= STEP_M * STEPS;
         let frames: Vec<Frame> =
-            (0..model.materials.len()).map(|m| Frame::of(level, m, self.packing)).collect();
+            (0..model.materials.len()).map(|m| Frame::of(level, m, self.packing, large)).collect();
         self.w.placed = frames.iter().map(Frame::transform).collect();
         if self.w.placed.iter().any(Option::is_some) {
             self.w.needs(TRANSFORM);
@@ -224,7 +234,11 @@ impl Packer {
         for (name, material, mesh, (origin, size), places) in parts.chain(copies) {
             let mesh = used(mesh);
             let frame = &frames[material.index()];
-            let primitive = self.primitive(&mesh, (origin, size), frame, first + material.raw())?;
+            // One leaf of a large plant is a small part of a picture.
+            let many =
+                large && places.is_none() && model.materials[material.index()].kind == MaterialKind::Leaf;
+            let (material, steps) = (first + material.raw(), if many { COARSE } else { FINE });
+            let primitive = self.primitive(&mesh, (origin, size), frame, (material, steps))?;
             let root = &mut self.w.root;
             root.meshes.push(Mesh {
                 name: Some(name.clone()),
@@ -252,7 +266,7 @@ impl Packer {
         mesh: &TriMesh,
         (origin, size): (DVec3, f64),
         frame: &Frame,
-        material: u32,
+        (material, steps): (u32, i8),
     ) -> Result<Primitive, WriteError> {
         let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - origin) / size;
         let mut attributes =
@@ -263,7 +277,7 @@ impl Packer {
             let byte = |x: f32| ((x.clamp(-1.0, 1.0) * 127.0).round() as i8).to_le_bytes()[0];
             let bytes = mesh.normals.iter().flat_map(|&n| {
                 if self.packing == Packing::Compressed {
-                    return octahedral(unit(n));
+                    return octahedral(unit(n), steps);
                 }
                 let [x, y, z] = unit(n).map(byte);
                 [x, y, z, 0]

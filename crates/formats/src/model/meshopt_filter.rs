@@ -90,10 +90,14 @@ fn on_sphere([x, y, one]: [f64; 3], most: f64) -> [f64; 3] {
     [x, y, z].map(|v| (v / length * most).round())
 }
 
+/// Steps of half an axis of the octahedron: to a degree, and to four.
+pub(super) const FINE: i8 = 127;
+pub(super) const COARSE: i8 = 31;
+
 /// A unit vector as [`Filter::Octahedral`] stores it in four bytes: of the four pairs of whole numbers around it the one
-/// that comes back nearest.
-pub(super) fn octahedral(n: [f32; 3]) -> [u8; 4] {
-    const ONE: f64 = 127.0;
+/// that comes back nearest. `steps` of half an axis, [`FINE`] or fewer.
+pub(super) fn octahedral(n: [f32; 3], steps: i8) -> [u8; 4] {
+    let one = f64::from(steps);
     let [x, y, z] = n.map(f64::from);
     let sum = (x.abs() + y.abs() + z.abs()).max(f64::MIN_POSITIVE);
     let (mut u, mut v) = (x / sum, y / sum);
@@ -101,17 +105,18 @@ pub(super) fn octahedral(n: [f32; 3]) -> [u8; 4] {
         let sign = |a: f64| if a >= 0.0 { 1.0 } else { -1.0 };
         (u, v) = ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v));
     }
-    let (low_u, low_v) = ((u * ONE).floor(), (v * ONE).floor());
+    let (low_u, low_v) = ((u * one).floor(), (v * one).floor());
     let off = |[u, v]: [f64; 2]| {
-        let [a, b, c] = on_sphere([u, v, ONE], ONE);
-        (a - ONE * x) * (a - ONE * x) + (b - ONE * y) * (b - ONE * y) + (c - ONE * z) * (c - ONE * z)
+        let most = f64::from(FINE);
+        let [a, b, c] = on_sphere([u, v, one], most);
+        (a - most * x) * (a - most * x) + (b - most * y) * (b - most * y) + (c - most * z) * (c - most * z)
     };
     let all = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-    let all = all.map(|[a, b]| [(low_u + a).clamp(-ONE, ONE), (low_v + b).clamp(-ONE, ONE)]);
+    let all = all.map(|[a, b]| [(low_u + a).clamp(-one, one), (low_v + b).clamp(-one, one)]);
     let best = all.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or_default();
     #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
     let byte = |x: f64| (x as i8).to_le_bytes()[0];
-    [byte(best[0]), byte(best[1]), 127, 0]
+    [byte(best[0]), byte(best[1]), steps.to_le_bytes()[0], 0]
 }
 
 #[cfg(test)]
@@ -119,21 +124,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_vectors_come_back_to_a_degree() {
+    fn unit_vectors_come_back_to_a_degree_or_to_four() {
+        let [fine, coarse] = [FINE, COARSE].map(worst);
+        assert!(fine < 1.0 && coarse < 4.0, "{fine}, {coarse} degrees");
+    }
+
+    /// Degrees between a vector and what comes back of it, at most.
+    fn worst(steps: i8) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..2000 {
             let (height, turn) = (1.0 - f64::from(i) / 999.5, f64::from(i) * 2.4);
             let wide = (1.0 - height * height).max(0.0).sqrt();
             let n = [wide * base::ops::cos(turn), wide * base::ops::sin(turn), height];
             #[expect(clippy::cast_possible_truncation, reason = "-1 to 1")]
-            let mut stored = octahedral(n.map(|x| x as f32));
-            assert_eq!(stored[2..], [127, 0]);
+            let mut stored = octahedral(n.map(|x| x as f32), steps);
+            assert_eq!(stored[2..], [steps.to_le_bytes()[0], 0]);
             Filter::Octahedral.decode(&mut stored, 4).expect("four bytes");
             let back = glam::DVec3::from([0, 1, 2].map(|k| f64::from(i8::from_le_bytes([stored[k]]))));
             let cosine = back.normalize().dot(n.into());
             worst = worst.max(base::ops::acos_clamped(cosine).to_degrees());
         }
-        assert!(worst < 1.0, "{worst} degrees");
+        worst
     }
 
     #[test]
