@@ -190,7 +190,8 @@ mod tests {
                 .map(|c| f32::from(u8::from(if upright { c % SIDE == k } else { c / SIDE == k })))
                 .collect()
         };
-        let example = |k: usize| Example { picture: line(4 + k, k.is_multiple_of(2)), word: k % 2, weight: 1.0 };
+        let example =
+            |k: usize| Example { picture: line(4 + k, k.is_multiple_of(2)), word: k % 2, weight: 1.0 };
         let examples: Vec<Example> = (0..20).map(example).collect();
         let sight = learn_in(&examples, 2, 30);
         for e in &examples {
