@@ -2,7 +2,7 @@
 //!
 //! A small convolutional network (`LeCun`, Bottou, Bengio and Haffner 1998) looks at a picture of the drawing; strokes, their
 //! order and their directions do not exist for it. It learnt from pictures of drawings that many people made of a word, which
-//! is what the numbers of [`kinds`](crate::kinds) lack most. Its coefficients are data (`data/glance.csv`), learnt by `cargo
+//! is what the numbers of [`kind_features`](crate::kind_features) lack most. Its coefficients are data (`data/glance.csv`), learnt by `cargo
 //! xtask train-glance`; `docs/strokes.md` says how, and what it is worth.
 
 mod layers;
