@@ -1,6 +1,28 @@
-//! Steps down a slope (Kingma and Ba 2015), with a pull of every coefficient towards 0 (Loshchilov and Hutter 2019).
+//! Examples drawn by weight, and steps down a slope (Kingma and Ba 2015), with a pull of every coefficient towards 0 (Loshchilov and Hutter 2019).
 
-use base::ops;
+use base::{Stream, ops};
+
+/// Draws examples as often as they count.
+pub(crate) struct ByWeight {
+    /// Of each example and those before it.
+    sums: Vec<f64>,
+}
+
+impl ByWeight {
+    pub(crate) fn new(weights: impl Iterator<Item = f64>) -> Self {
+        let sum = |sum: &mut f64, weight: f64| {
+            *sum += weight;
+            Some(*sum)
+        };
+        Self { sums: weights.scan(0.0, sum).collect() }
+    }
+
+    /// The place of one; none where there are none.
+    pub(crate) fn draw(&self, r: &mut Stream) -> Option<usize> {
+        let drawn = r.uniform() * self.sums.last()?;
+        Some(self.sums.partition_point(|&s| s < drawn).min(self.sums.len() - 1))
+    }
+}
 
 /// A coefficient: steps are computed in double precision.
 pub(crate) trait Coefficient: Copy {

@@ -381,6 +381,17 @@ fn people(folder: &Path, part: Part, of_spg: usize) -> Outcome<Vec<Case>> {
     Ok(cases)
 }
 
+/// The folder of drawings that is named, or the usual one; where there is none, says so.
+pub(crate) fn sketches(args: &[String]) -> Option<PathBuf> {
+    let folder = args.iter().find(|a| !a.starts_with('-'));
+    let folder = folder.map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
+    let found = folder.is_dir();
+    if !found {
+        say(&format!("skipped: {} is not here", folder.display()));
+    }
+    found.then_some(folder)
+}
+
 /// A drawing whose plants are known.
 pub(crate) struct Labelled {
     pub(crate) drawing: Drawing,

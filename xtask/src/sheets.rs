@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde_json::Value;
 
 use crate::pixels::{Pixels, rgba, tiled, write_rgb};
-use crate::shell::{Outcome, command, output, prepare, release_burgeon, repository, say};
+use crate::shell::{Outcome, built_burgeon, command, output, prepare, repository, say};
 
 /// Side of a picture, pixels.
 const SIDE: usize = 240;
@@ -64,7 +64,7 @@ const LETTERS: [(char, u16); 37] = [
 
 /// Makes the pages of the species that are named, or of all.
 pub(crate) fn run(only: &[String]) -> Outcome {
-    let burgeon = release_burgeon()?;
+    let burgeon = built_burgeon()?;
     let list = output(prepare(&burgeon, &["presets", "--json"]))?;
     let list: Value = serde_json::from_str(&list).map_err(|e| e.to_string())?;
     let trees = list.as_array().into_iter().flatten().filter(|row| row["method"] != "flower");

@@ -46,12 +46,6 @@ pub(crate) fn built_burgeon() -> Outcome<PathBuf> {
     Ok(burgeon("release"))
 }
 
-/// The same with the features that the other programs of the workspace give it: it stands on what is compiled for them.
-pub(crate) fn release_burgeon() -> Outcome<PathBuf> {
-    cargo(&["build", "--release", "--bin", "burgeon"])?;
-    Ok(burgeon("release"))
-}
-
 /// Two things at once: what waits much beside what computes. Both come to their end, whatever becomes of the other.
 pub(crate) fn beside<T: Send>(
     one: impl FnOnce() -> Outcome<T>,

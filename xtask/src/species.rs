@@ -9,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::pixels::{Pixels, length, rgba};
-use crate::shell::{Outcome, command, release_burgeon, repository, say};
+use crate::shell::{Outcome, built_burgeon, command, repository, say};
 
 const FROM: &str = "<!-- species: written by cargo xtask species -->\n";
 const TO: &str = "<!-- end of species -->\n";
@@ -19,7 +19,7 @@ const FEW: usize = 16;
 const MANY: usize = 96;
 
 pub(crate) fn run(only: &[String]) -> Outcome {
-    let burgeon = release_burgeon()?;
+    let burgeon = built_burgeon()?;
     let root = repository();
     let small = root.join("apps/studio-web/public/presets");
     std::fs::create_dir_all(&small).map_err(|e| format!("cannot make {}: {e}", small.display()))?;

@@ -15,7 +15,7 @@ use base::Report;
 use learn::{Example, learn};
 use reading::glance::{Picture, SIDE, Sight, WORDS, picture};
 
-use crate::read_drawings::{Part, asked_for};
+use crate::read_drawings::{Part, asked_for, sketches};
 use crate::shell::{Outcome, command, output, prepare, repository, say, target_dir};
 
 /// The package, its version.
@@ -26,6 +26,7 @@ const VERSION: &str = "1.0.6";
 const SAME: f64 = 0.8;
 /// A word that names a kind counts so many times as much as another.
 const OF_PLANTS: f64 = 4.0;
+
 /// Learns what is seen at a glance and writes `crates/reading/data/glance.csv`.
 ///
 /// First without what looks like a drawing of the part to choose by, and says how good that is on this part: `--half` writes
@@ -35,12 +36,7 @@ const OF_PLANTS: f64 = 4.0;
 /// A sentence: npm or `gzip` is missing, or a file cannot be read or written.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let half = args.iter().any(|a| a == "--half");
-    let folder = args.iter().find(|a| !a.starts_with('-'));
-    let folder = folder.map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
-    if !folder.is_dir() {
-        say(&format!("skipped: {} is not here", folder.display()));
-        return Ok(());
-    }
+    let Some(folder) = sketches(args) else { return Ok(()) };
     let (names, pictures) = pictures(&package()?)?;
     let seen = |part| -> Outcome<Vec<(String, Picture)>> {
         Ok(asked_for(&folder, part)?.into_iter().map(|(word, d)| (word, seen(&d))).collect())

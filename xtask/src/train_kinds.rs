@@ -7,14 +7,13 @@ mod network;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::PathBuf;
 
 use base::{Report, Run};
 use network::{Network, UNITS};
 use reading::{KIND_FEATURE_LIMIT, Kind, SEVERAL};
 
 use crate::made_drawings::varied;
-use crate::read_drawings::{Labelled, Origin, Part, labelled};
+use crate::read_drawings::{Labelled, Origin, Part, labelled, sketches};
 use crate::shell::{Outcome, repository, say};
 
 /// Variations of each drawing by people that are learnt from beside it, of the SPG set, of made ones; how much one counts.
@@ -77,12 +76,7 @@ struct Scale(Vec<(f64, f64)>);
 /// A sentence: a file that cannot be read or written.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let half = args.iter().any(|a| a == "--half");
-    let folder = args.iter().find(|a| !a.starts_with('-'));
-    let folder = folder.map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
-    if !folder.is_dir() {
-        say(&format!("skipped: {} is not here", folder.display()));
-        return Ok(());
-    }
+    let Some(folder) = sketches(args) else { return Ok(()) };
     let mut learnt = rows(&labelled(&folder, Part::Train)?, true);
     let choose = labelled(&folder, Part::Choose)?;
     let held_out = rows(&choose, false);

@@ -127,10 +127,12 @@ pub(crate) fn fronds_by(full: &Skeleton, life: f64, years: u32) -> f64 {
 }
 
 /// By how much all wood of each tree is thinner than the pipes of a young one ask for, which has the foot of most of its limbs:
-/// 1 or less. Stems of palms and ferns have their thickness before their height.
+/// 1 or less. Stems of palms and ferns have their thickness before their height: nothing of those.
 pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec<f64> {
+    if rosettes(full).contains(&true) {
+        return Vec::new();
+    }
     let trees = full.tree.iter().max().map_or(0, |t| *t as usize + 1);
-    let fronds = rosettes(full).contains(&true);
     let measured = |s: &Skeleton| {
         let (thick, mut of) = (radii(s, wood), vec![(0.0_f64, 0.0_f64); trees]);
         let mut foot = vec![0.0; trees];
@@ -145,7 +147,7 @@ pub(crate) fn slimmer(full: &Skeleton, young: &Skeleton, wood: &WoodSpec) -> Vec
     };
     let slim = |((high, thick), (now, r)): ((f64, f64), (f64, f64))| {
         let usual = thick * ops::powf((now / high.max(1e-9)).clamp(0.0, 1.0), ELASTIC);
-        if fronds || r <= 0.0 { 1.0 } else { (usual / r).clamp(SLIMMEST, 1.0) }
+        if r <= 0.0 { 1.0 } else { (usual / r).clamp(SLIMMEST, 1.0) }
     };
     measured(full).into_iter().zip(measured(young)).map(slim).collect()
 }

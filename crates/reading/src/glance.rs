@@ -9,7 +9,6 @@ mod layers;
 
 use std::sync::OnceLock;
 
-use base::ops;
 use geom::bounds;
 use glam::DVec2;
 use ink::Ink;
@@ -17,6 +16,7 @@ use ink::Ink;
 pub use layers::{CHANNELS, GLIMPSE, HIDDEN, Layer, Seen, Sight, pooled};
 
 use crate::Kind;
+use crate::kinds::powers;
 
 /// Cells along each side of a [`Picture`].
 pub const SIDE: usize = 28;
@@ -116,8 +116,7 @@ pub(crate) fn glance(ink: &Ink) -> [f64; Kind::ALL.len()] {
     mirrored.chunks_mut(SIDE).for_each(<[f32]>::reverse);
     let (one, other) = (sight.look(&picture).words, sight.look(&mirrored).words);
     let sums: Vec<f64> = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) + f64::from(*b)) / 2.0).collect();
-    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    let powers = powers(&sums);
     let total: f64 = powers.iter().sum();
     for ((_, kind), power) in WORDS.iter().zip(powers) {
         shares[kind.place()] += power / total;

@@ -253,6 +253,12 @@ fn trained() -> Option<&'static Model> {
     MODEL.get_or_init(|| Model::parse(include_str!("../data/kinds.csv"))).as_ref()
 }
 
+/// The numerators of a softmax, the largest 1.
+pub(crate) fn powers(sums: &[f64]) -> Vec<f64> {
+    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    sums.iter().map(|s| ops::exp(s - most)).collect()
+}
+
 /// How well a drawing is explained.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shares {
@@ -273,8 +279,7 @@ const TRUST: f64 = 0.7;
 pub(crate) fn shares(row: &[f64], seen: &[f64; Kind::ALL.len()]) -> Shares {
     let Some(model) = trained() else { return Shares::default() };
     let sums = model.sums(row);
-    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    let mut powers = powers(&sums);
     weigh(&mut powers, &model.kinds, seen);
     let total: f64 = powers.iter().sum();
     let of = |wanted: Option<Kind>| {

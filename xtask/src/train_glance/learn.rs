@@ -3,7 +3,7 @@
 use base::{Draw, Seed, Stream, ops};
 use reading::glance::{HIDDEN, Picture, SIDE, Sight};
 
-use crate::adam::{self, Coefficient, Moments};
+use crate::adam::{self, ByWeight, Coefficient, Moments};
 
 /// Steps, and pictures of each.
 const STEPS: usize = 3000;
@@ -39,23 +39,16 @@ fn learn_in(examples: &[Example], words: usize, steps: usize) -> Sight {
         let spread = (2.0 / (layer.cells * layer.inputs) as f64).sqrt();
         layer.weights.iter_mut().for_each(|w| *w = f32::of(r.normal() * spread));
     }
-    let sums: Vec<f64> = examples
-        .iter()
-        .scan(0.0, |sum, e| {
-            *sum += e.weight;
-            Some(*sum)
-        })
-        .collect();
-    let Some(&total) = sums.last() else { return sight };
+    let drawn = ByWeight::new(examples.iter().map(|e| e.weight));
     let mut moments = sight.layers().map(|l| [Moments::new(l.weights.len()), Moments::new(l.bias.len())]);
     for step in 0..steps {
         let part = |hand: u64| {
             let r = &mut seed.child(step as u64).child(hand).stream(Draw::Template);
             let mut slope = Sight::empty(words);
             for _ in 0..BATCH / HANDS {
-                let drawn = r.uniform() * total;
-                let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
-                look(&sight, &examples[at], r, &mut slope);
+                if let Some(at) = drawn.draw(r) {
+                    look(&sight, &examples[at], r, &mut slope);
+                }
             }
             slope
         };

@@ -9,7 +9,7 @@
 
 use base::{Draw, Seed, Stream, ops};
 
-use crate::adam::{self, Moments};
+use crate::adam::{self, ByWeight, Moments};
 
 /// Networks whose mean is taken, and units of each.
 const NETWORKS: usize = 3;
@@ -91,23 +91,16 @@ impl Network {
             inner: chance(numbers * UNITS, 1.0 / (numbers.max(1) as f64).sqrt()),
             outer: chance(UNITS * columns, 1.0 / (UNITS as f64).sqrt()),
         };
-        let sums: Vec<f64> = examples
-            .iter()
-            .scan(0.0, |sum, e| {
-                *sum += e.2;
-                Some(*sum)
-            })
-            .collect();
-        let Some(&total) = sums.last() else { return net };
+        let drawn = ByWeight::new(examples.iter().map(|e| e.2));
         let steps = ROUNDS * examples.len() / BATCH;
         let mut moments = [&net.direct, &net.inner, &net.outer].map(|c| Moments::new(c.len()));
         for step in 0..steps {
             let mut slope =
                 Self::of((columns, UNITS), [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
             for _ in 0..BATCH {
-                let drawn = r.uniform() * total;
-                let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
-                net.look(examples[at], r, &mut slope);
+                if let Some(at) = drawn.draw(r) {
+                    net.look(examples[at], r, &mut slope);
+                }
             }
             let rate = adam::rate(RATE, step, steps);
             let slopes = [&slope.direct, &slope.inner, &slope.outer];
