@@ -40,9 +40,17 @@ function random() {
   return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
 }
 
-// A page that is killed while it opens may be told of by the browser after Playwright has forgotten it.
+/** Ends the openings under way: one of them waits for an answer that never comes. */
+const openings = new Set();
+
+// A page that is killed while it opens may be told of by the browser after Playwright has forgotten it. Is it the answer
+// to a call that is told so, then nobody hears it.
 process.on('uncaughtException', (e) => {
   if (e.message.startsWith('Cannot find parent object page@')) return;
+  if (e.message.endsWith('was not bound in the connection')) {
+    for (const end of openings) end(new Error('Target crashed: it was forgotten before it answered'));
+    return;
+  }
   console.error(e);
   process.exit(1);
 });
@@ -168,12 +176,19 @@ class NotFree extends Error {}
 async function openSurely(hand) {
   for (let k = 0; k < TRIES; k += 1) {
     hand.page = await context.newPage();
+    let end;
+    const ended = new Promise((_, reject) => {
+      end = reject;
+      openings.add(end);
+    });
     try {
-      await open(hand);
+      await Promise.race([open(hand), ended]);
       if (hand.id === '' || !(await readonly(hand))) return;
       sums.waited += 1;
     } catch (e) {
       if (!e.message.includes('Target crashed')) throw e;
+    } finally {
+      openings.delete(end);
     }
     await close(hand.page);
   }
@@ -245,10 +260,10 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
     }
     hand.end = end;
     if (whole) return;
-    const cdp = await context.newCDPSession(hand.page);
+    const crash = context.newCDPSession(hand.page).then((cdp) => cdp.send('Page.crash'));
     // A page that is only being opened does not always say that it fell.
     const fell = hand.page.waitForEvent('crash', { timeout: ANSWER }).catch(() => {});
-    await Promise.race([cdp.send('Page.crash').catch(() => {}), fell]);
+    await Promise.race([crash.catch(() => {}), fell]);
     sums.pages += 1;
     await close(hand.page);
   });
