@@ -56,6 +56,17 @@ pub(crate) struct Limb {
     pub(crate) closed_end: bool,
 }
 
+/// The outline of a line with its half width at each point: up its left side, and back.
+pub(crate) fn ribbon(points: &[DVec2], half_width: &[f64]) -> Vec<DVec2> {
+    let n = points.len();
+    let side = |k: usize, s: f64| {
+        let along = points[(k + 1).min(n - 1)] - points[k.saturating_sub(1)];
+        points[k] + along.normalize_or(DVec2::Y).perp() * (s * half_width[k])
+    };
+    let left = (0..n).map(|k| side(k, 1.0));
+    left.chain((0..n).rev().map(|k| side(k, -1.0))).collect()
+}
+
 /// The limbs of a body, its trunk first; empty where the outline has no area.
 ///
 /// `base`: where it stands, if that is known (an arm of a cactus stands on the body).

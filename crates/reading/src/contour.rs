@@ -48,15 +48,15 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
     #[expect(clippy::cast_precision_loss, reason = "60 levels")]
     let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
     let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
-    let (top, narrow) = clear_neck(&width, if known { NECK_OF_A_TREE } else { NECK })
-        .or_else(|| waist(&width).filter(|_| known))?;
-    let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-    let fits = trunk_height > TRUNK_TALL * narrow
-        && trunk_height > TRUNK_SHARE * height
-        && crown_height > CROWN_SHARE * height;
-    if !fits {
-        return None;
-    }
+    let fits = |&(top, narrow): &(usize, f64)| {
+        let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
+        trunk_height > TRUNK_TALL * narrow
+            && trunk_height > TRUNK_SHARE * height
+            && crown_height > CROWN_SHARE * height
+    };
+    let clear = clear_neck(&width, if known { NECK_OF_A_TREE } else { NECK }).filter(fits);
+    // A foot that flares looks like a neck, too low for one.
+    let (top, _) = clear.or_else(|| waist(&width).filter(|w| known && fits(w)))?;
     let cut = |keep_above: bool| {
         let y = y_of(top);
         let inside = |p: DVec2| (p.y >= y) == keep_above;

@@ -47,6 +47,7 @@ mod read;
 mod rings;
 mod rows;
 mod rules;
+mod sealed;
 mod several;
 mod silhouette;
 mod steady;

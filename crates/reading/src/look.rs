@@ -167,7 +167,8 @@ fn place(share: f64, n: usize) -> usize {
 /// All numbers, in the order of [`GROUPS`]; zeros of an empty drawing. `all`: its points, and their hull. Linear in points.
 pub(crate) fn look(ink: &Ink, all: (&[DVec2], &[DVec2])) -> Vec<f64> {
     let Some(frame) = Frame::new(ink) else { return vec![0.0; COUNT] };
-    let (fine, wide) = (Grid::new(ink, FINE), Grid::new(ink, WIDE));
+    let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
+    let (fine, wide) = (Grid::new(&lines, FINE), Grid::new(&lines, WIDE));
     let mut row = Vec::with_capacity(COUNT);
     bands(&frame, &fine, &mut row);
     holes(&fine, &wide, &mut row);

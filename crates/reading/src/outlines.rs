@@ -7,7 +7,7 @@ use ink::StrokeClass;
 use plant::AxisKind;
 
 use crate::blade::{nearest_on_ring, split_stalks};
-use crate::body::limbs;
+use crate::body::{limbs, ribbon};
 use crate::branches::{Forest, Line};
 use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
@@ -186,13 +186,8 @@ fn thick(line: &[DVec2], parts: Vec<usize>) -> Ring {
     let up: Vec<DVec2> =
         if line[0].y < line[line.len() - 1].y { line.to_vec() } else { line.iter().rev().copied().collect() };
     let n = up.len();
-    let side = |k: usize, s: f64| {
-        let along = up[(k + 1).min(n - 1)] - up[k.saturating_sub(1)];
-        let half = (0.05 - 0.02 * k as f64 / n as f64) * up[0].distance(up[n - 1]);
-        up[k] + along.normalize_or(DVec2::Y).perp() * (s * half)
-    };
-    let mut points: Vec<DVec2> = (0..n).map(|k| side(k, 1.0)).collect();
-    points.extend((0..n).rev().map(|k| side(k, -1.0)));
+    let half = |k: usize| (0.05 - 0.02 * k as f64 / n as f64) * up[0].distance(up[n - 1]);
+    let points = ribbon(&up, &(0..n).map(half).collect::<Vec<_>>());
     Ring { points, parts, gaps: vec![n - 1] }
 }
 

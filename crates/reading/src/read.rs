@@ -8,10 +8,11 @@ use plant::AxisKind;
 
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
+use crate::silhouette::Silhouette;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
+    flowers, glance, inertia, kinds, outlines, pressed, rules, several, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -204,6 +205,11 @@ const CROWN_BLADE: f64 = 0.35;
 /// than that, and so many times as much: bare trees have none.
 const POOR_CROWN: f64 = 0.25;
 const MORE_CROWN: f64 = 2.0;
+/// A tree is read by its silhouette where what was read of its strokes covers less of trunk or crown than this: of trees by hand
+/// whose trunks or crowns came apart nearly all cover less, of whole ones few (*drawings*).
+const FITS: f64 = 0.75;
+/// A tree with so many leaves or flowers was drawn leaf by leaf.
+const LEAFY: usize = 8;
 /// A palm has at least so many fronds where the whole is known to be one.
 const FEWEST_FRONDS: usize = 2;
 /// Readings that are told.
@@ -252,6 +258,14 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         if better && is_built(other.kind, &tried) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
         }
+    }
+    if taken.is_none()
+        && asked.kind.is_none()
+        && kind.is_like(Kind::Tree)
+        && free
+        && let Some(tree) = by_silhouette(asked, ink, classes, &reading)
+    {
+        (reading, said) = (tree, Report::default());
     }
     if asked.kind.is_none()
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
@@ -373,22 +387,36 @@ const fn bears_no_flower(kind: Kind) -> bool {
     matches!(kind, Kind::Grass | Kind::Stem | Kind::Palm | Kind::Leaf | Kind::Fruit | Kind::Vegetable)
 }
 
-/// One reading of one plant that is taken for a kind; of a tree that would have hardly a crown by its silhouette, if no class
-/// was set by hand and that has a neck.
+/// One reading of one plant that is taken for a kind; of a tree that came apart by its silhouette, if no class was set by hand.
 fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -> (Reading, Report) {
     let mut report = Report::default();
     let reading = attempt(asked, Some(kind), ink, classes, &mut report);
-    if kind.is_like(Kind::Tree) && asked.is_free(ink, classes) && crown_share(ink, &reading) < POOR_CROWN {
-        let mut draft = Draft::new(ink, classes, asked.kept);
-        draft.kind = Some(kind);
-        if silhouette::read_silhouette(&mut draft) {
-            let hints = draft.hints(&[]);
-            draft.forest.grow(Vec::new(), &hints);
-            let bearers = outlines::bear_regions(&mut draft);
-            return (draft.finish(bearers, vec![], vec![], vec![], vec![]), Report::default());
-        }
+    if kind.is_like(Kind::Tree)
+        && asked.is_free(ink, classes)
+        && let Some(tree) = by_silhouette(asked, ink, classes, &reading)
+    {
+        return (tree, Report::default());
     }
     (reading, report)
+}
+
+/// A tree by its silhouette, where what was read of its strokes does not cover that.
+fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: &Reading) -> Option<Reading> {
+    let organs = reading.leaves.len() + reading.flowers.len();
+    if organs >= LEAFY {
+        return None;
+    }
+    let silhouette = Silhouette::of(ink).filter(|s| s.fit(reading) < FITS)?;
+    let mut draft = Draft::new(ink, classes, asked.kept);
+    draft.kind = Some(Kind::Tree);
+    silhouette.read(&mut draft);
+    let mut fruits = draft.fruits(&[]);
+    let hints = draft.hints(&[]);
+    let lines = std::mem::take(&mut draft.lines);
+    draft.forest.grow(lines, &hints);
+    let bearers = outlines::bear_regions(&mut draft);
+    attach::fruits(&mut draft, &mut fruits);
+    Some(draft.finish(bearers, vec![], vec![], fruits, vec![]))
 }
 
 /// One reading of one plant, taken for a kind or for whatever its strokes say.

@@ -1,72 +1,213 @@
 //! A tree by its silhouette: what is left when its strokes say nothing together.
 //!
 //! Carefully drawn trees have a crown of many open arcs and a trunk of many lines, which join to no outlines. Seen from
-//! afar they are one shape with a neck, and that is read as a tree drawn in one line is.
+//! afar they are one shape with a neck, and that is read as a tree drawn in one line is. It also tells how well what was
+//! read of the strokes covers what was drawn.
 
-use geom::{AlphaShape, bounds, convex_hull, signed_area, simple_outline};
+use geom::{bounds, contains, convex_hull, signed_area};
 use glam::DVec2;
 use ink::{Ink, StrokeClass};
+use plant::AxisKind;
 
-use crate::READ_AS;
-use crate::body::Limb;
+use crate::blade::nearest_on_ring;
+use crate::body::{Limb, ribbon};
 use crate::contour::{neck, runs_at};
 use crate::draft::Draft;
-use crate::grid::Grid;
-use crate::look::WIDE;
-use crate::{OrganWord, RegionKind};
+use crate::near::Near;
+use crate::rules::{IN_CROWN, SMALL, share_inside};
+use crate::sealed::sealed;
+use crate::{OrganWord, READ_AS, Reading, RegionKind};
 
-/// Gaps twice as wide are closed, shares of the drawing's diagonal: the first that gives a shape with a neck.
-const CLOSED: [f64; 4] = [0.02, 0.04, 0.07, 0.11];
+/// Balls that find no way in through its gaps, shares of the drawing's diagonal: the first that gives a shape with a neck.
+const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
 /// The shape fills more than this share of its hull; bare branches fill less.
 const FULL: f64 = 0.5;
-/// Its lines enclose more than this share of its box, on the wider grid of a look; bare branches enclose next to nothing.
-const ENCLOSED: f64 = 0.1;
-/// In fewer strokes it is an outline, which is read as such.
-const FEWEST: usize = 6;
+/// Less than this share of what was drawn lies outside, farther than the second number: so far cells lie off the lines.
+const LEFT_OUT: f64 = 0.12;
+const NEAR: f64 = 0.018;
+/// Every so many points of a line are looked at, and so many places at most along one side of an outline.
+const STRIDE: usize = 3;
+const LONGEST: u32 = 200;
+/// Along less than this share of its crown nothing was drawn.
+const BARE: f64 = 0.07;
 /// A level line below this share of the height is the ground; it rises by less than that share of its width.
 const LOW: f64 = 0.2;
 const LEVEL: f64 = 0.25;
 /// Marks smaller than this, such as grass, do not shape it.
 const MARK: f64 = 0.06;
-/// Points along a trunk.
+/// Points along a trunk, and levels at which it, or a crown, is compared.
 const LEVELS: u32 = 16;
+/// What lies in this lowest share of the height is at the foot: without its roots, and with them.
+const FEET: [f64; 2] = [0.08, 0.15];
+/// This lowest share of a trunk is as wide as it is there.
+const RAGGED: f64 = 0.16;
+/// How often each level of a trunk is brought towards those beside it.
+const CALM: usize = 6;
 /// What lies in this lowest share of a trunk stands on the ground.
 const STANDS: f64 = 0.2;
 
-/// Trunk and crown of a drawing, if it has a neck.
+/// Trunk and crown of a drawing that has a neck.
 #[derive(Debug)]
-struct Silhouette {
+pub(crate) struct Silhouette {
+    /// Which strokes are the line of the ground.
+    ground: Vec<bool>,
+    /// What is below the neck.
+    below: Vec<DVec2>,
     trunk: Limb,
     crown: Vec<DVec2>,
 }
 
-/// Gives every stroke the class that it has in the silhouette, and reads that; what it was before where there is no neck.
-pub(crate) fn read_silhouette(draft: &mut Draft<'_>) -> bool {
-    let Some((low, high)) = draft.ink.strokes.iter().filter_map(|s| bounds(&s.points)).reduce(around) else {
-        return false;
-    };
-    let ground: Vec<bool> = (0..draft.class.len()).map(|k| is_ground(draft.ink, k, (low, high))).collect();
-    let Some(Silhouette { trunk, crown }) = silhouette(draft.ink, &ground) else { return false };
-    let foot = bounds(&crown).map_or(0.0, |b| b.0.y);
-    let mut first = [None; 2];
-    for (k, &ground) in ground.iter().enumerate() {
-        let wood = bounds(&draft.ink.strokes[k].points).is_some_and(|(lo, hi)| lo.midpoint(hi).y < foot);
-        (draft.class[k], draft.organ[k]) = match (ground, wood) {
-            (true, _) => (StrokeClass::Ground, OrganWord::Ignored),
-            (_, true) => (StrokeClass::TrunkOutline, OrganWord::Trunk),
-            _ => (StrokeClass::Crown, OrganWord::LeafContour),
-        };
-        (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
-        if !ground {
-            first[usize::from(wood)].get_or_insert(k);
-        }
+impl Silhouette {
+    pub(crate) fn of(ink: &Ink) -> Option<Self> {
+        let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
+        let (low, high) = boxes.reduce(around)?;
+        let ground: Vec<bool> = (0..ink.strokes.len()).map(|k| is_ground(ink, k, (low, high))).collect();
+        let large = |points: &[DVec2]| bounds(points).is_some_and(|(lo, hi)| lo.distance(hi) > MARK);
+        let strokes = ink.strokes.iter().zip(&ground).filter(|(s, ground)| !**ground && large(&s.points));
+        let lines: Vec<&[DVec2]> = strokes.map(|(s, _)| s.points.as_slice()).collect();
+        let drawn = Drawn::new(&lines);
+        let found = FEET.iter().find_map(|&share| {
+            let foot = foot(&lines, share)?;
+            let all = [&lines[..], &[&foot]].concat();
+            let shut = |ball: f64| sealed(&all, ball).filter(|outline| drawn.lies_in(outline));
+            // What the largest ball comes into, all do.
+            let [balls @ .., largest] = BALLS;
+            let widest = shut(largest)?;
+            let narrower = balls.into_iter().find_map(|ball| Self::cut(&drawn, &shut(ball)?, ball));
+            narrower.or_else(|| Self::cut(&drawn, &widest, largest))
+        });
+        found.map(|found| Self { ground, ..found })
     }
-    let source = first[1].map(|k| draft.ink.strokes[k].index);
-    draft.open_top = true;
-    let row = draft.forest.add_body(vec![trunk], None, source);
-    draft.bodies.extend(row);
-    draft.add_region(crown, RegionKind::Crown, first[0].unwrap_or(0));
-    true
+
+    /// An outline cut at its neck, if it is that of a tree with trunk and crown.
+    fn cut(drawn: &Drawn<'_>, outline: &[DVec2], ball: f64) -> Option<Self> {
+        let (below, crown) = neck(outline, true)?;
+        let low = bounds(&crown)?.0.y;
+        let trunk = limb(outline, low);
+        let mut half = trunk.half_width.clone();
+        base::sort_numbers(&mut half);
+        // The crown was drawn all round, but for gaps: between the tips of bare branches nothing is.
+        let wide = *half.get(half.len() / 2)? > ball;
+        (wide && drawn.bare(&crown, low) < BARE).then(|| Self { ground: Vec::new(), below, trunk, crown })
+    }
+
+    /// How much of what the silhouette or a reading covers both do, 0 to 1: of the trunk or of the crown, whichever is less.
+    pub(crate) fn fit(&self, reading: &Reading) -> f64 {
+        let wood = reading.axes.iter().filter(|a| a.kind != AxisKind::Root && !a.half_width.is_empty());
+        let wood = wood.map(|a| ribbon(&a.points, &a.half_width));
+        let made: Vec<Vec<DVec2>> = wood.chain(reading.regions.iter().map(|r| r.outline.clone())).collect();
+        let drawn = [self.below.clone(), self.crown.clone()];
+        let Some((low, high)) = bounds(&drawn.concat()) else { return 1.0 };
+        let neck = bounds(&self.crown).map_or(low.y, |b| b.0.y);
+        let share = |from: f64, to: f64| {
+            let (mut met, mut any) = (0.0, 0.0);
+            for k in 0..LEVELS {
+                let y = from + (to - from) * (f64::from(k) + 0.5) / f64::from(LEVELS);
+                let runs =
+                    |shapes: &[Vec<DVec2>]| shapes.iter().flat_map(|s| runs_at(s, y)).collect::<Vec<_>>();
+                let (own, other) = (runs(&drawn), runs(&made));
+                let both = covered([own.clone(), other.clone()].concat());
+                met += covered(own) + covered(other) - both;
+                any += both;
+            }
+            met / any.max(f64::MIN_POSITIVE)
+        };
+        share(low.y, neck).min(share(neck, high.y))
+    }
+
+    /// Gives every stroke the class that it has in the silhouette, and reads that. Lines and fruits in the crown stay what they
+    /// are.
+    pub(crate) fn read(self, draft: &mut Draft<'_>) {
+        use StrokeClass::{Axis, Crown, Disc, Fruit, Ground, TrunkOutline};
+        let foot = bounds(&self.crown).map_or(0.0, |b| b.0.y);
+        let (most, ink) = (SMALL * signed_area(&self.crown), draft.ink);
+        let small = |k: usize| signed_area(ink.strokes[k].hull()) < most;
+        let mut first = [None; 2];
+        for (k, &ground) in self.ground.iter().enumerate() {
+            let points = &draft.ink.strokes[k].points;
+            let inside = || share_inside(points, 1, &self.crown) > IN_CROWN;
+            let wood = bounds(points).is_some_and(|(lo, hi)| lo.midpoint(hi).y < foot);
+            (draft.class[k], draft.organ[k]) = match draft.class[k] {
+                _ if ground => (Ground, OrganWord::Ignored),
+                Axis if !wood && inside() => {
+                    draft.line_of(k, OrganWord::Branch);
+                    continue;
+                }
+                Fruit | Disc if !wood && inside() && small(k) => (Fruit, OrganWord::Fruit),
+                _ if wood => (TrunkOutline, OrganWord::Trunk),
+                _ => (Crown, OrganWord::LeafContour),
+            };
+            (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
+            if !ground {
+                first[usize::from(wood)].get_or_insert(k);
+            }
+        }
+        let source = first[1].map(|k| draft.ink.strokes[k].index);
+        draft.open_top = true;
+        let row = draft.forest.add_body(vec![self.trunk], None, source);
+        draft.bodies.extend(row);
+        draft.add_region(self.crown, RegionKind::Crown, first[0].unwrap_or(0));
+    }
+}
+
+/// The lines of a drawing that shape it.
+struct Drawn<'a> {
+    lines: &'a [&'a [DVec2]],
+    near: Near,
+    hull: f64,
+}
+
+impl<'a> Drawn<'a> {
+    fn new(lines: &'a [&'a [DVec2]]) -> Self {
+        let mut near = Near::new(NEAR);
+        lines.iter().enumerate().for_each(|(k, l)| near.add_line(k, l));
+        Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
+    }
+
+    /// Whether an outline is full, and nearly all that was drawn lies in it.
+    fn lies_in(&self, outline: &[DVec2]) -> bool {
+        let points = || self.lines.iter().flat_map(|l| l.iter().step_by(STRIDE));
+        let off = |p: &DVec2| nearest_on_ring(outline, *p).1;
+        let out = || points().filter(|p| !contains(outline, **p) && off(p) > NEAR).count();
+        signed_area(outline) > FULL * self.hull && (out() as f64) < LEFT_OUT * points().count() as f64
+    }
+
+    /// Along which share of a crown over its lowest point nothing was drawn.
+    fn bare(&self, crown: &[DVec2], low: f64) -> f64 {
+        let places = crown.windows(2).flat_map(|w| {
+            let steps = (w[0].distance(w[1]) / NEAR).ceil();
+            (0..LONGEST)
+                .map(f64::from)
+                .take_while(move |k| *k < steps)
+                .map(move |k| w[0].lerp(w[1], k / steps))
+        });
+        let (bare, all) = places.filter(|p| p.y > low + NEAR).fold((0.0, 0.0_f64), |(bare, all), p| {
+            let drawn = self.near.nearest(p, NEAR, |_| true).is_some();
+            (bare + f64::from(u8::from(!drawn)), all + 1.0)
+        });
+        bare / all.max(1.0)
+    }
+}
+
+/// How much of a line runs cover.
+fn covered(mut runs: Vec<(f64, f64)>) -> f64 {
+    base::sort_by(&mut runs, |a, b| a.0.total_cmp(&b.0));
+    let mut end = f64::NEG_INFINITY;
+    let own = |(from, to): (f64, f64)| {
+        let own = (to - from.max(end)).max(0.0);
+        end = end.max(to);
+        own
+    };
+    runs.into_iter().map(own).sum()
+}
+
+/// A line along the foot of a drawing, from the leftmost to the rightmost of what ends there: a trunk is open below.
+fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
+    let (low, high) = lines.iter().filter_map(|l| bounds(l)).reduce(around)?;
+    let feet = || lines.iter().copied().flatten().filter(|p| p.y < low.y + share * (high.y - low.y));
+    let left = feet().min_by(|a, b| a.x.total_cmp(&b.x))?;
+    let right = feet().max_by(|a, b| a.x.total_cmp(&b.x))?;
+    Some([*left, *right])
 }
 
 /// The trunk of an outline from its foot to the neck at `top`: all that stands on the ground, and at each level above what
@@ -77,16 +218,31 @@ fn limb(outline: &[DVec2], top: f64) -> Limb {
     let mut below = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..LEVELS {
         let share = (f64::from(k) + 0.5) / f64::from(LEVELS);
-        let y = low + (top - low) * share;
+        // Below this the foot is as ragged as its roots.
+        let y = low + (top - low) * share.max(RAGGED);
         let runs = runs_at(outline, y).into_iter().filter(|r| r.0 < below.1 && r.1 > below.0);
         let Some(run) = runs.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
-        limb.points.push(DVec2::new(run.0.midpoint(run.1), y));
+        limb.points.push(DVec2::new(run.0.midpoint(run.1), low + (top - low) * share));
         limb.half_width.push(0.5 * (run.1 - run.0));
         if share > STANDS {
             below = run;
         }
     }
+    calm(&mut limb);
     limb
+}
+
+/// The middle of a trunk runs as wood does, however ragged its sides are.
+fn calm(limb: &mut Limb) {
+    let n = limb.points.len();
+    for _ in 0..CALM {
+        let (middle, half) = (limb.points.clone(), limb.half_width.clone());
+        for k in 0..n {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(n - 1));
+            limb.points[k].x = 0.25 * (middle[a].x + middle[b].x) + 0.5 * middle[k].x;
+            limb.half_width[k] = 0.25 * (half[a] + half[b]) + 0.5 * half[k];
+        }
+    }
 }
 
 fn around(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> (DVec2, DVec2) {
@@ -96,28 +252,4 @@ fn around(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> (DVec2, DVec2) {
 fn is_ground(ink: &Ink, stroke: usize, (low, high): (DVec2, DVec2)) -> bool {
     bounds(&ink.strokes[stroke].points)
         .is_some_and(|(lo, hi)| hi.y < low.y + LOW * (high.y - low.y) && hi.y - lo.y < LEVEL * (hi.x - lo.x))
-}
-
-/// How much of the box of a drawing its lines enclose, where gaps of a cell are closed.
-fn enclosed(ink: &Ink) -> f64 {
-    Grid::new(ink, WIDE).holes.iter().map(|h| h.area).sum()
-}
-
-/// The alpha shape of all that is drawn ([`AlphaShape`]), cut at its neck.
-fn silhouette(ink: &Ink, ground: &[bool]) -> Option<Silhouette> {
-    let large = |points: &[DVec2]| bounds(points).is_some_and(|(lo, hi)| lo.distance(hi) > MARK);
-    let strokes = ink.strokes.iter().zip(ground).filter(|(s, ground)| !**ground && large(&s.points));
-    if strokes.clone().count() < FEWEST || enclosed(ink) < ENCLOSED {
-        return None;
-    }
-    let points: Vec<DVec2> = strokes.flat_map(|(s, _)| s.points.iter().copied()).collect();
-    let hull = signed_area(&convex_hull(&points));
-    let shape = AlphaShape::new(&points);
-    CLOSED.iter().find_map(|&radius| {
-        let line: Vec<DVec2> = shape.outline(radius)?.points.into_iter().map(|k| points[k]).collect();
-        let outline = simple_outline(&line).filter(|o| signed_area(o) > FULL * hull)?;
-        let (_, crown) = neck(&outline, true)?;
-        let trunk = limb(&outline, bounds(&crown)?.0.y);
-        (trunk.points.len() > 1).then_some(Silhouette { trunk, crown })
-    })
 }

@@ -30,6 +30,7 @@ use crate::near::openness;
 use crate::thresholds::STRAIGHT;
 
 pub(crate) use as_kind::take_for;
+pub(crate) use trees::{IN_CROWN, SMALL};
 
 /// The rule of the kind that a plant is taken for.
 pub const READ_AS: &str = "read-as";
@@ -310,7 +311,7 @@ fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
 }
 
 /// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.
-fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
+pub(crate) fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
     let (mut looked, mut hits) = (0_u32, 0_u32);
     for &p in points.iter().step_by(stride) {
         looked += 1;

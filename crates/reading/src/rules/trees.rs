@@ -20,7 +20,7 @@ const NARROW: f64 = 0.7;
 /// A crown covers at least this area.
 const CROWN_AREA: f64 = 0.02;
 /// A fruit in a crown lies there with this share of its points.
-const IN_CROWN: f64 = 0.9;
+pub(crate) const IN_CROWN: f64 = 0.9;
 /// Of a ring, the shorter side of its box over the longer one at least.
 const ROUND: f64 = 0.6;
 /// Ends farther apart than this share of the length: a line, however shaky.
@@ -32,7 +32,7 @@ const FILLS: f64 = 0.62;
 /// A leaf's area over the square of its outline's length at least: less is a line.
 const OPEN: f64 = 0.015;
 /// A fruit covers less than this share of its crown.
-const SMALL: f64 = 0.03;
+pub(crate) const SMALL: f64 = 0.03;
 /// Sides of a trunk are nearer to one another than so many times the shorter one's length; so many times as far apart above as
 /// below at most; and both feet stand within this of the lowest point.
 const BESIDE: f64 = 1.3;

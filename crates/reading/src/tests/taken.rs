@@ -144,7 +144,7 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &[], &kept);
-    assert!(crate::silhouette::read_silhouette(&mut draft));
+    crate::silhouette::Silhouette::of(&ink).expect("a tree").read(&mut draft);
     let trunk = &draft.forest.axes[draft.bodies[0]];
     let (foot, top) = (trunk.points[0], trunk.points[trunk.points.len() - 1]);
     // Ink has diagonal 1; the trunk is a tenth as wide as it is high above the ground, and ends under the crown.
@@ -160,7 +160,7 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
         .chain([path(&[(0.0, -5.0), (0.0, 0.0)])])
         .collect();
     let ink = clean(&Drawing::from_polylines("bare", &bare), &mut Report::default());
-    assert!(!crate::silhouette::read_silhouette(&mut Draft::new(&ink, &[], &kept)));
+    assert!(crate::silhouette::Silhouette::of(&ink).is_none());
 }
 
 #[test]
