@@ -10,7 +10,7 @@ use crate::blade::BladeChart;
 use crate::sleeve::{drop_flat, narrow2};
 
 /// A blade that fills less of its margin without bays is leaflets or needles rather than one surface.
-const COMPOUND: f64 = 0.5;
+const COMPOUND: f64 = 0.6;
 /// Fewer lobes than this are one leaf with lobes, as a maple's.
 const FEW_LOBES: usize = 6;
 /// A lobe that stands for several is at most so wide over its length before it becomes longer, too.

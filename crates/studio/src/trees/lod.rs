@@ -69,7 +69,7 @@ fn flower_halvings(plant: &Plant, level: u32) -> [u32; 2] {
     let of_each = petals().count() / plant.flowers.len().max(1);
     let most_petals = if level > 1 { halvings(of_each, FEW_PETALS, level) } else { 0 };
     let first = most_petals.min(1);
-    let most = halvings(plant.flowers.len(), FEW_FLOWERS, level - first);
+    let most = halvings(plant.flowers.len(), FEW_FLOWERS, level).min(level - first);
     let size = plant.extent().map_or(0.0, |(low, high)| (high - low).length());
     let reach = |o: &Organ| plant.shapes.get(o.shape.index()).map_or(0.0, |s| s.reach() * o.scale);
     let longest = petals().map(reach).filter(|r| r.is_finite()).fold(0.0, f64::max);
