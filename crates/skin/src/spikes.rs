@@ -139,7 +139,7 @@ mod tests {
                 let share = drawn / geom::signed_area(&blade.outline);
                 assert!((0.85..1.15).contains(&share), "{form:?}, {wish}: {share}");
                 let far = mesh.positions.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f32::max);
-                assert!(far < 1.35, "{form:?}, {wish}: a spear of {far}");
+                assert!(far < 1.5, "{form:?}, {wish}: a spear of {far}");
             }
         }
     }
