@@ -30,6 +30,10 @@ const RATE: [f64; 2] = [1.6, 6.0];
 /// umbrella thorns, are wider early, too.
 const CONTROL: f64 = 4.0;
 const WIDE: f64 = 0.5;
+/// Crowns that are narrower over their height than this are columns from the start: limbs on the leader have at most so many times
+/// the share of their length that it has of its own.
+const SLENDER: f64 = 0.12;
+const COLUMN: f64 = 1.6;
 /// How far the bearer of the shortest twig is beyond it when it is whole, over its length.
 const WHOLE_AT: f64 = 1.2;
 /// How much a leader grows by the lengthening of all of its internodes rather than by new ones at its tip, 0 to 1; shorter
@@ -51,7 +55,7 @@ const FRONDS_FIRST: f64 = 0.4;
 /// `McMahon`, Science 179, 1973).
 const ELASTIC: f64 = 1.5;
 /// Twigs of the youngest are no thinner than this share of those of the whole tree.
-const SLIMMEST: f64 = 0.3;
+const SLIMMEST: f64 = 0.45;
 
 /// The share of the final length at a share of a life of so many years.
 pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
@@ -120,10 +124,14 @@ fn rosettes(full: &Skeleton) -> Vec<bool> {
     (0..full.len()).map(|j| children[j] >= FRONDS && on_a_stem(j)).collect()
 }
 
-/// By how much leaves that are a part of the tree's own height are shorter at a share of its life.
-pub(crate) fn fronds_by(full: &Skeleton, life: f64, years: u32) -> f64 {
+/// By how much leaves of this length, which are a part of the tree's own height, are shorter at a share of its life. On a stem of
+/// its own that bears nothing else, as a banana's, they come before the stem as fronds do.
+pub(crate) fn fronds_by(full: &Skeleton, leaf_m: f64, life: f64, years: u32) -> f64 {
     let grown = grown_by(life, years);
-    if rosettes(full).contains(&true) { ops::powf(grown, FRONDS_FIRST) } else { grown }
+    let mut borne = vec![0_usize; full.len()];
+    full.parent.iter().flatten().for_each(|p| borne[p.index()] += 1);
+    let one_stem = borne.iter().all(|n| *n <= 1) && leaf_m < full.size();
+    if one_stem || rosettes(full).contains(&true) { ops::powf(grown, FRONDS_FIRST) } else { grown }
 }
 
 /// By how much all wood of each tree is thinner than the pipes of a young one ask for, which has the foot of most of its limbs:
@@ -288,12 +296,15 @@ impl Axes {
         let length = self.whole[h];
         let small = (1.0 - length / self.limb[t]).max(0.05);
         let needed = (WHOLE_AT * length / (small * small)).min(beyond).max(1e-12);
-        let full = (CONTROL * WIDE * self.leader[t] / self.reach[t]).clamp(1.0, CONTROL);
+        let broad = self.reach[t] / self.leader[t];
+        let full = (CONTROL * (WIDE / broad) * (WIDE / broad)).clamp(1.0, CONTROL);
         let control = 1.0 + (full - 1.0) * (self.whole[b] / self.leader[t]).min(1.0);
         let free = (needed / (control * self.aside[h]).max(1e-12)).min(1.0);
         let share = (now / needed).min(1.0);
         // Limbs that waited make up for it by the third power.
-        share * (free + (1.0 - free) * share * share)
+        let reached = share * (free + (1.0 - free) * share * share);
+        let leads = self.whole[b] >= self.leader[t];
+        if leads { reached.min(COLUMN * bearer * (broad / SLENDER).max(1.0)) } else { reached }
     }
 }
 

@@ -255,7 +255,7 @@ fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) -> Vec<f64> {
             let (young, ids) = younger(&bones.skeleton, wood, life, years);
             // Fronds and blades that are a part of the tree's own height grow with it.
             if spec.leaves.length_m > 0.05 * bones.skeleton.size() {
-                let shorter = fronds_by(&bones.skeleton, life, years);
+                let shorter = fronds_by(&bones.skeleton, spec.leaves.length_m, life, years);
                 bones.marks.iter_mut().for_each(|m| m.scale *= shorter);
             }
             let slim = slimmer(&bones.skeleton, &young, wood);

@@ -8,6 +8,7 @@ use plant::Blade;
 
 use crate::blade::BladeChart;
 use crate::sleeve::{drop_flat, narrow2};
+use crate::spikes::spikes;
 
 /// How much wider than its outline a blade of a coarser copy is drawn, at most: far enough for a kite that stands for a
 /// spray of needles. Others are at most [`plant::DRAWN_WIDER`].
@@ -86,10 +87,11 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
         return None;
     }
-    if widest > WIDE
-        && let Some(mesh) = arched(blade, triangles, widest)
-    {
-        return Some(mesh);
+    if widest > WIDE {
+        let compound = || closed(blade).and_then(|closed| spikes(blade, &closed, triangles));
+        if let Some(mesh) = compound().or_else(|| arched(blade, triangles, widest)) {
+            return Some(mesh);
+        }
     }
     let end = *blade.midrib.last()?;
     let tip = nearest(outline, end)?;
@@ -165,6 +167,12 @@ fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
 /// Half the width of what lies on both sides of the midrib.
 fn half_width(points: &[DVec2]) -> f64 {
     points.iter().map(|p| p.x.abs()).fold(0.0, f64::max)
+}
+
+/// The margin of a blade without its bays; none where its tip cannot be told.
+pub(crate) fn closed(blade: &Blade) -> Option<Vec<DVec2>> {
+    let tip = nearest(&blade.outline, *blade.midrib.last()?)?;
+    Some(without_bays(&blade.outline, tip).into_iter().map(|i| blade.outline[i]).collect())
 }
 
 /// The corners of a margin, as indices, without its bays: no other than root and tip lie inwards of their neighbours.

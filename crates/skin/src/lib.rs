@@ -46,6 +46,7 @@ mod rings;
 mod shoots;
 mod sleeve;
 mod spec;
+mod spikes;
 mod spine;
 mod stub_end;
 mod sway;
@@ -186,6 +187,12 @@ pub fn shape_meshes(plant: &Plant, spec: &SkinSpec) -> Vec<TriMesh> {
 /// uses. Cost: that of triangulating each shape once.
 pub fn drawn_areas(plant: &Plant, spec: &SkinSpec) -> Vec<f64> {
     organs::areas(plant, spec, &budget(plant, spec))
+}
+
+/// The triangles of each shape of a plant as [`skin()`] draws it, without veins; 0 of a shape that nothing uses. Cost: that of
+/// triangulating each shape once.
+pub fn drawn_triangles(plant: &Plant, spec: &SkinSpec) -> Vec<usize> {
+    organs::triangles(plant, spec, &budget(plant, spec))
 }
 
 /// What to do where there would be too many triangles.

@@ -174,6 +174,11 @@ pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<V
     })
 }
 
+/// The triangles of the surface of each shape; none of one that nothing uses.
+pub(crate) fn triangles(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<usize> {
+    of_each(plant, spec, budget, |made, _| made.surface.triangles.len())
+}
+
 /// The area of each shape as it is drawn at scale 1, one side, without what is cut out of it, square metres; 0 of one that nothing uses.
 pub(crate) fn areas(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<f64> {
     of_each(plant, spec, budget, |made, share| {

@@ -127,8 +127,9 @@ impl TreeEvaluator {
         self.begun = report;
         let plant = self.plant().filter(|p| p.organs.len() + p.nodes.position.len() > SMALL);
         let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
-        let (mut copy, skin) = coarser(plant, &skin_spec(spec, seed, options), LOOK_LEVEL);
-        keep_out(&mut copy, &skin, plant, LOOK_LEVEL, &obstacles);
+        let fine = skin_spec(spec, seed, options);
+        let (mut copy, skin) = coarser(plant, &fine, LOOK_LEVEL);
+        keep_out(&mut copy, (&skin, &fine), plant, LOOK_LEVEL, &obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
         Ok(Some(skinned(&copy, &from, run)?.0))
     }
@@ -196,7 +197,9 @@ impl TreeEvaluator {
         let mut grown = raw.grown.clone();
         // They come before leaves, in the places of some. Nothing flowers in autumn, or before spring.
         if (EARLIEST_FLOWERS..=0.0).contains(&spec.look.leaf_season()) {
-            add_blossom(&spec.blossom, &mut grown.plant, &raw.grown.flowers, obstacles, seed);
+            let share = spec.blossom.share * flowering(spec);
+            let blossom = BlossomSpec { share, ..spec.blossom.clone() };
+            add_blossom(&blossom, &mut grown.plant, &raw.grown.flowers, obstacles, seed);
         }
         let away = tint(&spec.look, &mut grown.plant, pictured, seed);
         (grown.leaves.kept, grown.leaves.fallen) = (grown.leaves.kept - away, grown.leaves.fallen + away);
@@ -273,7 +276,7 @@ impl TreeEvaluator {
         let (spec, (fine, look, leaf)) = (&raw.from.0, from);
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let (mut copy, skin) = coarser(plant, fine, level);
-        keep_out(&mut copy, &skin, plant, level, &obstacles);
+        keep_out(&mut copy, (&skin, fine), plant, level, &obstacles);
         let (model, layout) = skinned(&copy, &(skin, look.clone(), leaf.clone()), run)?;
         Ok(Some((model, (copy, layout))))
     }
@@ -367,4 +370,13 @@ pub(super) fn skinned(
         leaf.dress(&mut model, &skin.worn);
     }
     Ok((model, layout))
+}
+
+/// The share of a life in which a plant comes to flower: of trees of forty years, seedlings flower after five to fifteen.
+const JUVENILE: f64 = 0.3;
+
+/// The share of its flowers that a plant has at its age.
+fn flowering(spec: &TreeSpec) -> f64 {
+    let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years.max(1)));
+    base::ops::smoothstep(0.0, JUVENILE, life)
 }

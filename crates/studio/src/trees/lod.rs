@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use growth::Obstacles;
-use plant::{AxisKind, FlowerId, NodeId, OrganKind, Plant};
+use plant::{AxisKind, FlowerId, NodeId, Organ, OrganKind, Plant, Shape};
 use skin::{FoliageStyle, Shoots, SkinSpec};
 
 /// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
 /// which is for half the size, half as many.
 const FEW_AXES: usize = 100;
 const FEW_LEAVES: usize = 300;
-/// Leaves of a coarser copy are no longer than this share of the plant's size: a few large ones would be spikes.
-const LONGEST: f64 = 0.07;
+/// Flowers of a coarser copy are no wider than this share of the plant's size if they are halved more than once.
+const WIDEST_FLOWER: f64 = 0.07;
 const FEW_FLOWERS: usize = 120;
 /// A flower keeps all of its petals in the first level, half of so many in the second, and half of those in each further one.
 const FEW_PETALS: usize = 5;
@@ -23,44 +24,131 @@ fn halvings(count: usize, few: usize, level: u32) -> u32 {
     (count / few.max(1)).checked_ilog2().unwrap_or(0).min(level)
 }
 
-/// How often the leaves of a plant are halved.
-fn leaf_halvings(plant: &Plant, level: u32) -> u32 {
-    let leaves = || plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
-    let most = halvings(leaves().count(), FEW_LEAVES, level.min(6));
-    let size = plant.extent().map_or(0.0, |(low, high)| (high - low).length());
-    let reach = |o: &plant::Organ| plant.shapes.get(o.shape.index()).map_or(0.0, |s| s.reach() * o.scale);
-    let longest = leaves().map(reach).filter(|r| r.is_finite()).fold(0.0, f64::max);
-    let fits = |n: &u32| longest * f64::from(1_u32 << n).sqrt() <= LONGEST * size;
-    // Once less at most, and where most triangles are wood: a level has half of those of the one before.
-    let woody = plant.axes.len() > leaves().count();
-    let least = if level > 2 && most == level && woody { most - 1 } else { most };
-    (least..=most).rev().find(fits).unwrap_or(least)
+/// Triangles of leaves over those of the level before, at most; of plants that lose no axes they make up for what these keep.
+const LEAVES_LEFT: f64 = 0.51;
+const LEAVES_LEFT_ALONE: f64 = 0.42;
+
+/// How often the leaves of a plant are halved: as seldom as a level still has at most half of the leaves' triangles of the
+/// one before, so that leaves that stay are no larger than they have to be. The first level halves them once.
+fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) -> u32 {
+    let (level, count) = (level.min(6), leaves(plant).count());
+    let mut halved = halvings(count, FEW_LEAVES, level.min(1));
+    if level < 2 {
+        return halved;
+    }
+    let fronds = has_fronds(plant, skin);
+    let drawn = |at: u32| {
+        let style = crowded(plant, skin, at);
+        if fronds {
+            let mut copy = plant.clone();
+            widen(&mut copy, 1.0, at);
+            return skin::drawn_triangles(&copy, &style);
+        }
+        skin::drawn_triangles(plant, &style)
+    };
+    let of_all = |each: &[usize], halved: u32| {
+        let staying = leaves(plant).enumerate().filter(|(row, _)| places.stays(*row, halved));
+        staying.map(|(_, o)| each.get(o.shape.index()).copied().unwrap_or(0)).sum::<usize>() as f64
+    };
+    let least = if plant.axes.len() > FEW_AXES { LEAVES_LEFT } else { LEAVES_LEFT_ALONE };
+    let mut before = of_all(&drawn(1), halved);
+    for at in 2..=level {
+        let (most, each) = (halvings(count, FEW_LEAVES, at), drawn(at));
+        while halved < most && of_all(&each, halved) > least * before {
+            halved += 1;
+        }
+        before = of_all(&each, halved);
+    }
+    halved
 }
 
-/// Whether a leaf or flower with this key outlives so many halvings. Mixed: of keys that differ little, too, one in two
-/// stays.
-fn stays(key: u64, halvings: u32) -> bool {
-    base::Seed::new(key).child(0).number().is_multiple_of(1 << halvings)
+/// How often the flowers of a plant are halved, and the petals of each. From the second level on petals go first, and of
+/// flowers that would become wider than they may be more petals.
+fn flower_halvings(plant: &Plant, level: u32) -> [u32; 2] {
+    let petals = || plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
+    let of_each = petals().count() / plant.flowers.len().max(1);
+    let most_petals = if level > 1 { halvings(of_each, FEW_PETALS, level) } else { 0 };
+    let first = most_petals.min(1);
+    let most = halvings(plant.flowers.len(), FEW_FLOWERS, level).min(level - first);
+    let size = plant.extent().map_or(0.0, |(low, high)| (high - low).length());
+    let reach = |o: &Organ| plant.shapes.get(o.shape.index()).map_or(0.0, |s| s.reach() * o.scale);
+    let longest = petals().map(reach).filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let fits = |n: &u32| 2.0 * longest * f64::from(1_u32 << n).sqrt() <= WIDEST_FLOWER * size;
+    let flowers = (1..=most).rev().find(fits).unwrap_or(most.min(1));
+    [flowers, most_petals.min(first.max(level - flowers))]
+}
+
+/// How a coarser copy of a plant is skinned: with the triangles of one of as many parts as the plant has.
+fn crowded(plant: &Plant, skin: &SkinSpec, level: u32) -> SkinSpec {
+    let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
+    let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
+    let fine = 1.0 / f64::from(1_u32 << level);
+    let sides = skin.sides.saturating_sub(2 * level).max(3);
+    SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() }
+}
+
+/// Where leaves or flowers stand, each by a number of its axis and its place among those of that axis.
+#[derive(Default)]
+struct Places(Vec<(u64, usize)>);
+
+impl Places {
+    /// Of things that these nodes bear, with a key each for those that nothing bears.
+    fn of(plant: &Plant, borne: impl Iterator<Item = (Option<NodeId>, u64)>) -> Self {
+        let mut counts = vec![0_usize; plant.axes.len()];
+        let mixed = |key: u64| base::Seed::new(key).child(0).number();
+        let place = |(bearer, key): (Option<NodeId>, u64)| {
+            let axis = bearer.and_then(|b| plant.nodes.axis.get(b.index())).map(|a| a.index());
+            let row = axis.and_then(|a| Some((plant.axes.get(a)?, counts.get_mut(a)?)));
+            row.map_or((mixed(key), 0), |(axis, n)| (mixed(axis.key), core::mem::replace(n, *n + 1)))
+        };
+        Self(borne.map(place).collect())
+    }
+
+    fn of_leaves(plant: &Plant) -> Self {
+        Self::of(plant, leaves(plant).map(|o| (o.bearer, o.key)))
+    }
+
+    /// Whether the thing of a row outlives so many halvings. Of those of an axis one in two does, now left and now right of
+    /// it, so that no gaps come about; where an axis has one thing, that of one axis in two does.
+    fn stays(&self, row: usize, halvings: u32) -> bool {
+        let Some(&(axis, mut place)) = self.0.get(row) else { return true };
+        (0..halvings).all(|h| {
+            let one = place + place / 2;
+            place /= 2;
+            (one as u64 + (axis >> h)).is_multiple_of(2)
+        })
+    }
+}
+
+fn leaves(plant: &Plant) -> impl Iterator<Item = &Organ> {
+    plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf)
 }
 
 /// How much larger leaves are after so many halvings than on `plant`: those that stay cover what all did.
-fn larger(plant: &Plant, halvings: u32) -> f64 {
+fn larger(plant: &Plant, places: &Places, halvings: u32) -> f64 {
     let (mut all, mut kept) = (0.0, 0.0);
-    for leaf in plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && o.scale.is_finite()) {
-        let area = leaf.scale * leaf.scale;
+    for (row, leaf) in leaves(plant).enumerate() {
+        let area = if leaf.scale.is_finite() { leaf.scale * leaf.scale } else { 0.0 };
         all += area;
-        kept += if stays(leaf.key, halvings) { area } else { 0.0 };
+        kept += if places.stays(row, halvings) { area } else { 0.0 };
     }
     if kept > 0.0 { (all / kept).sqrt().min(f64::from(1_u32 << halvings)) } else { 1.0 }
 }
 
 /// Gives leaves of a coarser copy of `plant` that may enter an obstacle their own size again, in which they grew beside
-/// it; or, where they are drawn too wide for that too, a smaller one.
-pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: u32, obstacles: &Obstacles) {
+/// it; or, where they are drawn too wide for that too, a smaller one. `own`: how `plant` is skinned.
+pub(super) fn keep_out(
+    copy: &mut Plant,
+    (skin, own): (&SkinSpec, &SkinSpec),
+    plant: &Plant,
+    level: u32,
+    obstacles: &Obstacles,
+) {
     if obstacles.is_empty() {
         return;
     }
-    let larger = larger(plant, leaf_halvings(plant, level));
+    let places = Places::of_leaves(plant);
+    let larger = larger(plant, &places, leaf_halvings(plant, own, &places, level));
     let drawn = skin::drawn_shapes(copy, skin);
     for organ in copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
         for smaller in [larger, 4.0, 4.0] {
@@ -71,35 +159,78 @@ pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: 
     }
 }
 
-/// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
-///
-/// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
-/// are many for the size at which it is seen; from the second level on there are no roots; flowers that are few have fewer petals from the second level on. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
-/// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
-/// become fewer. With [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of
-/// twice as many leaves from each level to the next. Cost: n log n in axes and leaves.
-pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
-    let level = level.min(6);
-    let shoots = (skin.foliage == FoliageStyle::ByLevel && level > 0)
-        .then(|| Shoots::of(plant).map(Arc::new))
-        .flatten();
+/// From so many leaves on an axis on, they may be the leaflets of a frond.
+const FROND: usize = 16;
+/// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
+const LEVEL: f64 = 0.8;
+const PARALLEL: f64 = 0.95;
+/// A leaflet of a frond that stands for several is at most so wide over its length.
+const STOUT: f64 = 0.5;
+
+/// Whether the leaves of a plant stand on fronds, as those of palms and ferns, and are drawn as outlines.
+fn has_fronds(plant: &Plant, skin: &SkinSpec) -> bool {
+    if skin.foliage != FoliageStyle::Outlines {
+        return false;
+    }
+    let axis = |o: &Organ| o.bearer.and_then(|b| plant.nodes.axis.get(b.index()).copied());
+    let all: Vec<&Organ> = leaves(plant).collect();
+    let (mut flat, mut parallel, mut pairs) = (0.0, 0.0, 0_usize);
+    for w in all.windows(3).filter(|w| axis(w[0]).is_some() && axis(w[0]) == axis(w[2])) {
+        flat += w[0].frame.normal.dot(w[1].frame.normal).abs();
+        parallel += w[0].frame.along.dot(w[2].frame.along);
+        pairs += 1;
+    }
+    let mut axes: Vec<_> = all.iter().filter_map(|o| axis(o)).collect();
+    axes.dedup();
+    let n = pairs.max(1) as f64;
+    let blades =
+        plant.shapes.iter().all(|s| matches!(s, Shape::Blade(b) if b.needles.is_none() && b.length() > 0.0));
+    blades && all.len() >= FROND * axes.len().max(1) && flat >= LEVEL * n && parallel >= PARALLEL * n
+}
+
+/// Where a leaflet without bays is widest, as a share of its length.
+const WIDEST: f64 = 0.4;
+
+/// Makes leaflets of fronds that stand for several `times` as large in area: wider as long as they are slender, which leaves
+/// fronds as wide as they are. From the second level on they have no leaflets of their own. How much larger they are then still
+/// to be.
+fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
+    let mut left: f64 = 1.0;
+    for shape in &mut copy.shapes {
+        let Shape::Blade(blade) = shape else { continue };
+        let length = blade.length();
+        if level > 1 {
+            let half = geom::signed_area(&blade.outline) / length;
+            let (right, at) = (DVec2::new(half, WIDEST * length), DVec2::new(0.0, length));
+            blade.outline = vec![DVec2::ZERO, right, at, DVec2::new(-half, WIDEST * length)];
+            blade.midrib = vec![DVec2::ZERO, at];
+        }
+        let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+        if blade.needles.is_some() || half.is_nan() || half <= 0.0 {
+            continue;
+        }
+        let wider = (0.5 * STOUT * length / half).clamp(1.0, times.max(1.0));
+        blade.outline.iter_mut().for_each(|p| p.x *= wider);
+        blade.veins.clear();
+        left = left.max((times / wider).sqrt());
+    }
+    left
+}
+
+/// Gives a coarser copy of a plant its longest axes. Where each node of the plant is in the copy: itself, or the node that bore
+/// its axis.
+fn longest_axes(copy: &mut Plant, plant: &Plant, level: u32, shoots: bool) -> Vec<Option<NodeId>> {
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
     base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
-    // Shoots have twigs of their own.
-    let finer = u32::from(shoots.is_some() && level > 1);
+    // Shoots have twigs of their own, and leaves hide those of a crown.
+    let hidden = leaves(plant).count() > plant.axes.len();
+    let finer = u32::from((shoots || hidden) && level > 1);
     let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level + finer);
     let least = lengths.get(kept_axes).copied().unwrap_or(0.0);
-    let mut copy = Plant {
-        name: plant.name.clone(),
-        shapes: plant.shapes.clone(),
-        paint: plant.paint,
-        ..Plant::default()
-    };
-    // Where each node of the plant is in the copy: itself, or the node that bore its axis.
     let mut moved: Vec<Option<NodeId>> = vec![None; plant.nodes.position.len()];
     let mut gone = vec![false; plant.axes.len()];
     for (row, axis) in plant.axes.iter().enumerate() {
@@ -119,30 +250,58 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
             moved[old] = Some(new);
         }
     }
+    moved
+}
+
+/// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
+///
+/// Each level leaves out the shorter half of the axes, and leaves and flowers as far as it has to for half of the triangles, as
+/// long as there are many for the size at which it is seen; from the second level on there are no roots, and flowers have fewer
+/// petals, many of them no stalks. Leaves and flowers that stay grow so that together they cover as much, leaflets of fronds in
+/// width before length; those of axes that are gone sit on what bore the axes. Which stay follows from the keys of their axes and
+/// their places on these, evenly along each: every level's are among those of the one before. Sides and rings become fewer. With
+/// [`FoliageStyle::ByLevel`] leaves become cards in the first level, and cards of shoots in the others, of twice as many leaves
+/// from each level to the next. Cost: n log n in axes and leaves.
+pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
+    let level = level.min(6);
+    let shoots = (skin.foliage == FoliageStyle::ByLevel && level > 0)
+        .then(|| Shoots::of(plant).map(Arc::new))
+        .flatten();
+    let mut copy = Plant {
+        name: plant.name.clone(),
+        shapes: plant.shapes.clone(),
+        paint: plant.paint,
+        ..Plant::default()
+    };
+    let moved = longest_axes(&mut copy, plant, level, shoots.is_some());
     let now = |bearer: Option<NodeId>| bearer.and_then(|b| moved.get(b.index()).copied().flatten());
-    let flower_halvings = halvings(plant.flowers.len(), FEW_FLOWERS, level);
+    let [flower_halvings, petal_halvings] = flower_halvings(plant, level);
+    let places = Places::of(plant, plant.flowers.iter().map(|f| f.bearer).zip(0..));
     let mut flowers: Vec<Option<FlowerId>> = Vec::with_capacity(plant.flowers.len());
-    for (flower, key) in plant.flowers.iter().zip(0..) {
-        let id = stays(key, flower_halvings).then_some(FlowerId::new(copy.flowers.len()));
+    for (row, flower) in plant.flowers.iter().enumerate() {
+        let id = places.stays(row, flower_halvings).then_some(FlowerId::new(copy.flowers.len()));
         flowers.push(id);
         if id.is_some() {
             copy.flowers.push(plant::Flower { bearer: now(flower.bearer), ..flower.clone() });
         }
     }
     let fewer_flowers = (plant.flowers.len() as f64 / copy.flowers.len().max(1) as f64).sqrt();
-    // Flowers that are too few to be fewer have fewer petals.
-    let petals = plant.organs.iter().filter(|o| o.kind == OrganKind::Petal).count();
-    let of_each = petals / plant.flowers.len().max(1);
-    let petal_halvings =
-        if level > 1 { halvings(of_each, FEW_PETALS, level).min(level - flower_halvings) } else { 0 };
     let mut petals = vec![0_usize; plant.flowers.len()];
     let whole_shoots = shoots.as_ref().filter(|_| level > 1);
-    let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, level) };
-    let larger = larger(plant, leaf_halvings);
+    let places = Places::of_leaves(plant);
+    let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, skin, &places, level) };
+    let mut larger = larger(plant, &places, leaf_halvings);
+    if has_fronds(plant, skin) {
+        larger = widen(&mut copy, larger * larger, level);
+    }
+    let mut row = 0;
     for organ in &plant.organs {
         let flower = organ.flower.map(|f| flowers.get(f.index()).copied().flatten());
         let leaf = organ.kind == OrganKind::Leaf;
-        if flower == Some(None) || (leaf && !stays(organ.key, leaf_halvings)) {
+        row += usize::from(leaf);
+        // Stalks of many flowers are seen in the first level alone.
+        let stalk = organ.kind == OrganKind::Pedicel && level > 1 && flower_halvings > 0;
+        if flower == Some(None) || stalk || (leaf && !places.stays(row - 1, leaf_halvings)) {
             continue;
         }
         if let (OrganKind::Petal, Some(row)) = (organ.kind, organ.flower) {
@@ -158,24 +317,19 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
             _ if flower.is_some() => fewer_flowers,
             _ => 1.0,
         };
-        copy.organs.push(plant::Organ {
+        copy.organs.push(Organ {
             bearer: now(organ.bearer),
             flower: flower.flatten(),
             scale: organ.scale * larger,
             ..organ.clone()
         });
     }
-    let fine = 1.0 / f64::from(1_u32 << level);
-    let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
-    let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
-    let sides = skin.sides.saturating_sub(2 * level).max(3);
     if let Some(shoots) = whole_shoots {
         shoots.stand_in(&mut copy, 1 << (level - 2));
     }
     let foliage =
         if level > 0 && skin.foliage == FoliageStyle::ByLevel { FoliageStyle::Cards } else { skin.foliage };
-    let coarse =
-        SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), foliage, shoots, ..skin.clone() };
+    let coarse = SkinSpec { foliage, shoots, ..crowded(plant, skin, level) };
     cover_as_much(&mut copy, &coarse, (plant, skin), |kind| kind == OrganKind::Leaf);
     cover_as_much(&mut copy, &coarse, (plant, skin), |kind| kind == OrganKind::Petal);
     (copy, coarse)
@@ -192,12 +346,42 @@ fn cover_as_much(
     let covered = |plant: &Plant, skin: &SkinSpec| {
         let areas = skin::drawn_areas(plant, skin);
         let leaves = plant.organs.iter().filter(|o| is(o.kind) && o.scale.is_finite());
-        let area = |o: &plant::Organ| areas.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale * o.scale;
+        let area = |o: &Organ| areas.get(o.shape.index()).copied().unwrap_or(0.0) * o.scale * o.scale;
         leaves.map(area).sum::<f64>()
     };
     let (wanted, have) = (covered(plant, skin), covered(copy, coarse));
     if have > 0.0 && wanted > 0.0 {
         let size = (wanted / have).sqrt().clamp(0.5, 2.0);
         copy.organs.iter_mut().filter(|o| is(o.kind)).for_each(|o| o.scale *= size);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaflets_go_evenly_and_on_both_sides_of_a_frond() {
+        let places = Places((0..64).map(|n| (0b101, n)).collect());
+        let mut before: Vec<usize> = (0..64).collect();
+        for halvings in 1..=4_u32 {
+            let stay: Vec<usize> = (0..64).filter(|&n| places.stays(n, halvings)).collect();
+            assert_eq!(stay.len(), 64 >> halvings);
+            assert!(stay.iter().all(|n| before.contains(n)), "{halvings}: of those of the level before");
+            let gap = stay.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+            assert!(gap < 2 << halvings, "{halvings}: a gap of {gap}");
+            let left = stay.iter().filter(|n| **n % 2 == 0).count();
+            assert_eq!(left, stay.len() / 2, "{halvings}");
+            before = stay;
+        }
+    }
+
+    #[test]
+    fn leaves_that_stand_alone_stay_on_every_second_twig() {
+        let places = Places((0..1000).map(|key| (base::Seed::new(key).child(0).number(), 0)).collect());
+        for halvings in 1..=3_u32 {
+            let stay = (0..1000).filter(|&n| places.stays(n, halvings)).count();
+            assert!((850..1150).contains(&(stay << halvings)), "{halvings}: {stay}");
+        }
     }
 }
