@@ -42,8 +42,8 @@ impl Cells {
 
 const BESIDE: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// The outline of the largest piece that a ball of a radius cannot reach, counter-clockwise, without a crossing; it runs along the
-/// outer side of the lines, by less than a hundredth of the drawing. `None` where there is no piece. Cost: linear in points,
+/// The outline of the largest piece that a ball of a radius cannot reach, counter-clockwise, without a crossing; it
+/// runs along the lines, off them by less than a hundredth of the drawing. `None` where there is no piece. Cost: linear in points,
 /// and the picture times the ball.
 pub(crate) fn sealed(lines: &[&[DVec2]], radius: f64) -> Option<Vec<DVec2>> {
     let (lo, hi) = lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
@@ -123,30 +123,30 @@ fn flood(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool) -> Vec<bool> {
     found
 }
 
-/// The middles of the sides of cells round a piece, which lies to the left.
+/// The middles of the cells at the rim of a piece, counter-clockwise: lines run through them.
 fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
     let first = piece.iter().position(|p| *p)?;
-    let has = |x: isize, y: isize| {
+    let has = |(x, y): (isize, isize)| {
         let cell = usize::try_from(y).ok().zip(usize::try_from(x).ok());
         cell.is_some_and(|(y, x)| x < cells.wide && y < cells.tall && piece[y * cells.wide + x])
     };
+    // The cells to the left and to the right of the side that leaves a corner in each direction.
+    let left = |(x, y): (isize, isize), way: usize| [(x, y), (x - 1, y), (x - 1, y - 1), (x, y - 1)][way];
+    let right = |(x, y): (isize, isize), way: usize| [(x, y - 1), (x, y), (x - 1, y), (x - 1, y - 1)][way];
     // The lowest row of the piece: below its first cell there is nothing.
     let start = ((first % cells.wide).cast_signed(), (first / cells.wide).cast_signed());
     let (mut at, mut way) = (start, 0_usize);
-    let mut line = Vec::new();
+    let mut line: Vec<DVec2> = Vec::new();
     loop {
-        let (dx, dy) = BESIDE[way];
-        line.push(
-            cells.corner
-                + DVec2::new(at.0 as f64 + 0.5 * dx as f64, at.1 as f64 + 0.5 * dy as f64) * cells.size,
-        );
-        at = (at.0 + dx, at.1 + dy);
-        // To the left, straight on, to the right: the side with the piece on its left and nothing on its right.
+        let (x, y) = left(at, way);
+        let middle = cells.corner + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * cells.size;
+        if line.last() != Some(&middle) {
+            line.push(middle);
+        }
+        at = (at.0 + BESIDE[way].0, at.1 + BESIDE[way].1);
+        // To the left, straight on, to the right: where the piece is on the left and nothing on the right.
         let turns = [way + 1, way, way + 3].map(|w| w % BESIDE.len());
-        let (x, y) = at;
-        let left = [(x, y), (x - 1, y), (x - 1, y - 1), (x, y - 1)];
-        let right = [(x, y - 1), (x, y), (x - 1, y), (x - 1, y - 1)];
-        way = turns.into_iter().find(|&w| has(left[w].0, left[w].1) && !has(right[w].0, right[w].1))?;
+        way = turns.into_iter().find(|&w| has(left(at, w)) && !has(right(at, w)))?;
         if (at, way) == (start, 0) {
             return Some(line);
         }

@@ -4,6 +4,8 @@
 //! afar they are one shape with a neck, and that is read as a tree drawn in one line is. It also tells how well what was
 //! read of the strokes covers what was drawn.
 
+use core::ops::Range;
+
 use geom::{bounds, contains, convex_hull, signed_area};
 use glam::DVec2;
 use ink::{Ink, StrokeClass};
@@ -28,8 +30,9 @@ const NEAR: f64 = 0.018;
 /// Every so many points of a line are looked at, and so many places at most along one side of an outline.
 const STRIDE: usize = 3;
 const LONGEST: u32 = 200;
-/// Along less than this share of its crown nothing was drawn.
+/// Along less than this share of the crown, and of the sides of the trunk above that share of its height, nothing was drawn.
 const BARE: f64 = 0.07;
+const AT_FOOT: f64 = 0.3;
 /// A level line below this share of the height is the ground; it rises by less than that share of its width.
 const LOW: f64 = 0.2;
 const LEVEL: f64 = 0.25;
@@ -86,9 +89,12 @@ impl Silhouette {
         let trunk = limb(outline, low);
         let mut half = trunk.half_width.clone();
         base::sort_numbers(&mut half);
-        // The crown was drawn all round, but for gaps: between the tips of bare branches nothing is.
+        let (foot, top) = (bounds(&below)?.0.y, bounds(&crown)?.1.y);
+        // Crown and trunk were drawn all round, but for gaps: between the tips of branches nothing is.
         let wide = *half.get(half.len() / 2)? > ball;
-        (wide && drawn.bare(&crown, low) < BARE).then(|| Self { ground: Vec::new(), below, trunk, crown })
+        let sides = foot + AT_FOOT * (low - foot)..low;
+        let whole = wide && drawn.bare(&crown, &(low..top)) < BARE && drawn.bare(&below, &sides) < BARE;
+        whole.then(|| Self { ground: Vec::new(), below, trunk, crown })
     }
 
     /// How much of what the silhouette or a reading covers both do, 0 to 1: of the trunk or of the crown, whichever is less.
@@ -164,27 +170,35 @@ impl<'a> Drawn<'a> {
         Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
     }
 
-    /// Whether an outline is full, and nearly all that was drawn lies in it.
+    /// Whether an outline is full, stands where the drawing does, and nearly all that was drawn lies in it.
     fn lies_in(&self, outline: &[DVec2]) -> bool {
+        let low = |l: &[DVec2]| bounds(l).map_or(f64::INFINITY, |b| b.0.y);
+        let foot = self.lines.iter().map(|l| low(l)).fold(f64::INFINITY, f64::min);
+        if low(outline) > foot + 2.0 * NEAR {
+            return false;
+        }
         let points = || self.lines.iter().flat_map(|l| l.iter().step_by(STRIDE));
         let off = |p: &DVec2| nearest_on_ring(outline, *p).1;
         let out = || points().filter(|p| !contains(outline, **p) && off(p) > NEAR).count();
         signed_area(outline) > FULL * self.hull && (out() as f64) < LEFT_OUT * points().count() as f64
     }
 
-    /// Along which share of a crown over its lowest point nothing was drawn.
-    fn bare(&self, crown: &[DVec2], low: f64) -> f64 {
-        let places = crown.windows(2).flat_map(|w| {
+    /// Along which share of an outline between two heights nothing was drawn.
+    fn bare(&self, outline: &[DVec2], heights: &Range<f64>) -> f64 {
+        let places = outline.windows(2).flat_map(|w| {
             let steps = (w[0].distance(w[1]) / NEAR).ceil();
             (0..LONGEST)
                 .map(f64::from)
                 .take_while(move |k| *k < steps)
                 .map(move |k| w[0].lerp(w[1], k / steps))
         });
-        let (bare, all) = places.filter(|p| p.y > low + NEAR).fold((0.0, 0.0_f64), |(bare, all), p| {
-            let drawn = self.near.nearest(p, NEAR, |_| true).is_some();
-            (bare + f64::from(u8::from(!drawn)), all + 1.0)
-        });
+        let (bare, all) = places.filter(|p| p.y > heights.start + NEAR && p.y < heights.end - NEAR).fold(
+            (0.0, 0.0_f64),
+            |(bare, all), p| {
+                let drawn = self.near.nearest(p, NEAR, |_| true).is_some();
+                (bare + f64::from(u8::from(!drawn)), all + 1.0)
+            },
+        );
         bare / all.max(1.0)
     }
 }

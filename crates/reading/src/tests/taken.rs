@@ -6,6 +6,7 @@ use geom::signed_area;
 
 use super::*;
 use crate::draft::Draft;
+use crate::silhouette::Silhouette;
 
 /// What is built of lines that are taken for a kind.
 fn taken(kind: Kind, lines: &[Vec<DVec2>]) -> Reading {
@@ -144,7 +145,11 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &[], &kept);
-    crate::silhouette::Silhouette::of(&ink).expect("a tree").read(&mut draft);
+    let silhouette = || Silhouette::of(&ink).expect("a tree");
+    assert!(silhouette().fit(&Reading::default()) < 0.01, "nothing covers nothing");
+    let fit = silhouette().fit(&taken(Kind::Tree, &lines));
+    assert!(fit > 0.75, "what was read of it covers {fit}");
+    silhouette().read(&mut draft);
     let trunk = &draft.forest.axes[draft.bodies[0]];
     let (foot, top) = (trunk.points[0], trunk.points[trunk.points.len() - 1]);
     // Ink has diagonal 1; the trunk is a tenth as wide as it is high above the ground, and ends under the crown.
@@ -160,7 +165,17 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
         .chain([path(&[(0.0, -5.0), (0.0, 0.0)])])
         .collect();
     let ink = clean(&Drawing::from_polylines("bare", &bare), &mut Report::default());
-    assert!(crate::silhouette::Silhouette::of(&ink).is_none());
+    assert!(Silhouette::of(&ink).is_none());
+    // Nor has a crown on a single line, whose branches enclose something between them.
+    let crown: Vec<DVec2> = (0..=60).map(|i| at((0.0, 8.0), 3.0, ops::TAU * f64::from(i) / 60.0)).collect();
+    let single = [
+        crown,
+        path(&[(0.0, 0.0), (0.0, 8.0)]),
+        path(&[(0.0, 2.5), (-1.6, 3.6), (-2.0, 6.0)]),
+        path(&[(0.0, 2.8), (1.6, 3.8), (2.0, 6.0)]),
+    ];
+    let ink = clean(&Drawing::from_polylines("single", &single), &mut Report::default());
+    assert!(Silhouette::of(&ink).is_none());
 }
 
 #[test]
