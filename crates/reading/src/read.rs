@@ -12,7 +12,7 @@ use crate::silhouette::Silhouette;
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, glance, inertia, kinds, outlines, pressed, rules, several, veins,
+    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -290,6 +290,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     if asked.kind.is_none() {
         kind = told_apart(kind, &scores);
+    }
+    if kind == Kind::Vegetable && asked.is_free(ink, classes) {
+        silhouette::one_body(ink, &mut reading);
     }
     if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
         soften(&mut reading);

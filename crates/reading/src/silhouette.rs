@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use geom::{bounds, contains, convex_hull, signed_area};
 use glam::DVec2;
-use ink::{Ink, StrokeClass};
+use ink::{Ink, Source, StrokeClass};
 use plant::AxisKind;
 
 use crate::blade::nearest_on_ring;
@@ -18,7 +18,7 @@ use crate::draft::Draft;
 use crate::near::Near;
 use crate::rules::{IN_CROWN, SMALL, share_inside};
 use crate::sealed::sealed;
-use crate::{OrganWord, READ_AS, Reading, RegionKind};
+use crate::{FruitReading, OrganWord, READ_AS, Reading, RegionKind};
 
 /// Balls that find no way in through its gaps, shares of the drawing's diagonal: the first that gives a shape with a neck.
 const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
@@ -33,6 +33,9 @@ const LONGEST: u32 = 200;
 /// Along less than this share of the crown, and of the sides of the trunk above that share of its height, nothing was drawn.
 const BARE: f64 = 0.07;
 const AT_FOOT: f64 = 0.3;
+/// A body of more parts is no single one, and one beside which less than this share of the lines lies is whole.
+const MOST_PARTS: usize = 2;
+const LOOSE: f64 = 0.1;
 /// A level line below this share of the height is the ground; it rises by less than that share of its width.
 const LOW: f64 = 0.2;
 const LEVEL: f64 = 0.25;
@@ -177,10 +180,13 @@ impl<'a> Drawn<'a> {
         if low(outline) > foot + 2.0 * NEAR {
             return false;
         }
-        let points = || self.lines.iter().flat_map(|l| l.iter().step_by(STRIDE));
         let off = |p: &DVec2| nearest_on_ring(outline, *p).1;
-        let out = || points().filter(|p| !contains(outline, **p) && off(p) > NEAR).count();
-        signed_area(outline) > FULL * self.hull && (out() as f64) < LEFT_OUT * points().count() as f64
+        let out = || self.points().filter(|p| !contains(outline, **p) && off(p) > NEAR).count();
+        signed_area(outline) > FULL * self.hull && (out() as f64) < LEFT_OUT * self.points().count() as f64
+    }
+
+    fn points(&self) -> impl Iterator<Item = &DVec2> {
+        self.lines.iter().flat_map(|l| l.iter().step_by(STRIDE))
     }
 
     /// Along which share of an outline between two heights nothing was drawn.
@@ -200,6 +206,39 @@ impl<'a> Drawn<'a> {
             },
         );
         bare / all.max(1.0)
+    }
+}
+
+/// One body for what was read as less than that: the cap of a mushroom without its stem. Only where no line leads out of it.
+pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
+    let parts = reading.leaves.len() + reading.flowers.len() + reading.thorns.len() + reading.pots.len();
+    if parts > 0 || !(1..=MOST_PARTS).contains(&reading.fruits.len()) {
+        return;
+    }
+    let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
+    let drawn = Drawn::new(&lines);
+    let Some(foot) = foot(&lines, FEET[0]) else { return };
+    let all = [&lines[..], &[&foot]].concat();
+    let shut = |ball: &f64| sealed(&all, *ball).filter(|outline| drawn.lies_in(outline));
+    let Some(outline) = BALLS.iter().find_map(shut) else { return };
+    let Some((low, high)) = bounds(&outline) else { return };
+    let within = |p: &DVec2| contains(&outline, *p) || nearest_on_ring(&outline, *p).1 < NEAR;
+    let in_part =
+        |p: &DVec2, f: &FruitReading| contains(&f.outline, *p) || nearest_on_ring(&f.outline, *p).1 < NEAR;
+    let loose = drawn.points().filter(|p| !reading.fruits.iter().any(|f| in_part(p, f))).count();
+    let sides = low.y + AT_FOOT * (high.y - low.y)..high.y + 2.0 * NEAR;
+    if (loose as f64) < LOOSE * drawn.points().count() as f64
+        || drawn.bare(&outline, &sides) > BARE
+        || !reading.axes.iter().flat_map(|a| &a.points).all(within)
+    {
+        return;
+    }
+    reading.axes.clear();
+    reading.fruits.truncate(1);
+    reading.fruits[0].outline = outline;
+    reading.fruits[0].bearer = None;
+    for s in &mut reading.strokes {
+        (s.class, s.organ, s.source) = (StrokeClass::Fruit, OrganWord::Fruit, Source::Rule(READ_AS));
     }
 }
 

@@ -32,6 +32,10 @@ const TUFT_FROM: f64 = 0.8;
 const UPRIGHT: f64 = -0.7;
 /// Which parts of the length its ends are.
 const END: f64 = 0.3;
+/// Where its thinner end is looked at, shares of the length from there: one that runs out to a point is thinner at the first than
+/// so many times at the second, of a cone 0.4 (*geometry*); a stem under a cap keeps its width.
+const TAPER: [[f64; 2]; 2] = [[0.05, 0.15], [0.2, 0.3]];
+const TAPERS: f64 = 0.85;
 
 /// Linear red, green and blue of skins.
 const YELLOW: [f32; 3] = [0.80, 0.55, 0.04];
@@ -43,7 +47,7 @@ const BERRY: [f32; 3] = [0.09, 0.025, 0.14];
 
 /// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of their form, where nobody
 /// drew them in colour. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
-/// of one plant as dark as berries, others red. Of vegetables roots that run to a point are orange, long or bent ones and
+/// of one plant as dark as berries, others red. Of vegetables roots that run out to a point are orange, long or bent ones and
 /// many of one plant green, others tan.
 pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
     let Some((low, high)) = plant.extent() else { return };
@@ -90,6 +94,8 @@ struct Form {
     wide: f64,
     /// Mean half widths of both ends, of that at its stalk first.
     ends: [f64; 2],
+    /// The thinner end is a point rather than a stem.
+    runs_out: bool,
     bent: bool,
 }
 
@@ -112,7 +118,15 @@ impl Form {
             sum / n.max(1.0)
         };
         let wide = 2.0 * profile.iter().map(|p| p.x).fold(0.0, f64::max);
-        Some(Self { tall, wide, ends: [mean(0.0, END), mean(1.0 - END, 1.0)], bent })
+        let ends = [mean(0.0, END), mean(1.0 - END, 1.0)];
+        let [near, far] = TAPER;
+        let taper = |far: f64, near: f64| near < TAPERS * far;
+        let runs_out = if ends[0] < ends[1] {
+            taper(mean(far[0], far[1]), mean(near[0], near[1]))
+        } else {
+            taper(mean(1.0 - far[1], 1.0 - far[0]), mean(1.0 - near[1], 1.0 - near[0]))
+        };
+        Some(Self { tall, wide, ends, runs_out, bent })
     }
 
     /// Thinner away from its stalk, as a strawberry is.
@@ -166,7 +180,11 @@ fn vegetable_skin(form: &Form, many: bool, points_up: bool) -> [f32; 3] {
     let [a, b] = form.ends;
     if many || form.bent {
         GREEN
-    } else if !points_up && form.tall > ROOT_LONG * form.wide && a.min(b) < ROOT_POINT * a.max(b) {
+    } else if !points_up
+        && form.runs_out
+        && form.tall > ROOT_LONG * form.wide
+        && a.min(b) < ROOT_POINT * a.max(b)
+    {
         ORANGE
     } else if form.is_long() {
         GREEN

@@ -179,6 +179,23 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
 }
 
 #[test]
+fn a_cap_and_the_lines_of_its_stem_are_one_body_and_a_stalk_is_none() {
+    let cap: Vec<DVec2> = (0..=40)
+        .map(|i| ops::TAU * f64::from(i) / 40.0 - 1.3)
+        .map(|a| DVec2::new(4.0 * ops::cos(a), 6.0 + 2.0 * ops::sin(a)))
+        .collect();
+    // Foot, one side and the cap in one go; then the other side.
+    let foot = path(&[(-0.9, 0.0), (0.9, 0.0), (0.9, 4.05)]);
+    let r = taken(Kind::Vegetable, &[path(&[(-0.9, 0.1), (-0.8, 4.1)]), [foot, cap.clone()].concat()]);
+    assert_eq!((r.fruits.len(), r.axes.len()), (1, 0), "{:?}", r.strokes);
+    let (lo, hi) = geom::bounds(&r.fruits[0].outline).expect("a body");
+    assert!((hi.y - lo.y) / (hi.x - lo.x) > 0.9, "the stem is of the body: {lo} to {hi}");
+    let r = taken(Kind::Vegetable, &[cap, path(&[(0.0, 8.0), (0.2, 9.6)])]);
+    let (lo, hi) = geom::bounds(&r.fruits[0].outline).expect("a body");
+    assert!((hi.y - lo.y) / (hi.x - lo.x) < 0.6, "the stalk is not: {lo} to {hi}");
+}
+
+#[test]
 fn the_tuft_on_a_fruit_is_leaves() {
     let around = |a: f64, r: f64| DVec2::new(r * ops::cos(a), r * ops::sin(a));
     let body: Vec<DVec2> =
