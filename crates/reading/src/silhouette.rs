@@ -36,6 +36,8 @@ const AT_FOOT: f64 = 0.3;
 /// A body of more parts is no single one, and one beside which less than this share of the lines lies is whole.
 const MOST_PARTS: usize = 2;
 const LOOSE: f64 = 0.1;
+/// A line is of its outline with at least this share of its points.
+const ON_OUTLINE: f64 = 0.6;
 /// A level line below this share of the height is the ground; it rises by less than that share of its width.
 const LOW: f64 = 0.2;
 const LEVEL: f64 = 0.25;
@@ -94,7 +96,7 @@ impl Silhouette {
         base::sort_numbers(&mut half);
         let (foot, top) = (bounds(&below)?.0.y, bounds(&crown)?.1.y);
         // Crown and trunk were drawn all round, but for gaps: between the tips of branches nothing is.
-        let wide = *half.get(half.len() / 2)? > ball;
+        let wide = half.len() > 1 && half[half.len() / 2] > ball;
         let sides = foot + AT_FOOT * (low - foot)..low;
         let whole = wide && drawn.bare(&crown, &(low..top)) < BARE && drawn.bare(&below, &sides) < BARE;
         whole.then(|| Self { ground: Vec::new(), below, trunk, crown })
@@ -235,11 +237,24 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
     }
     reading.axes.clear();
     reading.fruits.truncate(1);
-    reading.fruits[0].outline = outline;
     reading.fruits[0].bearer = None;
-    for s in &mut reading.strokes {
-        (s.class, s.organ, s.source) = (StrokeClass::Fruit, OrganWord::Fruit, Source::Rule(READ_AS));
+    // What runs inside is on its skin.
+    let on_outline = |points: &[DVec2]| {
+        let near = points.iter().filter(|p| nearest_on_ring(&outline, **p).1 < 2.0 * NEAR).count();
+        near as f64 > ON_OUTLINE * points.len() as f64
+    };
+    for stroke in &ink.strokes {
+        let rim = on_outline(&stroke.points);
+        if let Some(s) = reading.strokes.iter_mut().find(|s| s.index == stroke.index) {
+            s.source = Source::Rule(READ_AS);
+            (s.class, s.organ) = if rim {
+                (StrokeClass::Fruit, OrganWord::Fruit)
+            } else {
+                (StrokeClass::Other, OrganWord::Ignored)
+            };
+        }
     }
+    reading.fruits[0].outline = outline;
 }
 
 /// How much of a line runs cover.
