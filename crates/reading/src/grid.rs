@@ -1,6 +1,7 @@
 //! A drawing on a grid of square cells: what is ink, what it encloses, what lies outside.
 
 use glam::DVec2;
+use ink::Ink;
 
 use geom::bounds;
 
@@ -65,8 +66,8 @@ pub(crate) struct GridRow {
 impl Grid {
     /// `along`: cells of the longer side. Linear in points.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a grid has few cells")]
-    pub(crate) fn new(lines: &[&[DVec2]], along: usize) -> Self {
-        let boxes = lines.iter().filter_map(|l| bounds(l));
+    pub(crate) fn new(ink: &Ink, along: usize) -> Self {
+        let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
         let (lo, hi) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
         let size = hi - lo;
         let cell = (size.max_element() / along as f64).max(1e-9);
@@ -83,7 +84,7 @@ impl Grid {
             visits: vec![0; n],
             holes: Vec::new(),
         };
-        for (k, line) in (0_u32..).zip(lines) {
+        for (k, s) in (0_u32..).zip(&ink.strokes) {
             let mut before = usize::MAX;
             let mut mark = |p: DVec2| {
                 let at = grid.at(p);
@@ -95,8 +96,8 @@ impl Grid {
                 let [low, high] = grid.owners[at];
                 grid.owners[at] = if low == NOBODY { [k, k] } else { [low.min(k), high.max(k)] };
             };
-            mark(line[0]);
-            for w in line.windows(2) {
+            mark(s.points[0]);
+            for w in s.points.windows(2) {
                 // Half a cell at a time, however far apart the points are.
                 let steps = ((w[0].distance(w[1]) / (0.5 * cell)).ceil().max(1.0) as usize).min(4 * along);
                 (1..=steps).for_each(|i| mark(w[0].lerp(w[1], i as f64 / steps as f64)));

@@ -67,7 +67,7 @@ pub(crate) const COUNT: usize = {
 
 /// Cells along the longer side: of a fine grid, and of a wide one in which small gaps close.
 const FINE: usize = 44;
-pub(crate) const WIDE: usize = 18;
+const WIDE: usize = 18;
 // Where the numbers are cut. The model learns what each is worth, so how they are cut matters little; all that depends on the
 // cuts is learnt anew when one is changed (`cargo xtask train-kinds`).
 
@@ -167,8 +167,7 @@ fn place(share: f64, n: usize) -> usize {
 /// All numbers, in the order of [`GROUPS`]; zeros of an empty drawing. `all`: its points, and their hull. Linear in points.
 pub(crate) fn look(ink: &Ink, all: (&[DVec2], &[DVec2])) -> Vec<f64> {
     let Some(frame) = Frame::new(ink) else { return vec![0.0; COUNT] };
-    let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
-    let (fine, wide) = (Grid::new(&lines, FINE), Grid::new(&lines, WIDE));
+    let (fine, wide) = (Grid::new(ink, FINE), Grid::new(ink, WIDE));
     let mut row = Vec::with_capacity(COUNT);
     bands(&frame, &fine, &mut row);
     holes(&fine, &wide, &mut row);

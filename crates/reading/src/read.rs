@@ -291,7 +291,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() {
         kind = told_apart(kind, &scores);
     }
-    if kind == Kind::Vegetable && asked.is_free(ink, classes) {
+    if kind == Kind::Vegetable && free {
         silhouette::one_body(ink, &mut reading);
     }
     if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {

@@ -6,7 +6,7 @@
 
 use core::ops::Range;
 
-use geom::{bounds, contains, convex_hull, signed_area};
+use geom::{bounds, contains, convex_hull, resample, signed_area};
 use glam::DVec2;
 use ink::{Ink, Source, StrokeClass};
 use plant::AxisKind;
@@ -18,7 +18,7 @@ use crate::draft::Draft;
 use crate::near::Near;
 use crate::rules::{IN_CROWN, SMALL, share_inside};
 use crate::sealed::sealed;
-use crate::{FruitReading, OrganWord, READ_AS, Reading, RegionKind};
+use crate::{OrganWord, READ_AS, Reading, RegionKind};
 
 /// Balls that find no way in through its gaps, shares of the drawing's diagonal: the first that gives a shape with a neck.
 const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
@@ -27,9 +27,8 @@ const FULL: f64 = 0.5;
 /// Less than this share of what was drawn lies outside, farther than the second number: so far cells lie off the lines.
 const LEFT_OUT: f64 = 0.12;
 const NEAR: f64 = 0.018;
-/// Every so many points of a line are looked at, and so many places at most along one side of an outline.
+/// Every so many points of a line are looked at.
 const STRIDE: usize = 3;
-const LONGEST: u32 = 200;
 /// Along less than this share of the crown, and of the sides of the trunk above that share of its height, nothing was drawn.
 const BARE: f64 = 0.07;
 const AT_FOOT: f64 = 0.3;
@@ -75,9 +74,7 @@ impl Silhouette {
         let lines: Vec<&[DVec2]> = strokes.map(|(s, _)| s.points.as_slice()).collect();
         let drawn = Drawn::new(&lines);
         let found = FEET.iter().find_map(|&share| {
-            let foot = foot(&lines, share)?;
-            let all = [&lines[..], &[&foot]].concat();
-            let shut = |ball: f64| sealed(&all, ball).filter(|outline| drawn.lies_in(outline));
+            let shut = drawn.shut(share)?;
             // What the largest ball comes into, all do.
             let [balls @ .., largest] = BALLS;
             let widest = shut(largest)?;
@@ -90,11 +87,10 @@ impl Silhouette {
     /// An outline cut at its neck, if it is that of a tree with trunk and crown.
     fn cut(drawn: &Drawn<'_>, outline: &[DVec2], ball: f64) -> Option<Self> {
         let (below, crown) = neck(outline, true)?;
-        let low = bounds(&crown)?.0.y;
+        let (foot, low, top) = (bounds(&below)?.0.y, bounds(&crown)?.0.y, bounds(&crown)?.1.y);
         let trunk = limb(outline, low);
         let mut half = trunk.half_width.clone();
         base::sort_numbers(&mut half);
-        let (foot, top) = (bounds(&below)?.0.y, bounds(&crown)?.1.y);
         // Crown and trunk were drawn all round, but for gaps: between the tips of branches nothing is.
         let wide = half.len() > 1 && half[half.len() / 2] > ball;
         let sides = foot + AT_FOOT * (low - foot)..low;
@@ -175,6 +171,15 @@ impl<'a> Drawn<'a> {
         Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
     }
 
+    /// The outline for a ball, with the foot at a share of the height closed, where it holds the drawing.
+    fn shut(&self, share: f64) -> Option<impl Fn(f64) -> Option<Vec<DVec2>>> {
+        let foot = foot(self.lines, share)?;
+        Some(move |ball| {
+            let all = [self.lines, &[&foot]].concat();
+            sealed(&all, ball).filter(|outline| self.lies_in(outline))
+        })
+    }
+
     /// Whether an outline is full, stands where the drawing does, and nearly all that was drawn lies in it.
     fn lies_in(&self, outline: &[DVec2]) -> bool {
         let low = |l: &[DVec2]| bounds(l).map_or(f64::INFINITY, |b| b.0.y);
@@ -182,8 +187,7 @@ impl<'a> Drawn<'a> {
         if low(outline) > foot + 2.0 * NEAR {
             return false;
         }
-        let off = |p: &DVec2| nearest_on_ring(outline, *p).1;
-        let out = || self.points().filter(|p| !contains(outline, **p) && off(p) > NEAR).count();
+        let out = || self.points().filter(|p| !holds(outline, **p)).count();
         signed_area(outline) > FULL * self.hull && (out() as f64) < LEFT_OUT * self.points().count() as f64
     }
 
@@ -193,20 +197,12 @@ impl<'a> Drawn<'a> {
 
     /// Along which share of an outline between two heights nothing was drawn.
     fn bare(&self, outline: &[DVec2], heights: &Range<f64>) -> f64 {
-        let places = outline.windows(2).flat_map(|w| {
-            let steps = (w[0].distance(w[1]) / NEAR).ceil();
-            (0..LONGEST)
-                .map(f64::from)
-                .take_while(move |k| *k < steps)
-                .map(move |k| w[0].lerp(w[1], k / steps))
+        let places = resample(outline, NEAR).into_iter();
+        let places = places.filter(|p| p.y > heights.start + NEAR && p.y < heights.end - NEAR);
+        let (bare, all) = places.fold((0.0, 0.0_f64), |(bare, all), p| {
+            let drawn = self.near.nearest(p, NEAR, |_| true).is_some();
+            (bare + f64::from(u8::from(!drawn)), all + 1.0)
         });
-        let (bare, all) = places.filter(|p| p.y > heights.start + NEAR && p.y < heights.end - NEAR).fold(
-            (0.0, 0.0_f64),
-            |(bare, all), p| {
-                let drawn = self.near.nearest(p, NEAR, |_| true).is_some();
-                (bare + f64::from(u8::from(!drawn)), all + 1.0)
-            },
-        );
         bare / all.max(1.0)
     }
 }
@@ -219,19 +215,14 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
     }
     let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
     let drawn = Drawn::new(&lines);
-    let Some(foot) = foot(&lines, FEET[0]) else { return };
-    let all = [&lines[..], &[&foot]].concat();
-    let shut = |ball: &f64| sealed(&all, *ball).filter(|outline| drawn.lies_in(outline));
-    let Some(outline) = BALLS.iter().find_map(shut) else { return };
-    let Some((low, high)) = bounds(&outline) else { return };
-    let within = |p: &DVec2| contains(&outline, *p) || nearest_on_ring(&outline, *p).1 < NEAR;
-    let in_part =
-        |p: &DVec2, f: &FruitReading| contains(&f.outline, *p) || nearest_on_ring(&f.outline, *p).1 < NEAR;
-    let loose = drawn.points().filter(|p| !reading.fruits.iter().any(|f| in_part(p, f))).count();
+    let outline = drawn.shut(FEET[0]).and_then(|shut| BALLS.into_iter().find_map(shut));
+    let Some((outline, (low, high))) = outline.and_then(|o| bounds(&o).map(|b| (o, b))) else { return };
+    let in_part = |p: &&DVec2| reading.fruits.iter().any(|f| holds(&f.outline, **p));
+    let loose = drawn.points().filter(|p| !in_part(p)).count();
     let sides = low.y + AT_FOOT * (high.y - low.y)..high.y + 2.0 * NEAR;
     if (loose as f64) < LOOSE * drawn.points().count() as f64
         || drawn.bare(&outline, &sides) > BARE
-        || !reading.axes.iter().flat_map(|a| &a.points).all(within)
+        || !reading.axes.iter().flat_map(|a| &a.points).all(|p| holds(&outline, *p))
     {
         return;
     }
@@ -255,6 +246,11 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
         }
     }
     reading.fruits[0].outline = outline;
+}
+
+/// Whether a place lies in an outline, or on it as near as cells tell.
+fn holds(outline: &[DVec2], p: DVec2) -> bool {
+    contains(outline, p) || nearest_on_ring(outline, p).1 <= NEAR
 }
 
 /// How much of a line runs cover.

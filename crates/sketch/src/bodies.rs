@@ -119,13 +119,9 @@ impl Form {
         };
         let wide = 2.0 * profile.iter().map(|p| p.x).fold(0.0, f64::max);
         let ends = [mean(0.0, END), mean(1.0 - END, 1.0)];
-        let [near, far] = TAPER;
-        let taper = |far: f64, near: f64| near < TAPERS * far;
-        let runs_out = if ends[0] < ends[1] {
-            taper(mean(far[0], far[1]), mean(near[0], near[1]))
-        } else {
-            taper(mean(1.0 - far[1], 1.0 - far[0]), mean(1.0 - near[1], 1.0 - near[0]))
-        };
+        let from_thin =
+            |[a, b]: [f64; 2]| if ends[0] < ends[1] { mean(a, b) } else { mean(1.0 - b, 1.0 - a) };
+        let runs_out = from_thin(TAPER[0]) < TAPERS * from_thin(TAPER[1]);
         Some(Self { tall, wide, ends, runs_out, bent })
     }
 
