@@ -189,6 +189,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         called[1],
         things.len()
     ));
+    say(&words(&rows));
     say(&format!("our own drawings: {}\n", own_drawings()?.join(", ")));
     if sheets {
         if pictures {
@@ -202,6 +203,24 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         say("contact sheets: out/read");
     }
     Ok(())
+}
+
+/// Which words are told of drawings by people that show a fruit or a vegetable and are read as that.
+fn words(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
+    let (mut all, mut told, mut right) = (0, 0, 0);
+    for (set, drawings) in rows {
+        let asked = set.trim_start_matches("spg ");
+        let kind = reading::glance::WORDS.iter().find(|w| w.0 == asked).map(|w| w.1);
+        for (_, judged) in
+            drawings.iter().filter(|(_, j)| kind.is_some_and(|k| k.is_like(Kind::Fruit) && k == j.kind))
+        {
+            let word = judged.reading.plants.first().and_then(|p| p.word);
+            all += 1;
+            told += usize::from(word.is_some());
+            right += usize::from(word == Some(asked));
+        }
+    }
+    format!("words: of {all} fruits and vegetables {told} are told by a word, {right} of them rightly\n")
 }
 
 /// What the drawings of `fixtures` are read as.

@@ -70,8 +70,11 @@ const ON_AXIS: f64 = 0.012;
 const MOST_GRASS: usize = 2_000;
 /// Leaves and flowers farther than this from every axis are borne by none.
 const FAR: f64 = 0.25;
+/// A frond begins within this of the top of a trunk, where others do whose beginning alone says that they are fronds.
+const ROUND_TOP: f64 = 0.1;
 
-/// Lines that fan out from the top of a trunk without a crown are the fronds of a palm.
+/// Lines that fan out from the top of a trunk without a crown are the fronds of a palm; of what is known to be one they may begin
+/// farther from it.
 pub(crate) fn fronds(draft: &mut Draft<'_>) {
     let bare = draft.regions.is_empty() && (draft.open_top || !draft.blades.is_empty());
     if draft.bodies.is_empty() || !bare || draft.is_tree() {
@@ -85,11 +88,14 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
             Some((top, WELL_SHORT + draft.forest.half_width(r, f64::INFINITY)))
         })
         .collect();
+    // What is known to be a palm has nothing else up there.
+    let palm = draft.kind == Some(Kind::Palm);
     let from_top = |line: &Line| {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         let near = |p: DVec2| tops.iter().map(|(t, r)| t.distance(p) - r).fold(f64::INFINITY, f64::min);
         let last = near(ends[1]) < near(ends[0]);
-        (near(ends[usize::from(last)]) < 0.0 && polyline_length(&line.points) > WELL_SHORT).then_some(last)
+        let at_top = near(ends[usize::from(last)]) < if palm { ROUND_TOP } else { 0.0 };
+        (at_top && polyline_length(&line.points) > WELL_SHORT).then_some(last)
     };
     let fans: Vec<Option<bool>> = draft.lines.iter().map(from_top).collect();
     if fans.iter().flatten().count() + draft.blades.len() < 2 {

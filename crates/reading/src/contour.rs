@@ -43,22 +43,8 @@ pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
 /// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown. `known`: it is a tree,
 /// so that the neck may be less clear.
 pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
-    let (lo, hi) = bounds(outline)?;
-    let height = hi.y - lo.y;
-    #[expect(clippy::cast_precision_loss, reason = "60 levels")]
-    let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
-    let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
-    let fits = |&(top, narrow): &(usize, f64)| {
-        let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-        trunk_height > TRUNK_TALL * narrow
-            && trunk_height > TRUNK_SHARE * height
-            && crown_height > CROWN_SHARE * height
-    };
-    let clear = clear_neck(&width, if known { NECK_OF_A_TREE } else { NECK }).filter(fits);
-    // A foot that flares looks like a neck, too low for one.
-    let (top, _) = clear.or_else(|| waist(&width).filter(|w| known && fits(w)))?;
+    let y = trunk_top(outline, known)?;
     let cut = |keep_above: bool| {
-        let y = y_of(top);
         let inside = |p: DVec2| (p.y >= y) == keep_above;
         let mut part = Vec::new();
         for (i, &a) in outline.iter().enumerate() {
@@ -75,6 +61,24 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
     let full =
         |crown: &Vec<DVec2>| !known || signed_area(crown) > FULL_CROWN * signed_area(&convex_hull(crown));
     cut(false).zip(cut(true).filter(full))
+}
+
+/// The height at which an outline that is narrow below becomes wide; `known` as in [`neck`].
+pub(crate) fn trunk_top(outline: &[DVec2], known: bool) -> Option<f64> {
+    let (lo, hi) = bounds(outline)?;
+    let height = hi.y - lo.y;
+    #[expect(clippy::cast_precision_loss, reason = "60 levels")]
+    let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
+    let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
+    let fits = |&(top, narrow): &(usize, f64)| {
+        let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
+        trunk_height > TRUNK_TALL * narrow
+            && trunk_height > TRUNK_SHARE * height
+            && crown_height > CROWN_SHARE * height
+    };
+    let clear = clear_neck(&width, if known { NECK_OF_A_TREE } else { NECK }).filter(fits);
+    // A foot that flares looks like a neck, too low for one.
+    clear.or_else(|| waist(&width).filter(|w| known && fits(w))).map(|(top, _)| y_of(top))
 }
 
 /// The level at which an outline becomes clearly wider than its lower part, for good, and how wide that is.

@@ -107,9 +107,9 @@ fn darken(cells: &mut Picture, at: DVec2, share: f64) {
     }
 }
 
-/// How a drawing looks: the share of each of [`Kind::ALL`] among those that [`WORDS`] name. The same from left and right.
-pub(crate) fn glance(ink: &Ink) -> [f64; Kind::ALL.len()] {
-    let mut shares = [0.0; Kind::ALL.len()];
+/// The share of each of [`WORDS`] in how a drawing looks. The same from left and right; zeros where nothing was learnt.
+pub(crate) fn words(ink: &Ink) -> [f64; WORDS.len()] {
+    let mut shares = [0.0; WORDS.len()];
     let Some(sight) = trained() else { return shares };
     let picture = picture(ink);
     let mut mirrored = picture.clone();
@@ -118,10 +118,24 @@ pub(crate) fn glance(ink: &Ink) -> [f64; Kind::ALL.len()] {
     let sums: Vec<f64> = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) + f64::from(*b)) / 2.0).collect();
     let powers = powers(&sums);
     let total: f64 = powers.iter().sum();
-    for ((_, kind), power) in WORDS.iter().zip(powers) {
-        shares[kind.place()] += power / total;
+    shares.iter_mut().zip(powers).for_each(|(share, power)| *share = power / total);
+    shares
+}
+
+/// The share of each of [`Kind::ALL`], of those of its words.
+pub(crate) fn by_kind(words: &[f64; WORDS.len()]) -> [f64; Kind::ALL.len()] {
+    let mut shares = [0.0; Kind::ALL.len()];
+    for ((_, kind), share) in WORDS.iter().zip(words) {
+        shares[kind.place()] += share;
     }
     shares
+}
+
+/// The word for what is known to be of a kind: the likeliest of its words, where that is likelier than all others of it together.
+pub(crate) fn word(kind: Kind, words: &[f64; WORDS.len()]) -> Option<&'static str> {
+    let own = || WORDS.iter().zip(words).filter(|((_, k), _)| *k == kind);
+    let all: f64 = own().map(|(_, share)| share).sum();
+    own().find(|(_, share)| **share > 0.5 * all).map(|((word, _), _)| *word)
 }
 
 fn trained() -> Option<&'static Sight> {
@@ -156,7 +170,8 @@ mod tests {
         assert!(trained().is_some(), "data/glance.csv is of another form: run `cargo xtask train-glance`");
         let bent: Vec<DVec2> = (0..30).map(|k| DVec2::new(f64::from(k * k) / 9.0, f64::from(k))).collect();
         let mirrored = bent.iter().map(|p| DVec2::new(-p.x, p.y)).collect();
-        let (one, other) = (glance(&ink(&[bent])), glance(&ink(&[mirrored])));
+        let seen = |line: Vec<DVec2>| by_kind(&words(&ink(&[line])));
+        let (one, other) = (seen(bent), seen(mirrored));
         assert!((one.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         for kind in Kind::ALL {
             assert_eq!(one[kind.place()] > 0.0, WORDS.iter().any(|w| w.1 == kind), "{kind:?}");
@@ -165,7 +180,18 @@ mod tests {
     }
 
     #[test]
+    fn a_word_is_told_where_it_is_likelier_than_all_others_of_its_kind() {
+        let mut words = [0.0; WORDS.len()];
+        let at = |word: &str| WORDS.iter().position(|w| w.0 == word).expect("a word");
+        (words[at("pear")], words[at("apple")], words[at("carrot")]) = (0.2, 0.1, 0.7);
+        assert_eq!(word(Kind::Fruit, &words), Some("pear"));
+        words[at("banana")] = 0.15;
+        assert_eq!(word(Kind::Fruit, &words), None);
+        assert_eq!(word(Kind::Stem, &words), None);
+    }
+
+    #[test]
     fn nothing_drawn_is_no_fault() {
-        assert!(glance(&Ink::default()).iter().all(|s| s.is_finite()));
+        assert!(words(&Ink::default()).iter().all(|s| s.is_finite()));
     }
 }

@@ -24,6 +24,7 @@
 
 mod aside;
 mod attach;
+mod bare;
 mod blade;
 mod body;
 mod branches;

@@ -52,6 +52,10 @@ const ON_GROUND: f64 = 0.2;
 const NEEDS_TRUNK: f64 = 0.35;
 /// A bush meets the ground with this lowest share of its height.
 const MEETS_GROUND: f64 = 0.25;
+/// A line is of a crown's outline if it begins and ends in the crown, and so much of it runs outside of it or within this of its
+/// outline.
+const OF_IT: f64 = 0.5;
+const RIM: f64 = 0.025;
 /// Shading is a trunk if it is so many times as tall as wide.
 const SHADED: f64 = 1.2;
 /// A thorn is shorter than this share of the body's height.
@@ -233,7 +237,8 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
     let mut strokes = draft.of_class(StrokeClass::Crown);
     let loops = std::mem::take(&mut draft.loops);
     let united = std::mem::take(&mut draft.united);
-    if let Some(outline) = union(draft, &united) {
+    let around = united.iter().filter_map(|&k| crown_outline(&draft.ink.strokes[k].points));
+    if let Some(outline) = union(&around.collect::<Vec<_>>()) {
         strokes.retain(|k| !united.contains(k));
         united.iter().for_each(|&k| draft.organ[k] = OrganWord::LeafContour);
         draft.add_region(outline, RegionKind::Crown, united[0]);
@@ -285,11 +290,37 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
     }
 }
 
+/// Lines that leave a crown and come back, or run along its outline, are of that: no branches.
+pub(crate) fn lobes(draft: &mut Draft<'_>) {
+    let lines = std::mem::take(&mut draft.lines);
+    let mut regions = std::mem::take(&mut draft.regions);
+    for line in lines {
+        let points = &line.points;
+        let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
+        let crown = regions.iter_mut().filter(|r| r.kind == RegionKind::Crown).find(|r| {
+            let ends = [points[0], points[points.len() - 1]];
+            let off = |p: DVec2| nearest_on_ring(&r.outline, p).1;
+            let in_it = |p: DVec2| contains(&r.outline, p);
+            let of_it = points.iter().filter(|p| !in_it(**p) || off(**p) < RIM).count();
+            ends.into_iter().all(|p| in_it(p) || off(p) < RIM) && of_it as f64 > OF_IT * points.len() as f64
+        });
+        let Some((crown, k)) = crown.zip(stroke).filter(|(_, k)| !draft.legs.contains_key(k)) else {
+            draft.lines.push(line);
+            continue;
+        };
+        draft.class[k] = StrokeClass::Crown;
+        draft.organ[k] = OrganWord::LeafContour;
+        let whole = crown_outline(points).and_then(|lobe| union(&[crown.outline.clone(), lobe]));
+        if let Some((outline, bounds)) = whole.and_then(|o| bounds(&o).map(|b| (o, b))) {
+            (crown.outline, crown.bounds) = (outline, bounds);
+        }
+    }
+    draft.regions = regions;
+}
+
 /// The outline around several that overlap, as it is seen from their middle.
-fn union(draft: &Draft<'_>, strokes: &[usize]) -> Option<Vec<DVec2>> {
+fn union(rings: &[Vec<DVec2>]) -> Option<Vec<DVec2>> {
     const RAYS: u32 = 180;
-    let rings: Vec<Vec<DVec2>> =
-        strokes.iter().filter_map(|&k| crown_outline(&draft.ink.strokes[k].points)).collect();
     let centre = centroid(&convex_hull(&rings.concat()));
     if rings.len() < 2 {
         return None;

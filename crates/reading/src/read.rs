@@ -6,6 +6,7 @@ use base::Report;
 use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
+use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::silhouette::Silhouette;
@@ -112,22 +113,23 @@ struct First {
     reading: Reading,
     said: Report,
     shares: kinds::Shares,
+    /// What it looks like at a glance.
+    words: [f64; glance::WORDS.len()],
 }
 
 impl First {
     fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
         let reading = attempt(asked, None, ink, classes, &mut said);
-        let shares = if ink.strokes.len() > MOST_JUDGED {
+        if ink.strokes.len() > MOST_JUDGED {
             // As it was read, and as nothing else.
-            kinds::Shares {
-                kinds: vec![Scored { kind: Kind::of(&reading), score: 1.0 }],
-                ..kinds::Shares::default()
-            }
-        } else {
-            kinds::shares(&kinds::kind_features(ink, classes, &reading), &glance::glance(ink))
-        };
-        Self { reading, said, shares }
+            let kinds = vec![Scored { kind: Kind::of(&reading), score: 1.0 }];
+            let shares = kinds::Shares { kinds, ..kinds::Shares::default() };
+            return Self { reading, said, shares, words: [0.0; glance::WORDS.len()] };
+        }
+        let words = glance::words(ink);
+        let shares = kinds::shares(&kinds::kind_features(ink, classes, &reading), &glance::by_kind(&words));
+        Self { reading, said, shares, words }
     }
 
     /// Whether what lies apart is one plant all the same, because one kind explains all of it: berries, a pod with its
@@ -207,7 +209,7 @@ const POOR_CROWN: f64 = 0.25;
 const MORE_CROWN: f64 = 2.0;
 /// A tree is read by its silhouette where what was read of its strokes covers less of trunk or crown than this: of trees by hand
 /// whose trunks or crowns came apart nearly all cover less, of whole ones few (*drawings*).
-const FITS: f64 = 0.75;
+const FITS: f64 = 0.8;
 /// A tree with so many leaves or flowers was drawn leaf by leaf.
 const LEAFY: usize = 8;
 /// A palm has at least so many fronds where the whole is known to be one.
@@ -217,7 +219,7 @@ const TOLD: usize = 3;
 
 /// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
 fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
-    let First { mut reading, mut said, shares } = first;
+    let First { mut reading, mut said, shares, words } = first;
     let mut kind = Kind::of(&reading);
     // What it is taken for beyond what its strokes say.
     let mut taken = None;
@@ -228,10 +230,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     };
     // Petals round a middle were no chance either.
     let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
-    // Roots under the ground are those of what stands on it; the model learnt from no drawing that has any. Without a ground
-    // they are lines that lead down, of which each kind makes something else.
-    let rooted = reading.axes.iter().any(|a| a.kind == AxisKind::Root)
-        && reading.strokes.iter().any(|s| s.class == StrokeClass::Ground);
+    // The model learnt from no drawing that has roots.
+    let rooted = is_rooted(&reading);
     let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
         let own = group(&scores, s.kind);
@@ -243,6 +243,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let poor_tree = bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN;
     let half = free
         && (built.is_like(Kind::Tree) && poor_tree
+            || built == Kind::Palm && bare_lines(&reading) > 0
             || built.is_like(Kind::Fruit) && !reading.flowers.is_empty());
     let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
     let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
@@ -254,6 +255,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         // Only what can be built of the drawing explains it.
         let better = !other.kind.is_like(built)
             || other.kind.is_like(Kind::Fruit)
+            || built == Kind::Palm && is_whole_palm(&reading, &tried)
             || is_whole_tree(ink, &reading, &tried);
         if better && is_built(other.kind, &tried) {
             (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
@@ -301,7 +303,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-    reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
+    let word = glance::word(kind, &words);
+    reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, word, readings }];
     reading
 }
 
@@ -321,6 +324,13 @@ fn is_built(kind: Kind, reading: &Reading) -> bool {
         _ => false,
     };
     kind.is_like(Kind::of(reading)) || (no_flower && needed)
+}
+
+/// Whether what was read has roots under a ground: they are those of what stands on it. Without a ground they are lines that lead
+/// down, of which each kind makes something else.
+fn is_rooted(reading: &Reading) -> bool {
+    reading.axes.iter().any(|a| a.kind == AxisKind::Root)
+        && reading.strokes.iter().any(|s| s.class == StrokeClass::Ground)
 }
 
 /// Whether a tree has a leaf or petal of the size of a crown, or of a trunk.
@@ -345,6 +355,16 @@ fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
         share > POOR_CROWN && share > MORE_CROWN * crown_share(ink, first)
     };
     !bears_a_crown_as_blade(again) && (bears_a_crown_as_blade(first) || more())
+}
+
+/// Lines of a reading that are wood without an outline.
+fn bare_lines(reading: &Reading) -> usize {
+    reading.axes.iter().filter(|a| a.half_width.is_empty()).count()
+}
+
+/// Whether a palm that was read again is more of one: fewer of its fronds are bare wood, and none are gone.
+fn is_whole_palm(first: &Reading, again: &Reading) -> bool {
+    bare_lines(again) < bare_lines(first) && again.leaves.len() >= first.leaves.len()
 }
 
 /// Cacti, fruits and vegetables have no wood, however much they branch.
@@ -403,20 +423,27 @@ fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -
     (reading, report)
 }
 
-/// A tree by its silhouette, where what was read of its strokes does not cover that.
+/// A tree by its silhouette, where what was read of its strokes does not cover that. One drawn leaf by leaf
+/// would lose its leaves.
 fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: &Reading) -> Option<Reading> {
     let organs = reading.leaves.len() + reading.flowers.len();
     if organs >= LEAFY {
         return None;
     }
-    let silhouette = Silhouette::of(ink).filter(|s| s.fit(reading) < FITS)?;
     let mut draft = Draft::new(ink, classes, asked.kept);
     draft.kind = Some(Kind::Tree);
-    silhouette.read(&mut draft);
+    if let Some(silhouette) = Silhouette::of(ink, reading) {
+        (silhouette.fit(reading) < FITS).then(|| silhouette.read(&mut draft))?;
+    } else {
+        let bare = reading.regions.is_empty().then(|| BareWood::of(ink, reading)).flatten()?;
+        (bare.fit(reading) < FITS).then(|| bare.read(&mut draft))?;
+    }
+    outlines::lobes(&mut draft);
     let mut fruits = draft.fruits(&[]);
     let hints = draft.hints(&[]);
     let lines = std::mem::take(&mut draft.lines);
     draft.forest.grow(lines, &hints);
+    attach::roots(&mut draft);
     let bearers = outlines::bear_regions(&mut draft);
     attach::fruits(&mut draft, &mut fruits);
     Some(draft.finish(bearers, vec![], vec![], fruits, vec![]))
@@ -464,6 +491,7 @@ fn attempt(
     let bearers = flowers::Bearers::new(&draft);
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
     attach::stamens(&mut draft, &mut flowers, &roots, &mut veins);
+    outlines::lobes(&mut draft);
     let mut fruits = draft.fruits(&nuts);
     let hints = draft.hints(&flowers.iter().map(|f| f.centre).collect::<Vec<_>>());
     let lines = std::mem::take(&mut draft.lines);

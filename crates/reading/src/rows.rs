@@ -246,6 +246,9 @@ pub struct PlantReading {
     pub height: f64,
     /// What it was read as.
     pub kind: Kind,
+    /// Which of its kind it looks like at a glance, by one of [`WORDS`](crate::glance::WORDS), such as a pear; `None` where no word is
+    /// likelier than all others of that kind together. 124 of 142 that were told of new drawings are right (`docs/strokes.md`).
+    pub word: Option<&'static str>,
     /// What it may be, at most three: what it was read as first, then the others, the best first.
     pub readings: Vec<Scored>,
 }

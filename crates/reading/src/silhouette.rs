@@ -17,16 +17,16 @@ use crate::contour::{neck, runs_at};
 use crate::draft::Draft;
 use crate::near::Near;
 use crate::rules::{IN_CROWN, SMALL, share_inside};
-use crate::sealed::sealed;
+use crate::sealed::Sealed;
 use crate::{OrganWord, READ_AS, Reading, RegionKind};
 
 /// Balls that find no way in through its gaps, shares of the drawing's diagonal: the first that gives a shape with a neck.
-const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
+pub(crate) const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
 /// The shape fills more than this share of its hull; bare branches fill less.
 const FULL: f64 = 0.5;
 /// Less than this share of what was drawn lies outside, farther than the second number: so far cells lie off the lines.
 const LEFT_OUT: f64 = 0.12;
-const NEAR: f64 = 0.018;
+pub(crate) const NEAR: f64 = 0.018;
 /// Every so many points of a line are looked at.
 const STRIDE: usize = 3;
 /// Along less than this share of the crown, and of the sides of the trunk above that share of its height, nothing was drawn.
@@ -45,7 +45,7 @@ const MARK: f64 = 0.06;
 /// Points along a trunk, and levels at which it, or a crown, is compared.
 const LEVELS: u32 = 16;
 /// What lies in this lowest share of the height is at the foot: without its roots, and with them.
-const FEET: [f64; 2] = [0.08, 0.15];
+pub(crate) const FEET: [f64; 2] = [0.08, 0.15];
 /// This lowest share of a trunk is as wide as it is there.
 const RAGGED: f64 = 0.16;
 /// How often each level of a trunk is brought towards those beside it.
@@ -58,6 +58,7 @@ const STANDS: f64 = 0.2;
 pub(crate) struct Silhouette {
     /// Which strokes are the line of the ground.
     ground: Vec<bool>,
+    roots: Vec<bool>,
     /// What is below the neck.
     below: Vec<DVec2>,
     trunk: Limb,
@@ -65,13 +66,9 @@ pub(crate) struct Silhouette {
 }
 
 impl Silhouette {
-    pub(crate) fn of(ink: &Ink) -> Option<Self> {
-        let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
-        let (low, high) = boxes.reduce(around)?;
-        let ground: Vec<bool> = (0..ink.strokes.len()).map(|k| is_ground(ink, k, (low, high))).collect();
-        let large = |points: &[DVec2]| bounds(points).is_some_and(|(lo, hi)| lo.distance(hi) > MARK);
-        let strokes = ink.strokes.iter().zip(&ground).filter(|(s, ground)| !**ground && large(&s.points));
-        let lines: Vec<&[DVec2]> = strokes.map(|(s, _)| s.points.as_slice()).collect();
+    /// Of a drawing whose ground and roots are known from a reading.
+    pub(crate) fn of(ink: &Ink, reading: &Reading) -> Option<Self> {
+        let Shaping { ground, roots, lines } = Shaping::of(ink, reading)?;
         let drawn = Drawn::new(&lines);
         let found = FEET.iter().find_map(|&share| {
             let shut = drawn.shut(share)?;
@@ -81,7 +78,7 @@ impl Silhouette {
             let narrower = balls.into_iter().find_map(|ball| Self::cut(&drawn, &shut(ball)?, ball));
             narrower.or_else(|| Self::cut(&drawn, &widest, largest))
         });
-        found.map(|found| Self { ground, ..found })
+        found.map(|found| Self { ground, roots, ..found })
     }
 
     /// An outline cut at its neck, if it is that of a tree with trunk and crown.
@@ -95,31 +92,16 @@ impl Silhouette {
         let wide = half.len() > 1 && half[half.len() / 2] > ball;
         let sides = foot + AT_FOOT * (low - foot)..low;
         let whole = wide && drawn.bare(&crown, &(low..top)) < BARE && drawn.bare(&below, &sides) < BARE;
-        whole.then(|| Self { ground: Vec::new(), below, trunk, crown })
+        whole.then(|| Self { ground: Vec::new(), roots: Vec::new(), below, trunk, crown })
     }
 
     /// How much of what the silhouette or a reading covers both do, 0 to 1: of the trunk or of the crown, whichever is less.
     pub(crate) fn fit(&self, reading: &Reading) -> f64 {
-        let wood = reading.axes.iter().filter(|a| a.kind != AxisKind::Root && !a.half_width.is_empty());
-        let wood = wood.map(|a| ribbon(&a.points, &a.half_width));
-        let made: Vec<Vec<DVec2>> = wood.chain(reading.regions.iter().map(|r| r.outline.clone())).collect();
+        let made = made(reading);
         let drawn = [self.below.clone(), self.crown.clone()];
         let Some((low, high)) = bounds(&drawn.concat()) else { return 1.0 };
         let neck = bounds(&self.crown).map_or(low.y, |b| b.0.y);
-        let share = |from: f64, to: f64| {
-            let (mut met, mut any) = (0.0, 0.0);
-            for k in 0..LEVELS {
-                let y = from + (to - from) * (f64::from(k) + 0.5) / f64::from(LEVELS);
-                let runs =
-                    |shapes: &[Vec<DVec2>]| shapes.iter().flat_map(|s| runs_at(s, y)).collect::<Vec<_>>();
-                let (own, other) = (runs(&drawn), runs(&made));
-                let both = covered([own.clone(), other.clone()].concat());
-                met += covered(own) + covered(other) - both;
-                any += both;
-            }
-            met / any.max(f64::MIN_POSITIVE)
-        };
-        share(low.y, neck).min(share(neck, high.y))
+        common(&drawn, &made, low.y..neck).min(common(&drawn, &made, neck..high.y))
     }
 
     /// Gives every stroke the class that it has in the silhouette, and reads that. Lines and fruits in the crown stay what they
@@ -136,6 +118,10 @@ impl Silhouette {
             let wood = bounds(points).is_some_and(|(lo, hi)| lo.midpoint(hi).y < foot);
             (draft.class[k], draft.organ[k]) = match draft.class[k] {
                 _ if ground => (Ground, OrganWord::Ignored),
+                _ if self.roots[k] => {
+                    draft.line_of(k, OrganWord::Root);
+                    (Axis, OrganWord::Root)
+                }
                 Axis if !wood && inside() => {
                     draft.line_of(k, OrganWord::Branch);
                     continue;
@@ -145,7 +131,7 @@ impl Silhouette {
                 _ => (Crown, OrganWord::LeafContour),
             };
             (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
-            if !ground {
+            if !ground && !self.roots[k] {
                 first[usize::from(wood)].get_or_insert(k);
             }
         }
@@ -157,15 +143,68 @@ impl Silhouette {
     }
 }
 
+/// What of a drawing shapes a tree.
+pub(crate) struct Shaping<'a> {
+    /// Which strokes are the line of the ground.
+    pub(crate) ground: Vec<bool>,
+    /// Which are roots under it.
+    pub(crate) roots: Vec<bool>,
+    /// All others, but for marks.
+    pub(crate) lines: Vec<&'a [DVec2]>,
+}
+
+impl<'a> Shaping<'a> {
+    pub(crate) fn of(ink: &'a Ink, reading: &Reading) -> Option<Self> {
+        let is = |class: StrokeClass, stroke: u32| {
+            reading.strokes.iter().any(|s| s.index == stroke && s.class == class)
+        };
+        let rooted = ink.strokes.iter().any(|s| is(StrokeClass::Ground, s.index));
+        let is_root = |stroke: u32| {
+            rooted && reading.axes.iter().any(|a| a.kind == AxisKind::Root && a.source == Some(stroke))
+        };
+        let roots: Vec<bool> = ink.strokes.iter().map(|s| is_root(s.index)).collect();
+        let above = ink.strokes.iter().zip(&roots).filter(|(_, root)| !**root);
+        let (low, high) = above.filter_map(|(s, _)| bounds(&s.points)).reduce(around)?;
+        let ground = ink.strokes.iter().enumerate();
+        let ground = ground.map(|(k, s)| is(StrokeClass::Ground, s.index) || is_ground(ink, k, (low, high)));
+        let ground: Vec<bool> = ground.collect();
+        let large = |points: &[DVec2]| bounds(points).is_some_and(|(lo, hi)| lo.distance(hi) > MARK);
+        let shapes = |k: &usize| !ground[*k] && !roots[*k] && large(&ink.strokes[*k].points);
+        let lines = (0..ink.strokes.len()).filter(shapes).map(|k| ink.strokes[k].points.as_slice());
+        Some(Self { lines: lines.collect(), ground, roots })
+    }
+}
+
+/// What a reading covers: its wood and its crowns.
+pub(crate) fn made(reading: &Reading) -> Vec<Vec<DVec2>> {
+    let wood = reading.axes.iter().filter(|a| a.kind != AxisKind::Root && !a.half_width.is_empty());
+    let wood = wood.map(|a| ribbon(&a.points, &a.half_width));
+    wood.chain(reading.regions.iter().map(|r| r.outline.clone())).collect()
+}
+
+/// Of what some shapes or others cover between two heights, how much both do: 0 to 1.
+pub(crate) fn common(some: &[Vec<DVec2>], others: &[Vec<DVec2>], heights: Range<f64>) -> f64 {
+    let (mut met, mut any) = (0.0, 0.0);
+    for k in 0..LEVELS {
+        let y = heights.start + (heights.end - heights.start) * (f64::from(k) + 0.5) / f64::from(LEVELS);
+        let runs = |shapes: &[Vec<DVec2>]| shapes.iter().flat_map(|s| runs_at(s, y)).collect::<Vec<_>>();
+        let (own, other) = (runs(some), runs(others));
+        let both = covered([own.clone(), other.clone()].concat());
+        met += covered(own) + covered(other) - both;
+        any += both;
+    }
+    met / any.max(f64::MIN_POSITIVE)
+}
+
 /// The lines of a drawing that shape it.
-struct Drawn<'a> {
+pub(crate) struct Drawn<'a> {
     lines: &'a [&'a [DVec2]],
     near: Near,
     hull: f64,
 }
 
 impl<'a> Drawn<'a> {
-    fn new(lines: &'a [&'a [DVec2]]) -> Self {
+    pub(crate) fn new(lines: &'a [&'a [DVec2]]) -> Self {
         let mut near = Near::new(NEAR);
         lines.iter().enumerate().for_each(|(k, l)| near.add_line(k, l));
         Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
@@ -176,7 +215,7 @@ impl<'a> Drawn<'a> {
         let foot = foot(self.lines, share)?;
         Some(move |ball| {
             let all = [self.lines, &[&foot]].concat();
-            sealed(&all, ball).filter(|outline| self.lies_in(outline))
+            Sealed::new(&all, ball)?.outline().filter(|outline| self.lies_in(outline))
         })
     }
 
@@ -196,7 +235,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// Along which share of an outline between two heights nothing was drawn.
-    fn bare(&self, outline: &[DVec2], heights: &Range<f64>) -> f64 {
+    pub(crate) fn bare(&self, outline: &[DVec2], heights: &Range<f64>) -> f64 {
         let places = resample(outline, NEAR).into_iter();
         let places = places.filter(|p| p.y > heights.start + NEAR && p.y < heights.end - NEAR);
         let (bare, all) = places.fold((0.0, 0.0_f64), |(bare, all), p| {
@@ -249,7 +288,7 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
 }
 
 /// Whether a place lies in an outline, or on it as near as cells tell.
-fn holds(outline: &[DVec2], p: DVec2) -> bool {
+pub(crate) fn holds(outline: &[DVec2], p: DVec2) -> bool {
     contains(outline, p) || nearest_on_ring(outline, p).1 <= NEAR
 }
 
@@ -265,18 +304,18 @@ fn covered(mut runs: Vec<(f64, f64)>) -> f64 {
     runs.into_iter().map(own).sum()
 }
 
-/// A line along the foot of a drawing, from the leftmost to the rightmost of what ends there: a trunk is open below.
-fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
+/// A line along the foot of a drawing, from its lower left to its lower right corner: a trunk is open below.
+pub(crate) fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
     let (low, high) = lines.iter().filter_map(|l| bounds(l)).reduce(around)?;
     let feet = || lines.iter().copied().flatten().filter(|p| p.y < low.y + share * (high.y - low.y));
-    let left = feet().min_by(|a, b| a.x.total_cmp(&b.x))?;
-    let right = feet().max_by(|a, b| a.x.total_cmp(&b.x))?;
+    let left = feet().min_by(|a, b| (a.x + a.y).total_cmp(&(b.x + b.y)))?;
+    let right = feet().max_by(|a, b| (a.x - a.y).total_cmp(&(b.x - b.y)))?;
     Some([*left, *right])
 }
 
 /// The trunk of an outline from its foot to the neck at `top`: all that stands on the ground, and at each level above what
 /// hangs together with the level below. So two sides are one trunk, and lobes of the crown that hang beside it no part of it.
-fn limb(outline: &[DVec2], top: f64) -> Limb {
+pub(crate) fn limb(outline: &[DVec2], top: f64) -> Limb {
     let low = bounds(outline).map_or(0.0, |b| b.0.y);
     let mut limb = Limb { points: Vec::new(), half_width: Vec::new(), parent: None, closed_end: false };
     let mut below = (f64::NEG_INFINITY, f64::INFINITY);

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use geom::{bounds, polyline_length, polyline_length3};
+use geom::{bounds, polyline_length, polyline_length3, signed_area};
 use glam::DVec2;
 use plant::{OrganKind, Paint, Plant, Shape};
 use reading::{Kind, PlantReading, Reading};
@@ -44,9 +44,14 @@ const GREEN: [f32; 3] = [0.14, 0.31, 0.05];
 const TAN: [f32; 3] = [0.52, 0.34, 0.16];
 const PEAR: [f32; 3] = [0.50, 0.52, 0.07];
 const BERRY: [f32; 3] = [0.09, 0.025, 0.14];
+const BLUE: [f32; 3] = [0.05, 0.07, 0.22];
+const CREAM: [f32; 3] = [0.62, 0.48, 0.33];
+/// The outline of a whole melon fills at least this share of a circle as long as it (4 pi A / P^2); of half a disc that is 0.75
+/// (*geometry*), and a slice shows its flesh.
+const WHOLE: f64 = 0.9;
 
 /// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of their form, where nobody
-/// drew them in colour. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
+/// drew them in colour: that of what they look like, or else of their form. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
 /// of one plant as dark as berries, others red. Of vegetables roots that run out to a point are orange, long or bent ones and
 /// many of one plant green, others tan.
 pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
@@ -76,10 +81,15 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             continue;
         }
         let points_up = organ.frame.along.y < UPRIGHT && form.ends[0] < form.ends[1];
-        let skin = if kind == Kind::Fruit {
-            fruit_skin(&form, many)
-        } else {
-            Some(vegetable_skin(&form, many, points_up))
+        let by_form = || match kind {
+            Kind::Fruit => fruit_skin(&form, many),
+            _ => Some(vegetable_skin(&form, many, points_up)),
+        };
+        let skin = match of.and_then(|k| reading.plants[k].word) {
+            // Red, as a slice of a melon is.
+            Some("apple" | "strawberry") => None,
+            Some("watermelon") if !is_whole(reading, organ.source) => None,
+            word => word.and_then(skin_of).or_else(by_form),
         };
         if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin) {
             organ.paint = Paint::Tinted([0, 1, 2].map(|k| varied[k] * skin[k]));
@@ -154,6 +164,30 @@ fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
     let lines = reading.axes.iter().filter(|a| on_top(&a.points)).count();
     let wide = high.x - low.x;
     wide < TUFT_WIDE * tall && (blades >= TUFT || lines >= TUFT || blades + lines > TUFT)
+}
+
+/// Whether a body is drawn whole rather than in slices.
+fn is_whole(reading: &Reading, source: Option<u32>) -> bool {
+    let body = reading.fruits.iter().find(|f| f.source == source && source.is_some());
+    body.is_some_and(|f| {
+        let around = polyline_length(&f.outline) + f.outline[0].distance(f.outline[f.outline.len() - 1]);
+        4.0 * core::f64::consts::PI * signed_area(&f.outline).abs() > WHOLE * around * around
+    })
+}
+
+/// The colour of what goes by a word that says one.
+fn skin_of(word: &str) -> Option<[f32; 3]> {
+    match word {
+        "watermelon" | "broccoli" | "asparagus" | "peas" | "string bean" => Some(GREEN),
+        "banana" => Some(YELLOW),
+        "pear" => Some(PEAR),
+        "blackberry" | "grapes" => Some(BERRY),
+        "blueberry" => Some(BLUE),
+        "carrot" => Some(ORANGE),
+        "mushroom" => Some(CREAM),
+        "onion" | "potato" => Some(TAN),
+        _ => None,
+    }
 }
 
 /// The usual colour of a fruit by its form; `None`: red.

@@ -13,7 +13,7 @@ use tools::{blade, made, v};
 fn whole(kind: Kind, half_width: impl Fn(f64) -> f64, color: Option<[u8; 3]>) -> Reading {
     let side = |k: u32, s: f64| v(0.5 + s * half_width(f64::from(k) / 20.0), f64::from(k) / 20.0);
     let outline = (0..=20).map(|k| side(k, 1.0)).chain((1..20).rev().map(|k| side(k, -1.0))).collect();
-    let plant = PlantReading { strokes: vec![0], height: 1.0, kind, readings: vec![] };
+    let plant = PlantReading { strokes: vec![0], height: 1.0, kind, ..PlantReading::default() };
     Reading {
         fruits: vec![FruitReading { outline, bearer: None, source: Some(0), color }],
         plants: vec![plant],

@@ -73,9 +73,10 @@ fn inside(r: &mut Stream, lines: &mut Lines, centre: DVec2, size: DVec2) {
 }
 
 pub(super) fn one_line_tree(r: &mut Stream) -> Lines {
-    let half = r.range(0.05, 0.14);
+    let half = r.range(0.05, 0.2);
     let top = r.range(0.3, 0.55);
-    let size = v(r.range(0.25, 0.45), 0.5 * (1.0 - top) * 1.05);
+    // Its crown is wider than its trunk.
+    let size = v(r.range(0.25_f64.max(1.5 * half), 0.7), 0.5 * (1.0 - top) * 1.05);
     let centre = v(0.0, top + 0.9 * size.y);
     let open = ops::atan2(half, size.y);
     let bumps = if r.chance(0.15) { 0 } else { 5 + r.below(8) };

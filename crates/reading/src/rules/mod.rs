@@ -186,6 +186,7 @@ pub const RULES: &[Rule] = &[
         pots::ground_over_roots,
         "A long level line on which a plant stands, with nothing but lines below, is the ground over its roots.",
     ),
+    rule("hill", SOME, pots::hill, "A wide arc over which everything else stands is a hill."),
     rule(
         "stems-of-leaves",
         MANY,

@@ -4,7 +4,7 @@ use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{InkStroke, StrokeClass};
 
-use super::{Findings, any, openness, unsure, upright};
+use super::{Findings, any, ends, free, openness, unsure, upright};
 use crate::contour::width_at;
 use crate::draft::Draft;
 use crate::thresholds::{SAME_PLACE, WELL_SHORT};
@@ -37,6 +37,11 @@ const FLAT: f64 = 0.08;
 /// A taproot is below less than this share as wide as above; a pot is wider.
 const POINTED: f64 = 0.4;
 const RISES: f64 = 4.0;
+/// The ends of an arc are farther apart than this share of its length; a hill is lower than that share of its width,
+/// and both its ends lie in that lowest share of its height.
+const OPEN_ARC: f64 = 0.7;
+const HILLY: f64 = 0.5;
+const ENDS_LOW: f64 = 0.25;
 
 /// A box at the bottom with a flat top on which the plant stands is its pot.
 pub(super) fn pots(draft: &Draft<'_>) -> Findings {
@@ -137,6 +142,43 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
         if lines && (stands || taproot) && hangs {
             found.settle(k, StrokeClass::Ground);
             below.into_iter().filter(|&j| line(j)).for_each(|j| found.settle(j, StrokeClass::Axis));
+            break;
+        }
+    }
+    found
+}
+
+/// A wide arc over which everything else stands is a hill.
+pub(super) fn hill(draft: &Draft<'_>) -> Findings {
+    let mut found = Findings::default();
+    let strokes = &draft.ink.strokes;
+    if draft.class.contains(&StrokeClass::Ground) {
+        return found;
+    }
+    for (k, stroke) in strokes.iter().enumerate().filter(|(k, _)| free(draft, *k)) {
+        let Some((lo, hi)) = bounds(&stroke.points) else { continue };
+        let (a, b) = ends(&stroke.points);
+        let tall = hi.y - lo.y;
+        // Its ends are its lowest places, and it is wide.
+        let arc = openness(stroke) > OPEN_ARC
+            && tall > FLAT * (hi.x - lo.x)
+            && tall < HILLY * (hi.x - lo.x)
+            && a.y.max(b.y) < lo.y + ENDS_LOW * tall;
+        if !arc {
+            continue;
+        }
+        let others = || strokes.iter().enumerate().filter(move |(j, _)| *j != k).map(|(_, s)| &s.points);
+        let reach = others().filter_map(|p| bounds(p)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let Some((low, high)) = reach else { continue };
+        let top = |x: f64| {
+            let over = stroke.points.windows(2).filter(|w| (w[0].x > x) != (w[1].x > x));
+            over.map(|w| w[0].y.max(w[1].y)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let above = others().flatten().all(|p| p.y > top(p.x) - NEAR);
+        let stands = others().flatten().any(|p| p.y < top(p.x) + NEAR);
+        let wide = lo.x < low.x + NEAR && hi.x > high.x - NEAR && high.y > hi.y + tall;
+        if above && stands && wide {
+            found.settle(k, StrokeClass::Ground);
             break;
         }
     }

@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use geom::signed_area;
 
 use super::*;
+use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::silhouette::Silhouette;
 
@@ -145,7 +146,7 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &[], &kept);
-    let silhouette = || Silhouette::of(&ink).expect("a tree");
+    let silhouette = || Silhouette::of(&ink, &Reading::default()).expect("a tree");
     assert!(silhouette().fit(&Reading::default()) < 0.01, "nothing covers nothing");
     let fit = silhouette().fit(&taken(Kind::Tree, &lines));
     assert!(fit > 0.75, "what was read of it covers {fit}");
@@ -165,7 +166,7 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
         .chain([path(&[(0.0, -5.0), (0.0, 0.0)])])
         .collect();
     let ink = clean(&Drawing::from_polylines("bare", &bare), &mut Report::default());
-    assert!(Silhouette::of(&ink).is_none());
+    assert!(Silhouette::of(&ink, &Reading::default()).is_none());
     // Nor has a crown on a single line, whose branches enclose something between them.
     let crown: Vec<DVec2> = (0..=60).map(|i| at((0.0, 8.0), 3.0, ops::TAU * f64::from(i) / 60.0)).collect();
     let single = [
@@ -175,7 +176,7 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
         path(&[(0.0, 2.8), (1.6, 3.8), (2.0, 6.0)]),
     ];
     let ink = clean(&Drawing::from_polylines("single", &single), &mut Report::default());
-    assert!(Silhouette::of(&ink).is_none());
+    assert!(Silhouette::of(&ink, &Reading::default()).is_none());
 }
 
 #[test]
@@ -325,4 +326,111 @@ fn a_short_trunk_with_an_outline_makes_a_tree_and_a_short_line_a_bush() {
     let sides = path(&[(-0.6, 1.8), (-0.7, 0.0), (0.7, 0.0), (0.6, 1.8)]);
     assert_eq!(Kind::of(&reading(&[(Crown, crown.clone()), (TrunkOutline, sides)]).0), Kind::Tree);
     assert_eq!(Kind::of(&reading(&[(Crown, crown), (Axis, line((0.0, 1.8), (0.0, 0.0)))]).0), Kind::Bush);
+}
+
+#[test]
+fn the_sides_of_a_bare_trunk_run_on_into_limbs() {
+    // A line for each limb, between the two that the sides become.
+    let left = path(&[(-1.0, 0.0), (-0.6, 1.5), (-0.6, 4.0), (-3.4, 7.6)]);
+    let right = left.iter().map(|p| DVec2::new(-p.x, p.y)).collect();
+    let limbs = [
+        line((-0.4, 4.4), (-2.0, 8.4)),
+        line((-0.1, 4.6), (-0.4, 8.6)),
+        line((0.2, 4.6), (0.8, 8.5)),
+        line((0.5, 4.4), (2.2, 8.2)),
+        line((-2.0, 5.8), (-3.8, 5.9)),
+        line((2.0, 5.8), (3.9, 5.8)),
+    ];
+    let lines = [vec![left, right], limbs.to_vec()].concat();
+    let ink = clean(&Drawing::from_polylines("bare", &lines), &mut Report::default());
+    let kept = RefCell::default();
+    let mut draft = Draft::new(&ink, &[], &kept);
+    let wood = BareWood::of(&ink, &Reading::default()).expect("a trunk");
+    assert!(wood.fit(&Reading::default()) < 0.01, "nothing covers nothing");
+    wood.read(&mut draft);
+    let (scale, trunk) = (ink.map.scale, &draft.forest.axes[draft.bodies[0]]);
+    let (foot, points) = (trunk.points[0].y, &trunk.points);
+    let at = |y: f64| points.iter().position(|p| p.y - foot > y * scale).expect("so high");
+    let half = trunk.half_width[at(3.0)] / scale;
+    assert!((half - 0.6).abs() < 0.15, "{half}");
+    let top = (points[points.len() - 1].y - foot) / scale;
+    assert!(top > 3.5 && top < 6.5, "it ends where the limbs part: {top}");
+    assert_eq!(draft.lines.len(), 8, "both sides go on, and six lines");
+}
+
+#[test]
+fn a_wide_arc_under_everything_is_a_hill_and_the_foot_of_a_trunk_is_none() {
+    let arc = |wide: f64, tall: f64| -> Vec<DVec2> {
+        let at = |k: i32| ops::PI * f64::from(k) / 40.0;
+        (0..=40).map(|k| DVec2::new(-wide * ops::cos(at(k)), tall * ops::sin(at(k)))).collect()
+    };
+    let tree = [line((-0.4, 2.0), (-0.4, 4.0)), line((0.4, 2.0), (0.4, 4.0)), circle((0.0, 6.0), 2.2)];
+    let r = taken(Kind::Tree, &[vec![arc(5.0, 2.0)], tree.to_vec()].concat());
+    assert_eq!(r.strokes[0].class, StrokeClass::Ground);
+    assert_eq!((r.regions.len(), thick(&r)), (1, 1), "{:?}", r.strokes);
+    // A trunk in one line, whose foot is as wide as its crown.
+    let bell = path(&[(-2.2, 0.0), (-0.6, 1.0), (-0.5, 3.8), (0.5, 3.8), (0.6, 1.0), (2.2, 0.0)]);
+    let r = taken(Kind::Tree, &[bell, circle((0.0, 6.0), 2.2)]);
+    assert_eq!(r.strokes[0].class, StrokeClass::TrunkOutline);
+}
+
+#[test]
+fn a_line_that_leaves_a_crown_and_comes_back_is_a_lobe_of_it_and_one_that_ends_outside_is_a_branch() {
+    let tree = [line((-0.4, 0.0), (-0.4, 4.2)), line((0.4, 0.0), (0.4, 4.2)), circle((0.0, 6.0), 2.2)];
+    let read = |more: Vec<DVec2>| {
+        let kinds =
+            [StrokeClass::TrunkOutline, StrokeClass::TrunkOutline, StrokeClass::Crown, StrokeClass::Axis];
+        reading(&kinds.into_iter().zip(tree.iter().cloned().chain([more])).collect::<Vec<_>>()).0
+    };
+    let lobe = read(path(&[(-1.4, 7.0), (-2.6, 8.4), (-1.6, 9.6), (-0.4, 8.9), (-0.4, 7.6)]));
+    let branch = read(line((1.0, 6.0), (4.0, 8.0)));
+    assert_eq!(lobe.strokes[3].class, StrokeClass::Crown);
+    assert_eq!(branch.strokes[3].class, StrokeClass::Axis);
+    let tall = |r: &Reading| {
+        geom::bounds(&r.regions[0].outline).map_or(0.0, |b| (b.1.y - b.0.y) / r.plants[0].height)
+    };
+    // Of the 9.6 of the drawing with a lobe, 5.8.
+    assert!((tall(&lobe) - 5.8 / 9.6).abs() < 0.03, "the crown reaches as high as the lobe: {}", tall(&lobe));
+}
+
+#[test]
+fn fronds_of_a_palm_may_begin_beside_the_top_of_its_trunk() {
+    let trunk = [line((-0.4, 0.0), (-0.3, 6.0)), line((0.4, 0.0), (0.3, 6.0))];
+    let frond = |k: i32| {
+        let (side, up) = (if k % 2 == 0 { 1.0 } else { -1.0 }, 0.4 * f64::from(k));
+        path(&[(side * 1.0, 6.2), (side * 2.4, 6.6 + up), (side * 3.6, 5.4 + up)])
+    };
+    let lines: Vec<Vec<DVec2>> = trunk.into_iter().chain((0..5).map(frond)).collect();
+    let r = taken(Kind::Palm, &lines);
+    assert_eq!((r.leaves.len(), thick(&r)), (5, 1), "{:?}", r.strokes);
+}
+
+#[test]
+fn a_tree_that_came_apart_keeps_its_roots() {
+    let side = |x: f64| [line((x, 0.0), (x, 1.8)), line((1.1 * x, 2.0), (x, 4.0))];
+    let arcs = (0..10).map(|k| {
+        let at = |i: i32| ops::TAU * (f64::from(k) + 0.94 * f64::from(i) / 12.0) / 10.0;
+        let place = |a: f64| DVec2::new(0.0, 6.0) + 2.3 * DVec2::new(ops::cos(a), ops::sin(a));
+        (0..=12).map(|i| place(at(i))).collect()
+    });
+    let roots = [line((-0.4, -0.1), (-1.6, -1.8)), line((0.4, -0.1), (1.5, -1.6))];
+    let lines: Vec<Vec<DVec2>> =
+        arcs.chain(side(-0.5)).chain(side(0.5)).chain([line((-3.0, 0.0), (3.0, 0.0))]).chain(roots).collect();
+    let ink = clean(&Drawing::from_polylines("rooted", &lines), &mut Report::default());
+    let class = |k: usize| match k {
+        14 => StrokeClass::Ground,
+        15 | 16 => StrokeClass::Axis,
+        _ => StrokeClass::Other,
+    };
+    let classes: Vec<Classified> = (0..lines.len()).map(|k| Classified::by_user(class(k))).collect();
+    let known = read(&ink, &classes, &mut Report::default());
+    let roots = known.axes.iter().filter(|a| a.kind == AxisKind::Root).count();
+    assert_eq!(roots, 2, "{:?}", known.strokes);
+    let kept = RefCell::default();
+    let mut draft = Draft::new(&ink, &classes, &kept);
+    Silhouette::of(&ink, &known).expect("a trunk and a crown").read(&mut draft);
+    assert_eq!((draft.regions.len(), draft.bodies.len(), draft.lines.len()), (1, 1, 2));
+    let foot = draft.forest.axes[draft.bodies[0]].points[0].y;
+    let ground = ink.strokes[14].points[0].y;
+    assert!((foot - ground).abs() < 0.02, "it stands on the ground: {foot}, {ground}");
 }

@@ -1,0 +1,149 @@
+//! The wood of a bare tree whose trunk and limbs were drawn by their sides.
+//!
+//! Two sides of a trunk run on into limbs, whose other sides begin in the forks. No two of these lines belong together, but
+//! what lies between them does: it is what a ball finds no way into, without single lines.
+
+use geom::{bounds, convex_hull, polyline_length, signed_area};
+use glam::DVec2;
+use ink::{Ink, StrokeClass};
+
+use crate::blade::nearest_on_ring;
+use crate::body::{Limb, ribbon};
+use crate::branches::Line;
+use crate::contour::trunk_top;
+use crate::draft::Draft;
+use crate::sealed::Sealed;
+use crate::silhouette::{BALLS, Drawn, FEET, NEAR, Shaping, common, foot, holds, limb, made};
+use crate::{OrganWord, READ_AS, Reading};
+
+/// Wood is wider than twice this share of the diagonal; narrower things are lines.
+const WIDE: f64 = 0.015;
+/// It fills less than this share of the hull of all lines.
+const FULL: f64 = 0.6;
+/// It stands within this share of the height of the lowest line, and is as tall as that share at least.
+const STANDS: f64 = 0.1;
+const TALL: f64 = 0.3;
+/// Along less than this share of it nothing was drawn: limbs are open at their tips.
+const OPEN: f64 = 0.25;
+/// A reading has more than the first share of all lines on the edges of its wood, or covers more than the second of wood that was
+/// drawn all round.
+const READ_WELL: f64 = 0.8;
+const READ: f64 = 0.4;
+/// A line is a twig from where it leaves the wood, if it is longer than this.
+const TWIG: f64 = 0.04;
+
+/// Wood between lines.
+#[derive(Debug)]
+pub(crate) struct BareWood {
+    ground: Vec<bool>,
+    roots: Vec<bool>,
+    outline: Vec<DVec2>,
+    trunk: Limb,
+}
+
+impl BareWood {
+    pub(crate) fn of(ink: &Ink, reading: &Reading) -> Option<Self> {
+        let Shaping { ground, roots, lines } = Shaping::of(ink, reading)?;
+        let drawn = Drawn::new(&lines);
+        let (low, high) = bounds(&lines.concat())?;
+        let tall = high.y - low.y;
+        if on_edges(&lines, reading) > READ_WELL {
+            return None;
+        }
+        let foot = foot(&lines, FEET[0])?;
+        let all = [&lines[..], &[&foot]].concat();
+        let hull = signed_area(&convex_hull(&lines.concat()));
+        let wood = |ball: f64| {
+            let outline = Sealed::new(&all, ball)?.opened(WIDE)?.outline()?;
+            let (lo, hi) = bounds(&outline)?;
+            let stands = lo.y < low.y + STANDS * tall && hi.y - lo.y > TALL * tall;
+            let bare = drawn.bare(&outline, &(lo.y + STANDS * tall..hi.y + NEAR));
+            (stands && signed_area(&outline) < FULL * hull && bare < OPEN).then_some(outline)
+        };
+        let [smallest, open @ ..] = BALLS;
+        let outline = match wood(smallest) {
+            // Limbs that were drawn all round are in its outline: where they were read at all, that is better than their lines.
+            Some(shut) if fit(&shut, reading) > READ => return None,
+            Some(shut) => shut,
+            None => open.into_iter().find_map(wood)?,
+        };
+        let top = trunk_top(&outline, true).or_else(|| bounds(&outline).map(|b| b.1.y))?;
+        let trunk = limb(&outline, top);
+        let outline = ribbon(&trunk.points, &trunk.half_width);
+        Some(Self { ground, roots, outline, trunk })
+    }
+
+    /// How much of what the trunk or a reading covers both do, 0 to 1: what is wide above the trunk is the space between limbs.
+    pub(crate) fn fit(&self, reading: &Reading) -> f64 {
+        fit(&self.outline, reading)
+    }
+
+    /// Reads the wood as wood, and what leads out of it as twigs.
+    pub(crate) fn read(self, draft: &mut Draft<'_>) {
+        use StrokeClass::{Axis, Ground, TrunkOutline};
+        let ink = draft.ink;
+        let mut source = None;
+        for (k, &ground) in self.ground.iter().enumerate() {
+            let stroke = &ink.strokes[k];
+            (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
+            if ground {
+                (draft.class[k], draft.organ[k]) = (Ground, OrganWord::Ignored);
+                continue;
+            }
+            if self.roots[k] {
+                draft.line_of(k, OrganWord::Root);
+                draft.class[k] = Axis;
+                continue;
+            }
+            let twigs = self.twigs(&stroke.points);
+            let loose: f64 = twigs.iter().map(|t| polyline_length(t)).sum();
+            (draft.class[k], draft.organ[k]) = if loose > 0.5 * stroke.length {
+                (Axis, OrganWord::Branch)
+            } else {
+                source.get_or_insert(stroke.index);
+                (TrunkOutline, OrganWord::Trunk)
+            };
+            let lines = twigs.into_iter().map(|points| Line { points, source: Some(stroke.index) });
+            draft.lines.extend(lines);
+        }
+        draft.open_top = true;
+        let row = draft.forest.add_body(vec![self.trunk], None, source);
+        draft.bodies.extend(row);
+    }
+
+    /// What of a line lies outside of the wood.
+    fn twigs(&self, points: &[DVec2]) -> Vec<Vec<DVec2>> {
+        let mut found: Vec<Vec<DVec2>> = Vec::new();
+        let mut was_out = false;
+        for &p in points {
+            let out = !holds(&self.outline, p);
+            if out && !was_out {
+                found.push(Vec::new());
+            }
+            if let Some(twig) = found.last_mut().filter(|_| out) {
+                twig.push(p);
+            }
+            was_out = out;
+        }
+        found.retain(|t| polyline_length(t) > TWIG);
+        found
+    }
+}
+
+fn fit(wood: &Vec<DVec2>, reading: &Reading) -> f64 {
+    let made = made(reading);
+    let all = [wood.clone(), made.concat()].concat();
+    bounds(&all).map_or(1.0, |(lo, hi)| common(std::slice::from_ref(wood), &made, lo.y..hi.y))
+}
+
+/// The share of lines that run along the edges of the wood that a reading made, 0 to 1.
+fn on_edges(lines: &[&[DVec2]], reading: &Reading) -> f64 {
+    let made = made(reading);
+    let on_edge = |p: &DVec2| made.iter().any(|ring| nearest_on_ring(ring, *p).1 < NEAR);
+    let (on, all) = lines
+        .iter()
+        .copied()
+        .flatten()
+        .fold((0.0, 0.0_f64), |(on, all), p| (on + f64::from(u8::from(on_edge(p))), all + 1.0));
+    on / all.max(1.0)
+}
