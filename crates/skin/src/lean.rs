@@ -19,7 +19,7 @@ const WIDE: f64 = 1.5;
 
 /// How much shorter the way from root to tip is than along the midrib where a blade of a coarser copy is drawn in steps along it,
 /// and how slender it is at least, half its width over its length: corners of its form alone would leave its arch out.
-const ARCHED: f64 = 0.93;
+const ARCHED: f64 = 0.97;
 const SLENDER: f64 = 0.16;
 /// More triangles make no better arch.
 const MOST_ARCHED: f64 = 16.0;
@@ -75,6 +75,26 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     Some(mesh)
 }
 
+/// A convex blade of three or four corners, as leaflets of far copies are, in as few triangles as it can be.
+fn few_corners(blade: &Blade) -> Option<TriMesh> {
+    let (mut mesh, chart, surface) = (TriMesh::default(), BladeChart::new(blade), blade.surface());
+    if blade.outline.iter().any(|p| !p.is_finite()) || geom::signed_area(&blade.outline) <= 0.0 {
+        return None;
+    }
+    for &p in &blade.outline {
+        mesh.push(surface.point(p));
+        let uv = chart.uv(p);
+        mesh.uvs.push(narrow2(uv.x, uv.y));
+    }
+    mesh.triangles.push([0, 1, 2]);
+    if blade.outline.len() > 3 {
+        mesh.triangles.push([0, 2, 3]);
+    }
+    drop_flat(&mut mesh);
+    mesh.compute_normals();
+    Some(mesh)
+}
+
 /// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
 /// its outline has, up to `widest` times.
 ///
@@ -84,6 +104,9 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
 /// corners of the outline.
 pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     let outline = &blade.outline;
+    if widest > WIDE && (3..=4).contains(&outline.len()) {
+        return few_corners(blade);
+    }
     if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
         return None;
     }

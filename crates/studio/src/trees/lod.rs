@@ -165,7 +165,7 @@ const FROND: usize = 16;
 const LEVEL: f64 = 0.8;
 const PARALLEL: f64 = 0.95;
 /// A leaflet of a frond that stands for several is at most so wide over its length.
-const STOUT: f64 = 0.5;
+const STOUT: f64 = 1.0;
 
 /// Whether the leaves of a plant stand on fronds, as those of palms and ferns, and are drawn as outlines.
 fn has_fronds(plant: &Plant, skin: &SkinSpec) -> bool {
@@ -188,9 +188,6 @@ fn has_fronds(plant: &Plant, skin: &SkinSpec) -> bool {
     blades && all.len() >= FROND * axes.len().max(1) && flat >= LEVEL * n && parallel >= PARALLEL * n
 }
 
-/// Where a leaflet without bays is widest, as a share of its length.
-const WIDEST: f64 = 0.4;
-
 /// Makes leaflets of fronds that stand for several `times` as large in area: wider as long as they are slender, which leaves
 /// fronds as wide as they are. From the second level on they have no leaflets of their own. How much larger they are then still
 /// to be.
@@ -201,8 +198,12 @@ fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
         let length = blade.length();
         if level > 1 {
             let half = geom::signed_area(&blade.outline) / length;
-            let (right, at) = (DVec2::new(half, WIDEST * length), DVec2::new(0.0, length));
-            blade.outline = vec![DVec2::ZERO, right, at, DVec2::new(-half, WIDEST * length)];
+            // A wide foot, so that those of a frond hang together along its stalk; folded in the second level, and flat after it.
+            let (right, at) = (DVec2::new(half, 0.0), DVec2::new(0.0, length));
+            blade.outline = vec![DVec2::ZERO, right, at, DVec2::new(-half, 0.0)];
+            if level > 2 {
+                blade.outline.remove(0);
+            }
             blade.midrib = vec![DVec2::ZERO, at];
         }
         let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
@@ -217,17 +218,42 @@ fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
     left
 }
 
+/// A petal that stands for several is at most so wide over its length before it becomes longer, too.
+const STOUT_PETAL: f64 = 1.0;
+
+/// Makes petals that stand for several `times` as large in area wider as long as they are slender, so that spikes and plumes
+/// stay as thick as they are; [`cover_as_much`] then makes them no longer than they have to be.
+fn widen_petals(copy: &mut Plant, plant: &Plant, times: f64) {
+    let mut seen = vec![false; copy.shapes.len()];
+    for petal in plant.organs.iter().filter(|o| o.kind == OrganKind::Petal) {
+        let row = petal.shape.index();
+        let Some(Shape::Blade(blade)) = copy.shapes.get_mut(row) else { continue };
+        let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+        if std::mem::replace(&mut seen[row], true) || half.is_nan() || half <= 0.0 {
+            continue;
+        }
+        let wider = (0.5 * STOUT_PETAL * blade.length() / half).clamp(1.0, times.max(1.0));
+        blade.outline.iter_mut().for_each(|p| p.x *= wider);
+        blade.veins.clear();
+    }
+}
+
 /// Gives a coarser copy of a plant its longest axes. Where each node of the plant is in the copy: itself, or the node that bore
 /// its axis.
-fn longest_axes(copy: &mut Plant, plant: &Plant, level: u32, shoots: bool) -> Vec<Option<NodeId>> {
+fn longest_axes(
+    copy: &mut Plant,
+    plant: &Plant,
+    level: u32,
+    [shoots, fronds]: [bool; 2],
+) -> Vec<Option<NodeId>> {
     let length = |axis: &plant::Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
     base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
-    // Shoots have twigs of their own, and leaves hide those of a crown.
-    let hidden = leaves(plant).count() > plant.axes.len();
+    // Shoots have twigs of their own, and leaves hide those of a crown, but leaflets without the stalk of their frond float.
+    let hidden = !fronds && leaves(plant).count() > plant.axes.len();
     let finer = u32::from((shoots || hidden) && level > 1);
     let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level + finer);
     let least = lengths.get(kept_axes).copied().unwrap_or(0.0);
@@ -273,7 +299,8 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         paint: plant.paint,
         ..Plant::default()
     };
-    let moved = longest_axes(&mut copy, plant, level, shoots.is_some());
+    let fronds = has_fronds(plant, skin);
+    let moved = longest_axes(&mut copy, plant, level, [shoots.is_some(), fronds]);
     let now = |bearer: Option<NodeId>| bearer.and_then(|b| moved.get(b.index()).copied().flatten());
     let [flower_halvings, petal_halvings] = flower_halvings(plant, level);
     let places = Places::of(plant, plant.flowers.iter().map(|f| f.bearer).zip(0..));
@@ -286,12 +313,13 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         }
     }
     let fewer_flowers = (plant.flowers.len() as f64 / copy.flowers.len().max(1) as f64).sqrt();
+    widen_petals(&mut copy, plant, fewer_flowers * fewer_flowers * f64::from(1_u32 << petal_halvings));
     let mut petals = vec![0_usize; plant.flowers.len()];
     let whole_shoots = shoots.as_ref().filter(|_| level > 1);
     let places = Places::of_leaves(plant);
     let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, skin, &places, level) };
     let mut larger = larger(plant, &places, leaf_halvings);
-    if has_fronds(plant, skin) {
+    if fronds {
         larger = widen(&mut copy, larger * larger, level);
     }
     let mut row = 0;
