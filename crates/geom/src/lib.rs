@@ -57,8 +57,8 @@ pub use polygon::{
     signed_area,
 };
 pub use polyline::{
-    Closest, closest_on_polyline, distance_to_polyline, distance_to_segment, nearest_on_polyline3, point_at,
-    point_at3, polyline_length, polyline_length3, resample, resample3, simplify, smooth_gaussian,
+    Closest, closest_on_polyline, distance_to_polyline, distance_to_segment, nearest_on_polyline3, perimeter,
+    point_at, point_at3, polyline_length, polyline_length3, resample, resample3, simplify, smooth_gaussian,
     smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
 };
 pub use spline::{

@@ -28,6 +28,17 @@ pub fn polyline_length(points: &[DVec2]) -> f64 {
     length_of(points)
 }
 
+/// The length of a line that comes back to its first point: that of a polygon's margin.
+///
+/// ```
+/// use glam::DVec2;
+/// assert_eq!(geom::perimeter(&[DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]), 4.0);
+/// ```
+pub fn perimeter(polygon: &[DVec2]) -> f64 {
+    let last = polygon.last().zip(polygon.first()).map_or(0.0, |(a, b)| a.distance(*b));
+    polyline_length(polygon) + last
+}
+
 /// The length of a line in space: the sum of its segments' lengths, 0 for fewer than two usable points.
 pub fn polyline_length3(points: &[DVec3]) -> f64 {
     length_of(points)

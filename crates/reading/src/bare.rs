@@ -3,17 +3,16 @@
 //! Two sides of a trunk run on into limbs, whose other sides begin in the forks. No two of these lines belong together, but
 //! what lies between them does: it is what a ball finds no way into, without single lines.
 
-use geom::{bounds, convex_hull, polyline_length, signed_area};
+use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
-use ink::{Ink, StrokeClass};
+use ink::StrokeClass;
 
 use crate::blade::nearest_on_ring;
 use crate::body::{Limb, ribbon};
 use crate::branches::Line;
 use crate::contour::trunk_top;
 use crate::draft::Draft;
-use crate::sealed::Sealed;
-use crate::silhouette::{BALLS, Drawn, FEET, NEAR, Shaping, common, foot, holds, limb, made};
+use crate::silhouette::{BALLS, Drawn, FEET, NEAR, Shaping, common, holds, limb, made};
 use crate::{OrganWord, READ_AS, Reading};
 
 /// Wood is wider than twice this share of the diagonal; narrower things are lines.
@@ -35,30 +34,26 @@ const TWIG: f64 = 0.04;
 /// Wood between lines.
 #[derive(Debug)]
 pub(crate) struct BareWood {
-    ground: Vec<bool>,
-    roots: Vec<bool>,
+    /// Of the trunk.
     outline: Vec<DVec2>,
     trunk: Limb,
 }
 
 impl BareWood {
-    pub(crate) fn of(ink: &Ink, reading: &Reading) -> Option<Self> {
-        let Shaping { ground, roots, lines } = Shaping::of(ink, reading)?;
-        let drawn = Drawn::new(&lines);
-        let (low, high) = bounds(&lines.concat())?;
-        let tall = high.y - low.y;
-        if on_edges(&lines, reading) > READ_WELL {
+    /// Of a drawing whose lines are not on the edges of what a reading made of it.
+    pub(crate) fn of(drawn: &Drawn<'_>, reading: &Reading) -> Option<Self> {
+        if on_edges(drawn.lines, reading) > READ_WELL {
             return None;
         }
-        let foot = foot(&lines, FEET[0])?;
-        let all = [&lines[..], &[&foot]].concat();
-        let hull = signed_area(&convex_hull(&lines.concat()));
+        let (low, high) = bounds(&drawn.lines.concat())?;
+        let tall = high.y - low.y;
+        let sealed = drawn.sealed(FEET[0])?;
         let wood = |ball: f64| {
-            let outline = Sealed::new(&all, ball)?.opened(WIDE)?.outline()?;
+            let outline = sealed(ball)?.opened(WIDE)?.outline()?;
             let (lo, hi) = bounds(&outline)?;
             let stands = lo.y < low.y + STANDS * tall && hi.y - lo.y > TALL * tall;
             let bare = drawn.bare(&outline, &(lo.y + STANDS * tall..hi.y + NEAR));
-            (stands && signed_area(&outline) < FULL * hull && bare < OPEN).then_some(outline)
+            (stands && signed_area(&outline) < FULL * drawn.hull && bare < OPEN).then_some(outline)
         };
         let [smallest, open @ ..] = BALLS;
         let outline = match wood(smallest) {
@@ -70,7 +65,7 @@ impl BareWood {
         let top = trunk_top(&outline, true).or_else(|| bounds(&outline).map(|b| b.1.y))?;
         let trunk = limb(&outline, top);
         let outline = ribbon(&trunk.points, &trunk.half_width);
-        Some(Self { ground, roots, outline, trunk })
+        Some(Self { outline, trunk })
     }
 
     /// How much of what the trunk or a reading covers both do, 0 to 1: what is wide above the trunk is the space between limbs.
@@ -79,29 +74,21 @@ impl BareWood {
     }
 
     /// Reads the wood as wood, and what leads out of it as twigs.
-    pub(crate) fn read(self, draft: &mut Draft<'_>) {
-        use StrokeClass::{Axis, Ground, TrunkOutline};
+    pub(crate) fn read(self, shaping: &Shaping<'_>, draft: &mut Draft<'_>) {
         let ink = draft.ink;
         let mut source = None;
-        for (k, &ground) in self.ground.iter().enumerate() {
-            let stroke = &ink.strokes[k];
+        for (k, stroke) in ink.strokes.iter().enumerate() {
+            if shaping.tells(k, draft) {
+                continue;
+            }
             (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
-            if ground {
-                (draft.class[k], draft.organ[k]) = (Ground, OrganWord::Ignored);
-                continue;
-            }
-            if self.roots[k] {
-                draft.line_of(k, OrganWord::Root);
-                draft.class[k] = Axis;
-                continue;
-            }
             let twigs = self.twigs(&stroke.points);
             let loose: f64 = twigs.iter().map(|t| polyline_length(t)).sum();
             (draft.class[k], draft.organ[k]) = if loose > 0.5 * stroke.length {
-                (Axis, OrganWord::Branch)
+                (StrokeClass::Axis, OrganWord::Branch)
             } else {
                 source.get_or_insert(stroke.index);
-                (TrunkOutline, OrganWord::Trunk)
+                (StrokeClass::TrunkOutline, OrganWord::Trunk)
             };
             let lines = twigs.into_iter().map(|points| Line { points, source: Some(stroke.index) });
             draft.lines.extend(lines);

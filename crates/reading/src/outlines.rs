@@ -3,7 +3,7 @@
 use base::{Report, ops};
 use geom::{bounds, centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
-use ink::StrokeClass;
+use ink::{Source, StrokeClass};
 use plant::AxisKind;
 
 use crate::blade::{nearest_on_ring, split_stalks};
@@ -14,7 +14,7 @@ use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::kept::{alike, same_bits};
 use crate::rings::{Ring, rings, rings_and_arms};
 use crate::thresholds::{SAME_PLACE, STOPPED_SHORT, STRAIGHT, WELL_SHORT};
-use crate::{Attachment, Kind, OrganWord, RegionKind};
+use crate::{Attachment, Kind, OrganWord, READ_AS, RegionKind};
 
 /// More bodies than this are scribbles: the smaller ones become plain lines (keeps the work linear).
 const MOST_BODIES: usize = 100;
@@ -290,25 +290,20 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
     }
 }
 
-/// Lines that leave a crown and come back, or run along its outline, are of that: no branches.
+/// Lines that leave a crown and come back, or run along its outline, are of that: no branches, unless the user said so.
 pub(crate) fn lobes(draft: &mut Draft<'_>) {
     let lines = std::mem::take(&mut draft.lines);
     let mut regions = std::mem::take(&mut draft.regions);
     for line in lines {
         let points = &line.points;
         let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
-        let crown = regions.iter_mut().filter(|r| r.kind == RegionKind::Crown).find(|r| {
-            let ends = [points[0], points[points.len() - 1]];
-            let off = |p: DVec2| nearest_on_ring(&r.outline, p).1;
-            let in_it = |p: DVec2| contains(&r.outline, p);
-            let of_it = points.iter().filter(|p| !in_it(**p) || off(**p) < RIM).count();
-            ends.into_iter().all(|p| in_it(p) || off(p) < RIM) && of_it as f64 > OF_IT * points.len() as f64
-        });
-        let Some((crown, k)) = crown.zip(stroke).filter(|(_, k)| !draft.legs.contains_key(k)) else {
+        let stroke = stroke.filter(|k| draft.said[*k].source != Source::User && !draft.legs.contains_key(k));
+        let crown = stroke.and_then(|k| Some((regions.iter_mut().find(|r| is_lobe(points, r))?, k)));
+        let Some((crown, k)) = crown else {
             draft.lines.push(line);
             continue;
         };
-        draft.class[k] = StrokeClass::Crown;
+        (draft.class[k], draft.rule[k]) = (StrokeClass::Crown, Some(READ_AS));
         draft.organ[k] = OrganWord::LeafContour;
         let whole = crown_outline(points).and_then(|lobe| union(&[crown.outline.clone(), lobe]));
         if let Some((outline, bounds)) = whole.and_then(|o| bounds(&o).map(|b| (o, b))) {
@@ -316,6 +311,20 @@ pub(crate) fn lobes(draft: &mut Draft<'_>) {
         }
     }
     draft.regions = regions;
+}
+
+/// Whether a line begins and ends in a crown, and runs outside of it or along its outline.
+fn is_lobe(points: &[DVec2], region: &RegionDraft) -> bool {
+    let (lo, hi) = (region.bounds.0 - RIM, region.bounds.1 + RIM);
+    let ring = &region.outline;
+    let at_rim = |p: DVec2| nearest_on_ring(ring, p).1 < RIM;
+    // Most lines of a large drawing are nowhere near.
+    let meets = |p: DVec2| p.cmpge(lo).all() && p.cmple(hi).all() && (contains(ring, p) || at_rim(p));
+    region.kind == RegionKind::Crown
+        && meets(points[0])
+        && meets(points[points.len() - 1])
+        && points.iter().filter(|p| !contains(ring, **p) || at_rim(**p)).count() as f64
+            > OF_IT * points.len() as f64
 }
 
 /// The outline around several that overlap, as it is seen from their middle.

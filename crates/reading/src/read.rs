@@ -9,7 +9,7 @@ use plant::AxisKind;
 use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
-use crate::silhouette::Silhouette;
+use crate::silhouette::{Drawn, Shaping, Silhouette};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
@@ -423,20 +423,21 @@ fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -
     (reading, report)
 }
 
-/// A tree by its silhouette, where what was read of its strokes does not cover that. One drawn leaf by leaf
-/// would lose its leaves.
+/// A tree by its silhouette, where what was read of its strokes does not cover that. One drawn leaf by leaf would lose its leaves.
 fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: &Reading) -> Option<Reading> {
     let organs = reading.leaves.len() + reading.flowers.len();
     if organs >= LEAFY {
         return None;
     }
+    let shaping = Shaping::of(ink, reading)?;
+    let drawn = Drawn::new(&shaping.lines);
     let mut draft = Draft::new(ink, classes, asked.kept);
     draft.kind = Some(Kind::Tree);
-    if let Some(silhouette) = Silhouette::of(ink, reading) {
-        (silhouette.fit(reading) < FITS).then(|| silhouette.read(&mut draft))?;
+    if let Some(silhouette) = Silhouette::of(&drawn) {
+        (silhouette.fit(reading) < FITS).then(|| silhouette.read(&shaping, &mut draft))?;
     } else {
-        let bare = reading.regions.is_empty().then(|| BareWood::of(ink, reading)).flatten()?;
-        (bare.fit(reading) < FITS).then(|| bare.read(&mut draft))?;
+        let bare = reading.regions.is_empty().then(|| BareWood::of(&drawn, reading)).flatten()?;
+        (bare.fit(reading) < FITS).then(|| bare.read(&shaping, &mut draft))?;
     }
     outlines::lobes(&mut draft);
     let mut fruits = draft.fruits(&[]);

@@ -56,9 +56,6 @@ const STANDS: f64 = 0.2;
 /// Trunk and crown of a drawing that has a neck.
 #[derive(Debug)]
 pub(crate) struct Silhouette {
-    /// Which strokes are the line of the ground.
-    ground: Vec<bool>,
-    roots: Vec<bool>,
     /// What is below the neck.
     below: Vec<DVec2>,
     trunk: Limb,
@@ -66,19 +63,15 @@ pub(crate) struct Silhouette {
 }
 
 impl Silhouette {
-    /// Of a drawing whose ground and roots are known from a reading.
-    pub(crate) fn of(ink: &Ink, reading: &Reading) -> Option<Self> {
-        let Shaping { ground, roots, lines } = Shaping::of(ink, reading)?;
-        let drawn = Drawn::new(&lines);
-        let found = FEET.iter().find_map(|&share| {
+    pub(crate) fn of(drawn: &Drawn<'_>) -> Option<Self> {
+        FEET.iter().find_map(|&share| {
             let shut = drawn.shut(share)?;
             // What the largest ball comes into, all do.
             let [balls @ .., largest] = BALLS;
             let widest = shut(largest)?;
-            let narrower = balls.into_iter().find_map(|ball| Self::cut(&drawn, &shut(ball)?, ball));
-            narrower.or_else(|| Self::cut(&drawn, &widest, largest))
-        });
-        found.map(|found| Self { ground, roots, ..found })
+            let narrower = balls.into_iter().find_map(|ball| Self::cut(drawn, &shut(ball)?, ball));
+            narrower.or_else(|| Self::cut(drawn, &widest, largest))
+        })
     }
 
     /// An outline cut at its neck, if it is that of a tree with trunk and crown.
@@ -92,7 +85,7 @@ impl Silhouette {
         let wide = half.len() > 1 && half[half.len() / 2] > ball;
         let sides = foot + AT_FOOT * (low - foot)..low;
         let whole = wide && drawn.bare(&crown, &(low..top)) < BARE && drawn.bare(&below, &sides) < BARE;
-        whole.then(|| Self { ground: Vec::new(), roots: Vec::new(), below, trunk, crown })
+        whole.then_some(Self { below, trunk, crown })
     }
 
     /// How much of what the silhouette or a reading covers both do, 0 to 1: of the trunk or of the crown, whichever is less.
@@ -106,22 +99,20 @@ impl Silhouette {
 
     /// Gives every stroke the class that it has in the silhouette, and reads that. Lines and fruits in the crown stay what they
     /// are.
-    pub(crate) fn read(self, draft: &mut Draft<'_>) {
-        use StrokeClass::{Axis, Crown, Disc, Fruit, Ground, TrunkOutline};
+    pub(crate) fn read(self, shaping: &Shaping<'_>, draft: &mut Draft<'_>) {
+        use StrokeClass::{Axis, Crown, Disc, Fruit, TrunkOutline};
         let foot = bounds(&self.crown).map_or(0.0, |b| b.0.y);
         let (most, ink) = (SMALL * signed_area(&self.crown), draft.ink);
         let small = |k: usize| signed_area(ink.strokes[k].hull()) < most;
         let mut first = [None; 2];
-        for (k, &ground) in self.ground.iter().enumerate() {
+        for k in 0..ink.strokes.len() {
+            if shaping.tells(k, draft) {
+                continue;
+            }
             let points = &draft.ink.strokes[k].points;
             let inside = || share_inside(points, 1, &self.crown) > IN_CROWN;
             let wood = bounds(points).is_some_and(|(lo, hi)| lo.midpoint(hi).y < foot);
             (draft.class[k], draft.organ[k]) = match draft.class[k] {
-                _ if ground => (Ground, OrganWord::Ignored),
-                _ if self.roots[k] => {
-                    draft.line_of(k, OrganWord::Root);
-                    (Axis, OrganWord::Root)
-                }
                 Axis if !wood && inside() => {
                     draft.line_of(k, OrganWord::Branch);
                     continue;
@@ -131,9 +122,7 @@ impl Silhouette {
                 _ => (Crown, OrganWord::LeafContour),
             };
             (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
-            if !ground && !self.roots[k] {
-                first[usize::from(wood)].get_or_insert(k);
-            }
+            first[usize::from(wood)].get_or_insert(k);
         }
         let source = first[1].map(|k| draft.ink.strokes[k].index);
         draft.open_top = true;
@@ -146,14 +135,15 @@ impl Silhouette {
 /// What of a drawing shapes a tree.
 pub(crate) struct Shaping<'a> {
     /// Which strokes are the line of the ground.
-    pub(crate) ground: Vec<bool>,
+    ground: Vec<bool>,
     /// Which are roots under it.
-    pub(crate) roots: Vec<bool>,
+    roots: Vec<bool>,
     /// All others, but for marks.
     pub(crate) lines: Vec<&'a [DVec2]>,
 }
 
 impl<'a> Shaping<'a> {
+    /// Of a drawing whose ground and roots are known from a reading.
     pub(crate) fn of(ink: &'a Ink, reading: &Reading) -> Option<Self> {
         let is = |class: StrokeClass, stroke: u32| {
             reading.strokes.iter().any(|s| s.index == stroke && s.class == class)
@@ -172,6 +162,21 @@ impl<'a> Shaping<'a> {
         let shapes = |k: &usize| !ground[*k] && !roots[*k] && large(&ink.strokes[*k].points);
         let lines = (0..ink.strokes.len()).filter(shapes).map(|k| ink.strokes[k].points.as_slice());
         Some(Self { lines: lines.collect(), ground, roots })
+    }
+
+    /// Says that a stroke is ground or a root, if it is.
+    pub(crate) fn tells(&self, k: usize, draft: &mut Draft<'_>) -> bool {
+        if !self.ground[k] && !self.roots[k] {
+            return false;
+        }
+        (draft.rule[k], draft.settled[k]) = (Some(READ_AS), true);
+        if self.ground[k] {
+            (draft.class[k], draft.organ[k]) = (StrokeClass::Ground, OrganWord::Ignored);
+        } else {
+            draft.class[k] = StrokeClass::Axis;
+            draft.line_of(k, OrganWord::Root);
+        }
+        true
     }
 }
 
@@ -198,9 +203,10 @@ pub(crate) fn common(some: &[Vec<DVec2>], others: &[Vec<DVec2>], heights: Range<
 
 /// The lines of a drawing that shape it.
 pub(crate) struct Drawn<'a> {
-    lines: &'a [&'a [DVec2]],
+    pub(crate) lines: &'a [&'a [DVec2]],
     near: Near,
-    hull: f64,
+    /// The area of the hull of all.
+    pub(crate) hull: f64,
 }
 
 impl<'a> Drawn<'a> {
@@ -210,13 +216,16 @@ impl<'a> Drawn<'a> {
         Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
     }
 
-    /// The outline for a ball, with the foot at a share of the height closed, where it holds the drawing.
-    fn shut(&self, share: f64) -> Option<impl Fn(f64) -> Option<Vec<DVec2>>> {
+    /// What a ball finds no way into, with the foot at a share of the height closed.
+    pub(crate) fn sealed(&self, share: f64) -> Option<impl Fn(f64) -> Option<Sealed>> {
         let foot = foot(self.lines, share)?;
-        Some(move |ball| {
-            let all = [self.lines, &[&foot]].concat();
-            Sealed::new(&all, ball)?.outline().filter(|outline| self.lies_in(outline))
-        })
+        Some(move |ball| Sealed::new(&[self.lines, &[&foot]].concat(), ball))
+    }
+
+    /// The outline of that, where it holds the drawing.
+    fn shut(&self, share: f64) -> Option<impl Fn(f64) -> Option<Vec<DVec2>>> {
+        let sealed = self.sealed(share)?;
+        Some(move |ball| sealed(ball)?.outline().filter(|outline| self.lies_in(outline)))
     }
 
     /// Whether an outline is full, stands where the drawing does, and nearly all that was drawn lies in it.
@@ -305,7 +314,7 @@ fn covered(mut runs: Vec<(f64, f64)>) -> f64 {
 }
 
 /// A line along the foot of a drawing, from its lower left to its lower right corner: a trunk is open below.
-pub(crate) fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
+fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
     let (low, high) = lines.iter().filter_map(|l| bounds(l)).reduce(around)?;
     let feet = || lines.iter().copied().flatten().filter(|p| p.y < low.y + share * (high.y - low.y));
     let left = feet().min_by(|a, b| (a.x + a.y).total_cmp(&(b.x + b.y)))?;

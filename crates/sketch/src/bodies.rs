@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use geom::{bounds, polyline_length, polyline_length3, signed_area};
+use geom::{bounds, perimeter, polyline_length, polyline_length3, signed_area};
 use glam::DVec2;
 use plant::{OrganKind, Paint, Plant, Shape};
-use reading::{Kind, PlantReading, Reading};
+use reading::{FruitReading, Kind, PlantReading, Reading};
 
 /// A fruit is a body if it is longer than this share of its plant; less, if that bears thorns.
 const BODY: f64 = 0.4;
@@ -50,10 +50,10 @@ const CREAM: [f32; 3] = [0.62, 0.48, 0.33];
 /// (*geometry*), and a slice shows its flesh.
 const WHOLE: f64 = 0.9;
 
-/// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of their form, where nobody
-/// drew them in colour: that of what they look like, or else of their form. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears a yellow green, many
-/// of one plant as dark as berries, others red. Of vegetables roots that run out to a point are orange, long or bent ones and
-/// many of one plant green, others tan.
+/// Names the large bodies of cacti, and gives those of fruits and vegetables the usual colour of what they look like, or else of
+/// their form, where nobody drew them in colour. Of fruits what bears a tuft is a pineapple with eyes, long ones are yellow, pears
+/// a yellow green, many of one plant as dark as berries, others red. Of vegetables roots that run out to a point are orange, long
+/// or bent ones and many of one plant green, others tan.
 pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
     let Some((low, high)) = plant.extent() else { return };
     let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
@@ -145,10 +145,14 @@ impl Form {
     }
 }
 
+/// The body that a stroke gave.
+fn body(reading: &Reading, source: Option<u32>) -> Option<&FruitReading> {
+    reading.fruits.iter().find(|f| f.source == source && source.is_some())
+}
+
 /// Leaves stand on it, all from its top.
 fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
-    let body = reading.fruits.iter().find(|f| f.source == source && source.is_some());
-    let Some((low, high)) = body.and_then(|f| bounds(&f.outline)) else { return false };
+    let Some((low, high)) = body(reading, source).and_then(|f| bounds(&f.outline)) else { return false };
     let tall = high.y - low.y;
     let on_top = |line: &[DVec2]| {
         bounds(line).is_some_and(|(l, h)| {
@@ -168,9 +172,8 @@ fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
 
 /// Whether a body is drawn whole rather than in slices.
 fn is_whole(reading: &Reading, source: Option<u32>) -> bool {
-    let body = reading.fruits.iter().find(|f| f.source == source && source.is_some());
-    body.is_some_and(|f| {
-        let around = polyline_length(&f.outline) + f.outline[0].distance(f.outline[f.outline.len() - 1]);
+    body(reading, source).is_some_and(|f| {
+        let around = perimeter(&f.outline);
         4.0 * core::f64::consts::PI * signed_area(&f.outline).abs() > WHOLE * around * around
     })
 }

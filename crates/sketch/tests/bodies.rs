@@ -53,6 +53,33 @@ fn large_fruits_have_the_skin_of_their_form_and_only_what_is_no_fruit_is_a_green
     assert!(matches!(fruit.paint, Paint::Drawn(c) if c[blue] > c[red]), "{:?}", fruit.paint);
 }
 
+#[test]
+fn what_looks_like_one_thing_has_its_colour_and_slices_of_a_melon_show_their_flesh() {
+    let ball = |t: f64| (0.25 - (t - 0.5) * (t - 0.5)).max(0.0).sqrt();
+    // Half a disc stands on its rind, as wide as it is at the top.
+    let slice = |t: f64| (1.0 - (1.0 - t) * (1.0 - t)).max(0.0).sqrt();
+    let look = |kind, word, width: &dyn Fn(f64) -> f64| {
+        let mut reading = whole(kind, width, None);
+        reading.plants[0].word = word;
+        made(&reading, &SketchSpec::default()).plant.organs[0].paint
+    };
+    let tinted = |kind, word| match look(kind, Some(word), &ball) {
+        Paint::Tinted(c) => c,
+        other => panic!("{other:?}"),
+    };
+    let [red, green, blue] = [0, 1, 2];
+    let (broccoli, mushroom) = (tinted(Kind::Vegetable, "broccoli"), tinted(Kind::Vegetable, "mushroom"));
+    assert!(broccoli[green] > 1.5 * broccoli[red] && mushroom[red] > mushroom[green]);
+    let berry = tinted(Kind::Fruit, "blueberry");
+    assert!(berry[blue] > 2.0 * berry[red]);
+    let melon = tinted(Kind::Fruit, "watermelon");
+    assert!(melon[green] > 1.5 * melon[red]);
+    assert!(matches!(look(Kind::Fruit, Some("watermelon"), &slice), Paint::Natural(_)), "red flesh");
+    assert!(matches!(look(Kind::Fruit, Some("apple"), &ball), Paint::Natural(_)), "red");
+    // A word that says no colour leaves it to the form.
+    assert_eq!(look(Kind::Vegetable, Some("cactus"), &ball), look(Kind::Vegetable, None, &ball));
+}
+
 /// An arc of a circle of radius 1 about (1, 1), half as wide as given at each share of its length, drawn all round.
 fn arc_body(half_width: impl Fn(f64) -> f64) -> Vec<DVec2> {
     let at = |t: f64, side: f64| {

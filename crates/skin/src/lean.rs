@@ -57,42 +57,39 @@ fn arched(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
         return None;
     }
     let wider = DVec2::new((geom::signed_area(outline) / geom::signed_area(&points)).clamp(1.0, widest), 1.0);
-    let (mut mesh, chart) = (TriMesh::default(), BladeChart::new(blade));
-    for &p in &points {
-        mesh.push(surface.point(p * wider));
+    let n = points.len();
+    let mut triangles = vec![[0, 1, n - 1].map(crate::sleeve::index)];
+    for k in 1..steps {
+        let (a, b, c, d) = (k, k + 1, n - k - 1, n - k);
+        triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(crate::sleeve::index)));
+    }
+    triangles.push([steps, steps + 1, steps + 2].map(crate::sleeve::index));
+    Some(bent(blade, &points, wider, triangles))
+}
+
+/// The mesh of triangles between points of a blade's plane, drawn `wider` and bent as the blade is.
+fn bent(blade: &Blade, points: &[DVec2], wider: DVec2, triangles: Vec<[u32; 3]>) -> TriMesh {
+    let mut mesh = TriMesh { triangles, ..TriMesh::default() };
+    let (chart, surface) = (BladeChart::new(blade), blade.surface());
+    for &p in points {
+        let lifted = surface.point(p * wider);
+        mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
         let uv = chart.uv(p);
         mesh.uvs.push(narrow2(uv.x, uv.y));
     }
-    let n = points.len();
-    mesh.triangles.push([0, 1, n - 1].map(crate::sleeve::index));
-    for k in 1..steps {
-        let (a, b, c, d) = (k, k + 1, n - k - 1, n - k);
-        mesh.triangles.extend([[a, b, c], [a, c, d]].map(|t| t.map(crate::sleeve::index)));
-    }
-    mesh.triangles.push([steps, steps + 1, steps + 2].map(crate::sleeve::index));
     drop_flat(&mut mesh);
     mesh.compute_normals();
-    Some(mesh)
+    mesh
 }
 
 /// A convex blade of three or four corners, as leaflets of far copies are, in as few triangles as it can be.
 fn few_corners(blade: &Blade) -> Option<TriMesh> {
-    let (mut mesh, chart, surface) = (TriMesh::default(), BladeChart::new(blade), blade.surface());
-    if blade.outline.iter().any(|p| !p.is_finite()) || geom::signed_area(&blade.outline) <= 0.0 {
+    let outline = &blade.outline;
+    if outline.iter().any(|p| !p.is_finite()) || geom::signed_area(outline) <= 0.0 {
         return None;
     }
-    for &p in &blade.outline {
-        mesh.push(surface.point(p));
-        let uv = chart.uv(p);
-        mesh.uvs.push(narrow2(uv.x, uv.y));
-    }
-    mesh.triangles.push([0, 1, 2]);
-    if blade.outline.len() > 3 {
-        mesh.triangles.push([0, 2, 3]);
-    }
-    drop_flat(&mut mesh);
-    mesh.compute_normals();
-    Some(mesh)
+    let triangles = (2..crate::sleeve::index(outline.len())).map(|k| [0, k - 1, k]).collect();
+    Some(bent(blade, outline, DVec2::ONE, triangles))
 }
 
 /// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
@@ -120,8 +117,8 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let tip = nearest(outline, end)?;
     let pairs = (0.5 * triangles.clamp(2.0, 60.0)).round();
     // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
-    let bent = pairs >= 2.0;
-    let sides = base::ops::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
+    let with_middle = pairs >= 2.0;
+    let sides = base::ops::whole(pairs - f64::from(u8::from(with_middle))).max(1) as usize;
     let (kept, end) = corners(outline, (0..outline.len()).collect(), tip, 2 * sides + 2);
     let at = |kept: &[usize]| -> Vec<DVec2> { kept.iter().map(|&i| outline[i]).collect() };
     let (mut points, mut tip_at) = (at(&kept), end);
@@ -145,25 +142,15 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     let n = points.len();
     let (mut right, mut left): (Vec<usize>, Vec<usize>) = ((0..=tip).collect(), (tip..n).collect());
     left.push(0);
-    if bent {
+    if with_middle {
         points.push(middle(&blade.midrib));
         right.push(n);
         left.push(n);
     }
-    let mut mesh = TriMesh::default();
-    ears(&points, right, &mut mesh.triangles)?;
-    ears(&points, left, &mut mesh.triangles)?;
-    let chart = BladeChart::new(blade);
-    let surface = blade.surface();
-    for &p in &points {
-        let lifted = surface.point(p * wider);
-        mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
-        let uv = chart.uv(p);
-        mesh.uvs.push(narrow2(uv.x, uv.y));
-    }
-    drop_flat(&mut mesh);
-    mesh.compute_normals();
-    Some(mesh)
+    let mut triangles = Vec::new();
+    ears(&points, right, &mut triangles)?;
+    ears(&points, left, &mut triangles)?;
+    Some(bent(blade, &points, wider, triangles))
 }
 
 /// A margin of `most` corners that has more and keeps its form but for teeth; none where it has no more, or would cross

@@ -2,7 +2,7 @@
 //!
 //! It looks at shapes and places only, so neither the order of drawing nor what the classifier says of one stroke decides.
 
-use geom::{bounds, contains, convex_hull, crossing_points, signed_area};
+use geom::{bounds, contains, convex_hull, crossing_points, perimeter, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -265,11 +265,6 @@ fn outlined(draft: &Draft<'_>, p: &Part) -> bool {
     let stroke = &draft.ink.strokes[p.stroke];
     stroke.outline().is_some_and(|o| signed_area(o) > FULL * p.area())
         && stroke.length < LONG * perimeter(&p.hull)
-}
-
-fn perimeter(hull: &[DVec2]) -> f64 {
-    let last = hull.last().zip(hull.first()).map_or(0.0, |(a, b)| a.distance(*b));
-    geom::polyline_length(hull) + last
 }
 
 /// Few deep, even hollows over a single line: petals.

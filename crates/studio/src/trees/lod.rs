@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use growth::Obstacles;
-use plant::{AxisKind, FlowerId, NodeId, Organ, OrganKind, Plant, Shape};
+use plant::{AxisKind, Blade, FlowerId, NodeId, Organ, OrganKind, Plant, Shape};
 use skin::{FoliageStyle, Shoots, SkinSpec};
 
 /// Fewer axes, leaves or flowers than this are not thinned in the first level: each of them is seen. In each further level,
@@ -164,7 +164,7 @@ const FROND: usize = 16;
 /// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
 const LEVEL: f64 = 0.8;
 const PARALLEL: f64 = 0.95;
-/// A leaflet of a frond that stands for several is at most so wide over its length.
+/// A leaflet of a frond, or a petal, that stands for several is at most so wide over its length before it becomes longer, too.
 const STOUT: f64 = 1.0;
 
 /// Whether the leaves of a plant stand on fronds, as those of palms and ferns, and are drawn as outlines.
@@ -206,20 +206,24 @@ fn widen(copy: &mut Plant, times: f64, level: u32) -> f64 {
             }
             blade.midrib = vec![DVec2::ZERO, at];
         }
-        let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
-        if blade.needles.is_some() || half.is_nan() || half <= 0.0 {
-            continue;
+        if let Some(wider) = widened(blade, times) {
+            left = left.max((times / wider).sqrt());
         }
-        let wider = (0.5 * STOUT * length / half).clamp(1.0, times.max(1.0));
-        blade.outline.iter_mut().for_each(|p| p.x *= wider);
-        blade.veins.clear();
-        left = left.max((times / wider).sqrt());
     }
     left
 }
 
-/// A petal that stands for several is at most so wide over its length before it becomes longer, too.
-const STOUT_PETAL: f64 = 1.0;
+/// Makes a blade wider, up to so many `times`, while it is slender; how many times that is.
+fn widened(blade: &mut Blade, times: f64) -> Option<f64> {
+    let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+    if blade.needles.is_some() || half.is_nan() || half <= 0.0 {
+        return None;
+    }
+    let wider = (0.5 * STOUT * blade.length() / half).clamp(1.0, times.max(1.0));
+    blade.outline.iter_mut().for_each(|p| p.x *= wider);
+    blade.veins.clear();
+    Some(wider)
+}
 
 /// Makes petals that stand for several `times` as large in area wider as long as they are slender, so that spikes and plumes
 /// stay as thick as they are; [`cover_as_much`] then makes them no longer than they have to be.
@@ -228,13 +232,9 @@ fn widen_petals(copy: &mut Plant, plant: &Plant, times: f64) {
     for petal in plant.organs.iter().filter(|o| o.kind == OrganKind::Petal) {
         let row = petal.shape.index();
         let Some(Shape::Blade(blade)) = copy.shapes.get_mut(row) else { continue };
-        let half = blade.outline.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
-        if std::mem::replace(&mut seen[row], true) || half.is_nan() || half <= 0.0 {
-            continue;
+        if !std::mem::replace(&mut seen[row], true) {
+            widened(blade, times);
         }
-        let wider = (0.5 * STOUT_PETAL * blade.length() / half).clamp(1.0, times.max(1.0));
-        blade.outline.iter_mut().for_each(|p| p.x *= wider);
-        blade.veins.clear();
     }
 }
 
