@@ -15,14 +15,40 @@ pub struct Blade {
     pub outline: Vec<DVec2>,
     /// The midrib from root to tip, at least 2 points, inside the outline (ends may lie on it).
     pub midrib: Vec<DVec2>,
-    /// Further veins that the user drew, each at least 2 points.
-    pub veins: Vec<Vec<DVec2>>,
+    /// Further veins that the user drew.
+    pub veins: Vec<BladeVein>,
     /// Of a whole shoot in needles or scales, whose veins are its axes: too fine for outlines.
     pub needles: Option<Needles>,
     /// The surface on which the blade lies before it is bent.
     pub lift: Lift,
     /// How it is bent.
     pub relief: Relief,
+}
+
+/// A vein of a blade besides its midrib.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BladeVein {
+    /// At least 2 points in the plane of the blade, in either direction.
+    pub line: Vec<DVec2>,
+    /// Its width beside the usual one, about 0.5 to 2.
+    pub boldness: f64,
+}
+
+impl From<Vec<DVec2>> for BladeVein {
+    /// One of the usual width.
+    fn from(line: Vec<DVec2>) -> Self {
+        Self { line, boldness: 1.0 }
+    }
+}
+
+impl Digestible for BladeVein {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.line);
+        // What is as bold as usual says nothing of it.
+        if self.boldness != 1.0 {
+            d.add(&self.boldness);
+        }
+    }
 }
 
 /// The height of the undeformed blade over its frame's plane.
@@ -100,6 +126,11 @@ impl Blade {
         outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
         let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
         Self { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
+    }
+
+    /// Its midrib and its other veins.
+    pub fn lines(&self) -> impl Iterator<Item = &Vec<DVec2>> {
+        core::iter::once(&self.midrib).chain(self.veins.iter().map(|v| &v.line))
     }
 
     /// The length from root to tip in the plane, metres.

@@ -24,7 +24,7 @@ mod shoot;
 mod topology;
 mod validate;
 
-pub use blade::{Blade, Lift, Relief};
+pub use blade::{Blade, BladeVein, Lift, Relief};
 pub use flat::FlatLeaf;
 pub use forms::BladeForm;
 pub use frame::Frame;

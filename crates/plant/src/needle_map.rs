@@ -87,7 +87,7 @@ impl NeedleMap {
 
     fn new(blade: &Blade, needles: &Needles) -> Self {
         let mut lines = Vec::new();
-        for (row, axis) in core::iter::once(&blade.midrib).chain(&blade.veins).enumerate() {
+        for (row, axis) in blade.lines().enumerate() {
             lay(needles, axis, row, blade.length(), &mut lines);
         }
         // What lies lower is behind: wood, then needles from the sides, then those in front.
@@ -221,7 +221,7 @@ mod tests {
                 .map(|(x, y)| DVec2::new(x, y))
                 .to_vec(),
             midrib: vec![DVec2::ZERO, DVec2::Y],
-            veins: vec![vec![DVec2::new(0.0, 0.3), DVec2::new(0.2, 0.6)]],
+            veins: vec![vec![DVec2::new(0.0, 0.3), DVec2::new(0.2, 0.6)].into()],
             needles: None,
             lift: Lift::Flat,
             relief: Relief::default(),
@@ -268,8 +268,8 @@ mod tests {
         for i in -60..60 {
             for j in 0..120 {
                 let p = DVec2::new(f64::from(i), f64::from(j)) / 120.0;
-                let near = [shoot().midrib, shoot().veins[0].clone()]
-                    .iter()
+                let near = shoot()
+                    .lines()
                     .filter_map(|axis| geom::distance_to_polyline(axis, p))
                     .fold(f64::INFINITY, f64::min);
                 let here = map.at(p).is_some();

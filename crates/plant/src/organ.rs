@@ -162,8 +162,7 @@ impl Shape {
         };
         match self {
             Self::Blade(blade) => {
-                let veins = blade.veins.iter().flatten();
-                let plane = blade.outline.iter().chain(&blade.midrib).chain(veins);
+                let plane = blade.outline.iter().chain(blade.lines().flatten());
                 let plane: Vec<DVec2> = plane.map(|p| DVec2::new(p.x * wider, p.y)).collect();
                 blade.surface().points(&plane)
             }

@@ -3,7 +3,7 @@
 use base::ops::{self, sin};
 use glam::DVec2;
 
-use crate::{Blade, Needles, Relief};
+use crate::{Blade, BladeVein, Needles, Relief};
 
 impl Blade {
     /// A shoot in needles, of length 1, with `shoots` side shoots on each side (0 to 12), each of which has some of its own
@@ -46,7 +46,7 @@ impl Blade {
             .map(|(x, k)| DVec2::new(*x, (f64::from(k) + 0.5) / BINS as f64))
             .collect();
         let mut blade = Self::mirrored(&right, Relief { bend_b: 0.08, fold: 0.25, ..Relief::default() });
-        blade.veins = axes.split_off(1);
+        blade.veins = axes.split_off(1).into_iter().map(BladeVein::from).collect();
         blade.needles = Some(needles);
         blade
     }

@@ -107,13 +107,9 @@ impl Plant {
         let sound = match &self.shapes[id.index()] {
             Shape::Blade(b) => {
                 b.outline.len() >= 3
-                    && b.midrib.len() >= 2
-                    && b.veins.iter().all(|v| v.len() >= 2)
-                    && b.outline
-                        .iter()
-                        .chain(&b.midrib)
-                        .chain(b.veins.iter().flatten())
-                        .all(|p| p.is_finite())
+                    && b.lines().all(|l| l.len() >= 2)
+                    && b.veins.iter().all(|v| positive(v.boldness))
+                    && b.outline.iter().chain(b.lines().flatten()).all(|p| p.is_finite())
                     && b.surface().points(&b.outline).iter().all(|p| p.is_finite())
             }
             Shape::Dome { radius_m, height_m } => positive(*radius_m) && height_m.is_finite(),

@@ -16,7 +16,9 @@ use crate::overlap::layers;
 use crate::rules::STAMENS;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
 use crate::veins::{VeinLine, Veins, choose_midrib};
-use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord};
+use crate::{
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, VeinReading,
+};
 
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
 const SESSILE: f64 = 0.02;
@@ -411,7 +413,11 @@ pub(crate) fn organs(
     soil: &Near,
 ) -> (Vec<FlowerReading>, Vec<BladeReading>) {
     veins.resize(draft.blades.len(), Vec::new());
-    let mut lines_of = |i: usize| std::mem::take(&mut veins[i]).into_iter().map(|v| v.points).collect();
+    let ink = draft.ink;
+    let mut lines_of = |i: usize| -> Vec<VeinReading> {
+        let of = |v: VeinLine| VeinReading { points: v.points, source: Some(ink.strokes[v.stroke].index) };
+        std::mem::take(&mut veins[i]).into_iter().map(of).collect()
+    };
     let mut is_petal = vec![false; draft.blades.len()];
     let mut read = Vec::new();
     for flower in flowers {
@@ -461,7 +467,7 @@ fn order(blades: &mut [BladeReading], ink: &Ink) {
     blades.iter_mut().zip(layers).for_each(|(blade, layer)| blade.front = layer);
 }
 
-fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
+fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<VeinReading>) -> BladeReading {
     let blade = &draft.blades[i];
     let s = &draft.ink.strokes[blade.stroke];
     let read = draft.kept.borrow_mut().leaves.get(
@@ -470,7 +476,7 @@ fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>
             same_bits(*at, root)
                 && alike(outline, &blade.outline)
                 && lines.len() == veins.len()
-                && lines.iter().zip(&veins).all(|(a, b)| alike(a, b))
+                && lines.iter().zip(&veins).all(|(a, b)| a.source == b.source && alike(&a.points, &b.points))
         },
         || (blade.outline.clone(), root, veins.clone()),
         || ribbed(&blade.outline, root, veins.clone()),
@@ -479,10 +485,10 @@ fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>
 }
 
 /// A blade with its tip and midrib.
-fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
+fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<VeinReading>) -> BladeReading {
     let far = tip(outline, root);
     let (rib, veins) = choose_midrib(veins, root, far);
-    let veins = veins.into_iter().filter(|v| v.len() > 1).collect();
+    let veins = veins.into_iter().filter(|v| v.points.len() > 1).collect();
     let rib = match rib {
         Some(drawn) => midrib(&drawn, root, far),
         None => found_midrib(outline, root, far),

@@ -5,15 +5,15 @@
 
 use glam::DVec2;
 
-use crate::BladeReading;
 use crate::blade::Sheetlet;
 use crate::body::Limb;
+use crate::{BladeReading, VeinReading};
 
 /// Outline, gaps and base of a body.
 type Body = (Vec<DVec2>, Vec<usize>, Option<DVec2>);
 
 /// Outline, root and veins of a blade.
-type Blade = (Vec<DVec2>, DVec2, Vec<Vec<DVec2>>);
+type Blade = (Vec<DVec2>, DVec2, Vec<VeinReading>);
 
 /// Results of single strokes, for [`read_again`](crate::read_again).
 #[derive(Clone, Debug, Default)]

@@ -66,7 +66,7 @@ pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
 pub use read::{UNLIKE_A_PLANT, kind_row, read, read_again, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
-    PotReading, Reading, RegionKind, RegionReading, StrokeReading,
+    PotReading, Reading, RegionKind, RegionReading, StrokeReading, VeinReading,
 };
 pub use rules::{READ_AS, RULES, Rule};
 pub use validate::ReadingFault;

@@ -118,7 +118,7 @@ pub struct BladeReading {
     /// The midrib, root to tip, at least 2 points: the vein that was drawn, or found from the outline.
     pub midrib: Vec<DVec2>,
     /// Further veins drawn inside it.
-    pub veins: Vec<Vec<DVec2>>,
+    pub veins: Vec<VeinReading>,
     /// Where it is borne (leaves; petals are borne by their flower).
     pub bearer: Option<Attachment>,
     /// Ring of the flower, 0 outermost (petals only).
@@ -129,6 +129,15 @@ pub struct BladeReading {
     pub source: Option<u32>,
     /// Its drawn colour.
     pub color: Option<[u8; 3]>,
+}
+
+/// A vein besides the midrib.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VeinReading {
+    /// At least 2 points, ink coordinates, as it was drawn.
+    pub points: Vec<DVec2>,
+    /// The stroke it came from.
+    pub source: Option<u32>,
 }
 
 /// The centre of a flower as it was drawn.

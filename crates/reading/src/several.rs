@@ -138,7 +138,7 @@ impl Back {
     fn blade(&self, blade: &mut BladeReading, first: usize) {
         self.line(&mut blade.outline);
         self.line(&mut blade.midrib);
-        blade.veins.iter_mut().for_each(|v| self.line(v));
+        blade.veins.iter_mut().for_each(|v| self.line(&mut v.points));
         (blade.root, blade.tip) = (self.point(blade.root), self.point(blade.tip));
         self.bearer(&mut blade.bearer, first);
     }

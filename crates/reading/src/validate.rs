@@ -96,7 +96,7 @@ impl Reading {
     }
 
     fn blade(&self, b: &BladeReading) -> bool {
-        let veins = line(&b.midrib) && b.veins.iter().all(|v| line(v));
+        let veins = line(&b.midrib) && b.veins.iter().all(|v| line(&v.points));
         let ends = b.root.is_finite() && b.tip.is_finite();
         outline(&b.outline) && veins && ends && b.bearer.is_none_or(|a| self.on_axis(a))
     }

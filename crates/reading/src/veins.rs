@@ -4,12 +4,12 @@ use geom::{contains, polyline_length};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use crate::OrganWord;
 use crate::blade::Sheetlet;
 use crate::branches::Line;
 use crate::draft::Draft;
 use crate::near::Boxes;
 use crate::rules::{VEINS_IN_BLADES, unsure};
+use crate::{OrganWord, VeinReading};
 
 /// Samples of a line that are tested.
 const SAMPLES: usize = 24;
@@ -123,13 +123,14 @@ fn part(points: &[DVec2], outline: &[DVec2]) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
 
 /// Of a blade's veins the midrib, root first: it leads from near the root towards the tip. The rest are side veins.
 pub(crate) fn choose_midrib(
-    veins: Vec<Vec<DVec2>>,
+    veins: Vec<VeinReading>,
     root: DVec2,
     tip: DVec2,
-) -> (Option<Vec<DVec2>>, Vec<Vec<DVec2>>) {
+) -> (Option<Vec<DVec2>>, Vec<VeinReading>) {
     let reach = root.distance(tip).max(1e-9);
     let along = (tip - root) / reach;
-    let score = |v: &[DVec2]| {
+    let score = |v: &VeinReading| {
+        let v = &v.points;
         let (Some(&a), Some(&b)) = (v.first(), v.last()) else { return 0.0 };
         let run = (b - a).dot(along).abs() / reach;
         let aside = v.iter().map(|p| (*p - root).perp_dot(along).abs()).fold(0.0, f64::max) / reach;
@@ -140,7 +141,7 @@ pub(crate) fn choose_midrib(
         (0..veins.len()).max_by(|&a, &b| score(&veins[a]).total_cmp(&score(&veins[b])).then(b.cmp(&a)));
     let Some(best) = best.filter(|&b| score(&veins[b]) > 0.0) else { return (None, veins) };
     let mut rest = veins;
-    let mut rib = rest.remove(best);
+    let mut rib = rest.remove(best).points;
     let away = |p: Option<&DVec2>| p.map_or(0.0, |p| (*p - root).dot(along));
     if away(rib.first()) > away(rib.last()) {
         rib.reverse();
@@ -155,9 +156,11 @@ mod tests {
     #[test]
     fn the_vein_along_the_leaf_is_its_midrib() {
         let p = |x: f64, y: f64| DVec2::new(x, y);
-        let side = vec![p(0.5, 0.4), p(0.6, 0.5)];
+        let vein = |source, points| VeinReading { points, source: Some(source) };
+        let side = vein(0, vec![p(0.5, 0.4), p(0.6, 0.5)]);
         let middle = vec![p(0.5, 0.8), p(0.5, 0.5), p(0.5, 0.15)];
-        let (rib, rest) = choose_midrib(vec![side.clone(), middle.clone()], p(0.5, 0.1), p(0.5, 0.9));
+        let drawn = vec![side.clone(), vein(1, middle.clone())];
+        let (rib, rest) = choose_midrib(drawn, p(0.5, 0.1), p(0.5, 0.9));
         assert_eq!(rib, Some(middle.into_iter().rev().collect()));
         assert_eq!(rest, [side]);
     }

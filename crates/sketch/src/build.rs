@@ -2,7 +2,7 @@
 //!
 //! `Reading -> AxisPlans with depth -> axes -> leaves, flowers, thorns, fruits -> filled contours -> radii`
 
-use base::{Cancelled, Report, Run, Seed};
+use base::{Cancelled, LiteMap, Report, Run, Seed};
 use geom::contains;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
@@ -103,7 +103,9 @@ pub fn build_again(
     let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
     let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
     let colors = blades.map(|b| b.color).chain(filled);
-    let scene = Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors) };
+    let pressed = base::map_of(reading.pressed.iter().copied().filter(|p| p.1.is_finite() && p.1 > 0.0));
+    let scene =
+        Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors), pressed: &pressed };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);
     let templates: Vec<(ShapeId, Option<u32>)> = leaves.iter().map(|l| (l.shape, l.leaf.source)).collect();
@@ -141,7 +143,7 @@ pub fn build_again(
     hang_in_crowns(&mut plant, &scene, reading, &crowned, &leaves);
     let model = pipes(&plant, &plans, &ids, reading, spec, map);
     pipe_radii(&mut plant, &model);
-    press(&mut plant, reading);
+    press(&mut plant, reading, pressed);
     name_bodies(&mut plant, reading);
     report.book("depth", run.clock.now_ms() - started);
     debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
@@ -149,11 +151,10 @@ pub fn build_again(
 }
 
 /// Lines that were drawn boldly are thick, and so is what they bear; none is thicker than what bears it.
-fn press(plant: &mut Plant, reading: &Reading) {
-    if reading.pressed.is_empty() {
+fn press(plant: &mut Plant, reading: &Reading, mut pressed: LiteMap<u32, f64>) {
+    if pressed.is_empty() {
         return;
     }
-    let mut pressed = base::map_of(reading.pressed.iter().copied().filter(|p| p.1.is_finite() && p.1 > 0.0));
     // What was drawn as an outline has the width that was drawn.
     for axis in reading.axes.iter().filter(|a| !a.half_width.is_empty()) {
         axis.source.and_then(|source| pressed.remove(&source));

@@ -8,7 +8,7 @@ use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
 use proptest::prelude::*;
 use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, PlantReading,
-    PotReading, Reading, RegionKind, RegionReading,
+    PotReading, Reading, RegionKind, RegionReading, VeinReading,
 };
 use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
 use tools::{blade, made, v};
@@ -471,7 +471,7 @@ fn any_axis() -> impl Strategy<Value = AxisReading> {
 fn any_blade() -> impl Strategy<Value = BladeReading> {
     (any_line(9), any_point(), any_point(), any_line(4), any_bearer(), 0..3_u32, prop::option::of(0..5_u32))
         .prop_map(|(outline, root, tip, midrib, bearer, whorl, source)| BladeReading {
-            veins: vec![midrib.clone()],
+            veins: vec![VeinReading { points: midrib.clone(), source }],
             outline,
             root,
             tip,

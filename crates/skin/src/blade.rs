@@ -27,10 +27,8 @@ pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
     // The margin alone makes a triangle of each of its edges: a bundle of needles, which is all margin, would get
     // many times what was wished for.
     let edge = edge.max(around / wanted);
-    let mut lines: Vec<&[DVec2]> = vec![&blade.midrib];
-    if triangles >= VEINS_FROM {
-        lines.extend(blade.veins.iter().map(Vec::as_slice));
-    }
+    let creases = if triangles >= VEINS_FROM { usize::MAX } else { 1 };
+    let lines: Vec<&[DVec2]> = blade.lines().take(creases).map(Vec::as_slice).collect();
     let flat = geom::triangulate_blade(&blade.outline, &lines, edge).or_else(|_| {
         // An outline that crosses itself: its largest simple part, without veins that may lie outside.
         let simple = geom::simple_outline(&blade.outline).unwrap_or_default();

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use base::Executor;
+use glam::DVec2;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use plant::{Blade, OrganKind, Paint, Plant, Shape, ShapeId};
+use plant::{Blade, Lift, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
 
 use crate::coloured::is_coloured;
 use crate::layout::{Layout, Piece};
@@ -201,7 +202,7 @@ impl Slot {
                 Some(venation) => {
                     leaf(venation, &own.cloned().unwrap_or_else(any_blade), inks, size, executor)
                 }
-                None => leaf(VeinPattern::Pinnate, &any_blade(), inks, size, executor),
+                None => leaf(VeinPattern::Pinnate, &veined(plant), inks, size, executor),
             }
         };
         Some(match self {
@@ -323,6 +324,27 @@ impl Slot {
         }
         m
     }
+}
+
+/// The leaf on which most veins were drawn, of which all of a plant have their surface: a species has one venation. One
+/// vein alone is a fold or a shade. At length 1 and in steps that no eye sees, so that it is the same surface when the
+/// plant has grown by a line.
+fn veined(plant: &Plant) -> Blade {
+    const FEWEST: usize = 2;
+    const STEPS: f64 = 4096.0;
+    let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+    let blades = leaves.filter_map(|o| blade(plant, o.shape)).filter(|b| b.needles.is_none());
+    // Of several the first.
+    let most = blades.fold(None, |most: Option<&Blade>, b| {
+        let more = b.veins.len() > most.map_or(FEWEST - 1, |m| m.veins.len());
+        if more { Some(b) } else { most }
+    });
+    let Some(most) = most.filter(|b| b.length() > 0.0) else { return any_blade() };
+    let even = |p: &mut DVec2| *p = (*p * (STEPS / most.length())).round() / STEPS;
+    let mut leaf = Blade { relief: Relief::default(), lift: Lift::Flat, ..most.clone() };
+    leaf.outline.iter_mut().chain(&mut leaf.midrib).for_each(even);
+    leaf.veins.iter_mut().flat_map(|v| &mut v.line).for_each(even);
+    leaf
 }
 
 /// The blade of a shape that is one.

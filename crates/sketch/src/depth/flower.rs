@@ -243,7 +243,7 @@ impl Organs<'_, '_> {
         let out = (tip3 - cone.apex).try_normalize().unwrap_or(DVec3::Z);
         let inner = (cone.axis - out * cone.axis.dot(out)).try_normalize().unwrap_or(DVec3::Z);
         let mirrored = inner.z < 0.0;
-        let Some(local) = LocalBlade::new(petal, s, mirrored) else { return };
+        let Some(local) = LocalBlade::new(petal, s, mirrored, |of| self.scene.boldness(of)) else { return };
         let drawn = root.distance(tip).max(1e-12);
         let depth = |p: &DVec2| cone.depth(place(*p), sheet) - root3.z;
         let deepest = petal.outline.iter().map(|p| depth(p).abs()).fold(0.0, f64::max);

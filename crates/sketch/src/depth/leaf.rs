@@ -4,8 +4,8 @@
 
 use base::{Draw, ops};
 use glam::{DVec2, DVec3};
-use plant::{AxisKind, Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
-use reading::BladeReading;
+use plant::{AxisKind, Blade, BladeVein, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use reading::{BladeReading, VeinReading};
 
 use super::axes::{Part, key_of};
 use super::scene::{Bearing, Scene, around_one, sane, usable};
@@ -24,15 +24,21 @@ const DISTURBED: f64 = 30.0 * (ops::PI / 180.0);
 pub(crate) struct LocalBlade {
     pub(crate) outline: Vec<DVec2>,
     pub(crate) midrib: Vec<DVec2>,
-    pub(crate) veins: Vec<Vec<DVec2>>,
+    pub(crate) veins: Vec<BladeVein>,
     /// Unit, in the drawing plane.
     pub(crate) right: DVec2,
     pub(crate) along: DVec2,
 }
 
 impl LocalBlade {
-    /// `mirrored`: the blade's upper side looks away from the viewer. `None` for an outline without extent.
-    pub(crate) fn new(blade: &BladeReading, metres_per_ink: f64, mirrored: bool) -> Option<Self> {
+    /// `mirrored`: the blade's upper side looks away from the viewer; `boldness`: of a stroke. `None` for an outline without
+    /// extent.
+    pub(crate) fn new(
+        blade: &BladeReading,
+        metres_per_ink: f64,
+        mirrored: bool,
+        boldness: impl Fn(Option<u32>) -> f64,
+    ) -> Option<Self> {
         let sound = |p: &DVec2| usable(*p);
         let mut outline: Vec<DVec2> = blade.outline.iter().copied().filter(sound).collect();
         outline.dedup();
@@ -62,7 +68,8 @@ impl LocalBlade {
         midrib.retain(|p| p.length() > near && p.distance(end) > near);
         midrib.insert(0, DVec2::ZERO);
         midrib.push(end);
-        let veins = blade.veins.iter().map(|v| line(v)).filter(|v| v.len() >= 2).collect();
+        let vein = |v: &VeinReading| BladeVein { line: line(&v.points), boldness: boldness(v.source) };
+        let veins = blade.veins.iter().map(vein).filter(|v| v.line.len() >= 2).collect();
         Some(Self { outline: flat, midrib, veins, right, along })
     }
 
@@ -84,7 +91,7 @@ pub(crate) fn leaf_shape(
     leaf: &BladeReading,
     key: u64,
 ) -> Option<(ShapeId, LocalBlade)> {
-    let local = LocalBlade::new(leaf, scene.map.metres_per_ink, false)?;
+    let local = LocalBlade::new(leaf, scene.map.metres_per_ink, false, |of| scene.boldness(of))?;
     let seed = scene.seed.child(key);
     let relief = &scene.spec.relief;
     let mut curl = seed.stream(Draw::Curl);
@@ -237,7 +244,7 @@ mod tests {
             root: p(0.1, 0.1),
             tip: p(0.4, 0.4),
             midrib: vec![p(0.1, 0.1), p(0.25, 0.3), p(0.4, 0.4)],
-            veins: vec![],
+            veins: vec![VeinReading { points: vec![p(0.25, 0.3), p(0.3, 0.25)], source: Some(3) }],
             bearer: None,
             whorl: 0,
             front: None,
@@ -245,9 +252,14 @@ mod tests {
             color: None,
         };
         for mirrored in [false, true] {
-            let local = LocalBlade::new(&reading, 2.0, mirrored).expect("a blade");
+            let local = LocalBlade::new(&reading, 2.0, mirrored, |_| 1.5).expect("a blade");
             let area: f64 = (0..4).map(|i| local.outline[i].perp_dot(local.outline[(i + 1) % 4])).sum();
             assert!(area > 0.0, "counter-clockwise");
+            assert_eq!(
+                (local.veins.len(), local.veins[0].boldness),
+                (1, 1.5),
+                "the vein is as bold as it was drawn"
+            );
             let f = local.frame(DVec3::ZERO);
             assert_eq!(f.normal.z > 0.0, !mirrored);
             let mut drawn: Vec<DVec2> = local

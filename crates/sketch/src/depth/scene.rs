@@ -1,6 +1,6 @@
 //! What placing an organ needs: the reading, the map to metres, the axes that already stand.
 
-use base::{Draw, Seed, ops};
+use base::{Draw, LiteMap, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, Paint, Plant};
 use reading::Attachment;
@@ -22,6 +22,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) ids: &'a [Option<AxisId>],
     /// Drawn with coloured pens: organs take the colour that they were drawn in.
     pub(crate) coloured: bool,
+    /// How boldly strokes were drawn, beside the usual one, of those that differ from it.
+    pub(crate) pressed: &'a LiteMap<u32, f64>,
 }
 
 /// The node that bears something.
@@ -96,6 +98,11 @@ impl Scene<'_> {
         points[4] = seat;
         let id = plant.add_axis(kind, Some(b.node), key, &points, None);
         plant.axis(id).node_ids().last()
+    }
+
+    /// How boldly a stroke was drawn.
+    pub(crate) fn boldness(&self, source: Option<u32>) -> f64 {
+        source.and_then(|source| self.pressed.get(&source).copied()).unwrap_or(1.0)
     }
 
     /// The colour in which an organ was drawn, if the drawing is a coloured one, else white; varied slightly in

@@ -84,8 +84,7 @@ fn organ_lines(plant: &Plant, organ: &Organ, seen: impl Fn(DVec3) -> DVec2, line
             let surface = blade.surface();
             let line = |points: &[DVec2]| points.iter().map(|&p| at(surface.point(p))).collect();
             show(line(&blade.outline), true);
-            show(line(&blade.midrib), false);
-            blade.veins.iter().for_each(|v| show(line(v), false));
+            blade.lines().for_each(|l| show(line(l), false));
         }
         Some(Shape::Dome { radius_m, .. }) => {
             let corner = |i: u32| {

@@ -3,7 +3,7 @@
 
 use base::{Digest, Executor, map_indexed, ops};
 use glam::DVec2;
-use plant::Blade;
+use plant::{Blade, BladeVein};
 
 use super::blades::{LeafInks, PetalInks, petal};
 use super::noise::{Plates, gradient, octaves};
@@ -101,6 +101,11 @@ struct Fields {
 
 const STEPS: usize = 64;
 
+/// Half of a side vein's width at its beginning and at its end, and how far from the midrib one may begin that was meant to
+/// begin on it; shares of the blade's length.
+const SIDE_VEIN: (f64, f64) = (0.0058, 0.0012);
+const LED_ON: f64 = 0.12;
+
 impl Plan {
     pub(super) fn new(venation: VeinPattern, blade: &Blade, executor: &dyn Executor) -> Self {
         let chart = BladeChart::new(blade);
@@ -137,13 +142,9 @@ impl Plan {
         }
         let mut veins = vec![Vein { points: blade.midrib.clone(), width: (0.011 * length, 0.002 * length) }];
         match self.venation {
-            // As they were drawn or measured.
-            _ if !blade.veins.is_empty() => veins.extend(
-                blade
-                    .veins
-                    .iter()
-                    .map(|v| Vein { points: v.clone(), width: (0.0058 * length, 0.0012 * length) }),
-            ),
+            _ if !blade.veins.is_empty() => {
+                veins.extend(blade.veins.iter().map(|v| self.drawn(v, &blade.midrib)))
+            }
             VeinPattern::Pinnate => {
                 let lobes = tips(blade, |p| p.x);
                 if lobes.len() >= 2 {
@@ -173,6 +174,23 @@ impl Plan {
         veins
     }
 
+    /// A vein as it was drawn, from the midrib outwards: where it begins a little beside it, it is led on to it.
+    fn drawn(&self, vein: &BladeVein, midrib: &[DVec2]) -> Vein {
+        let mut points = vein.line.clone();
+        let to_midrib =
+            |p: Option<&DVec2>| geom::closest_on_polyline(midrib, *p?).map(|c| (c.distance, c.point));
+        let (mut first, last) = (to_midrib(points.first()), to_midrib(points.last()));
+        if last.zip(first).is_some_and(|(last, first)| last.0 < first.0) {
+            points.reverse();
+            first = last;
+        }
+        if let Some((_, on_it)) = first.filter(|(gap, _)| *gap < LED_ON * self.extent.y) {
+            points.insert(0, on_it);
+        }
+        let width = |share: f64| share * vein.boldness * self.extent.y;
+        Vein { points, width: (width(SIDE_VEIN.0), width(SIDE_VEIN.1)) }
+    }
+
     /// Side veins that leave the midrib and arch to the margin, those of both sides half a step apart.
     fn feathered(&self, veins: &mut Vec<Vein>) {
         const EACH: u32 = 8;
@@ -188,7 +206,7 @@ impl Plan {
             let end = DVec2::new(side * 0.95 * self.half_at(high), high);
             let points =
                 curve(DVec2::new(0.0, start), DVec2::new(0.58 * end.x, ops::lerp(start, high, 0.40)), end);
-            veins.push(Vein { points, width: (0.0058 * length, 0.0012 * length) });
+            veins.push(Vein { points, width: (SIDE_VEIN.0 * length, SIDE_VEIN.1 * length) });
         }
         // Lobes beside the stalk have veins of their own.
         if self.low < -0.01 * length {
@@ -454,6 +472,20 @@ mod tests {
             let veined = venation != VeinPattern::Needle;
             assert_eq!((paler, thicker), (veined, veined), "{venation:?}");
         }
+    }
+
+    #[test]
+    fn drawn_veins_begin_on_the_midrib_and_are_as_bold_as_they_were_drawn() {
+        let p = DVec2::new;
+        // One from the margin to a little beside the midrib, drawn lightly, and one that branches off far from it.
+        let light = BladeVein { line: vec![p(0.25, 0.6), p(0.15, 0.5), p(0.04, 0.4)], boldness: 0.5 };
+        let bold = BladeVein { line: vec![p(-0.2, 0.5), p(-0.28, 0.6)], boldness: 2.0 };
+        let blade = Blade { veins: vec![light, bold], ..any_blade() };
+        let veins = Plan::new(VeinPattern::Pinnate, &blade, &Serial).veins(&blade);
+        assert_eq!(veins.len(), 3, "the midrib and what was drawn, nothing else");
+        assert_eq!(veins[1].points, [p(0.0, 0.4), p(0.04, 0.4), p(0.15, 0.5), p(0.25, 0.6)]);
+        assert_eq!(veins[2].points[0], p(-0.2, 0.5));
+        assert!((veins[2].width.0 - 4.0 * veins[1].width.0).abs() < 1e-12);
     }
 
     #[test]
