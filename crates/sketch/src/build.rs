@@ -252,7 +252,7 @@ struct DrawnLeaf<'a> {
 }
 
 fn leaf_shapes<'a>(plant: &mut Plant, scene: &Scene<'_>, reading: &'a Reading) -> Vec<DrawnLeaf<'a>> {
-    let mut of_stroke: base::LiteMap<Option<u32>, usize> = base::LiteMap::new();
+    let mut of_stroke: LiteMap<Option<u32>, usize> = LiteMap::new();
     let mut leaves = Vec::with_capacity(reading.leaves.len());
     for leaf in &reading.leaves {
         let rank = of_stroke.entry(leaf.source).or_insert(0_usize);

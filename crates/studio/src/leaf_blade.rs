@@ -24,7 +24,7 @@ pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade
     plant::Blade {
         outline: scaled(outline),
         midrib: scaled(midrib),
-        veins: flat.side_veins().into_iter().map(scaled).collect(),
+        veins: flat.side_veins().into_iter().map(|v| scaled(v).into()).collect(),
         needles: None,
         lift: plant::Lift::Flat,
         relief,

@@ -7,7 +7,7 @@ use base::{Run, Seed};
 use glam::{DMat3, DVec2, DVec3};
 use leaf::{FullMarks, Leaf, LeafPaint, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
-use plant::{Blade, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
+use plant::{Blade, BladeVein, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
 use skin::{LeafColours, Worn};
 
 use crate::leaf_blade::leaf_blade;
@@ -216,7 +216,7 @@ impl LeafTemplate {
         Blade {
             outline: scaled(&self.blade.outline),
             midrib: scaled(&self.blade.midrib),
-            veins: self.blade.veins.iter().map(|v| scaled(v)).collect(),
+            veins: self.blade.veins.iter().map(|v| BladeVein { line: scaled(&v.line), ..*v }).collect(),
             ..self.blade.clone()
         }
     }
