@@ -223,7 +223,7 @@ async function shape({ page, url, shot }) {
   await page.waitForTimeout(700);
   await shot('headset-out');
   await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await reloaded(page);
   await page.waitForFunction((d) => document.body.dataset.digest === d, drawn);
 }
 
@@ -787,7 +787,7 @@ const whole =
     await page.waitForFunction(() => document.body.dataset.headset === 'off');
     assert.equal(await data(page, 'digest'), digests.at(-1));
     await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-    await page.reload();
+    await reloaded(page);
     await page.waitForFunction((d) => document.body.dataset.digest === d, digests.at(-1));
   };
 

@@ -16,6 +16,7 @@ import { network } from './network.mjs';
 import { shaping } from './shaping.mjs';
 import { staging } from './staging.mjs';
 import { strokes } from './strokes.mjs';
+import { overhear } from './waits.mjs';
 
 const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -49,6 +50,7 @@ for (const [name, journey, options] of all) {
     ...options,
   });
   if (!options?.fresh) await context.addInitScript(() => localStorage.setItem('burgeon.tour', 'done'));
+  await context.addInitScript(overhear);
   const page = await context.newPage();
   const troubles = [];
   const foreign = [];
