@@ -31,20 +31,23 @@ export const becomes = (read, value, what) =>
  */
 export function overhear() {
   const { postMessage } = Worker.prototype;
-  const overheard = { asked: 0, grows: false, ask: () => {} };
+  const overheard = { asked: 0, grows: false, hands: 0, ask: () => {} };
+  const hands = new Set();
   globalThis.overheard = overheard;
   Worker.prototype.postMessage = function post(message, ...rest) {
     if (message?.kind === 'start') {
       Object.assign(overheard, { asked: 0, grows: false });
       overheard.ask = () => this.postMessage({ kind: 'ask', seq: -1, request: { kind: 'held' } });
       // The page listens already: it hears everything first.
-      this.addEventListener('message', ({ data: { kind } }) => {
+      this.addEventListener('message', ({ data: { kind, seq } }) => {
+        if (hands.delete(seq)) overheard.hands += 1;
         if (kind === 'done' || kind === 'refused') overheard.asked -= 1;
         if (kind === 'busy') overheard.grows = true;
         if (kind === 'view' || kind === 'failed') overheard.grows = false;
       });
     }
     if (message?.kind === 'ask') overheard.asked += 1;
+    if (message?.request?.kind === 'shape') hands.add(message.seq);
     return postMessage.call(this, message, ...rest);
   };
 }
@@ -67,6 +70,13 @@ export async function answered(page) {
     // A hand in a headset asks without end.
     return document.body.dataset.headset === 'on' || (asked <= 0 && !grows);
   });
+}
+
+/** Does something with a hand that asks without end, until it is answered: the first answer may be to what was before. */
+export async function felt(page, act) {
+  const before = await page.evaluate(() => globalThis.overheard.hands);
+  await act();
+  await page.waitForFunction((n) => globalThis.overheard.hands > n, before + 1);
 }
 
 /** Until the view shows what there is: its last picture is seen, none is coming, the camera stands still. */
