@@ -1,7 +1,7 @@
 // What is drawn stays: crashes, two tabs, the list of documents, a browser that keeps nothing.
 import assert from 'node:assert/strict';
 import { begin, count, draw, line, sample, settled, until } from './journeys.mjs';
-import { answered, becomes, eventually, reloaded, rested, stored, take } from './waits.mjs';
+import { answered, becomes, eventually, reloaded, stored, take } from './waits.mjs';
 
 const standing = (page, word) => page.waitForFunction((w) => document.body.dataset.kept === w, word);
 const said = (page) => page.locator('#b-kept').textContent();
@@ -275,7 +275,6 @@ async function listOnPhone({ page, url, shot }) {
   await page.click('[data-sample=tulip]');
   await until(page, 'triangles', ['above', 0], 'a tulip');
   await settled(page);
-  await rested(page);
   await page.click('#b-documents');
   await page.locator('.shelf-open').first().waitFor();
   const box = await page.locator('dialog').boundingBox();

@@ -8,6 +8,7 @@ import {
   answered,
   becomes,
   eventually,
+  loaded,
   pictures,
   reloaded,
   rested,
@@ -186,6 +187,7 @@ async function stage({ page, url, shot }) {
   assert.equal(await page.locator('.view').getAttribute('data-quality'), 'fast', 'no graphics card here');
   await page.selectOption('[data-stage=quality]', 'fine');
   await page.locator('.view[data-quality=fine]').waitFor();
+  await loaded(page, 'post');
   const like = (rgb) => apart(rgb, behind) < 6;
   await eventually(() => look(sky), like, `the picture keeps its colours: ${behind}`);
   await page.selectOption('[data-stage=quality]', 'auto');

@@ -82,6 +82,7 @@ export async function felt(page, act) {
 /** Until the view shows what there is: its last picture is seen, none is coming, the camera stands still. */
 export async function rested(page) {
   await answered(page);
+  await pictures(page);
   await page.waitForSelector('.view[data-rests="1"]');
 }
 
