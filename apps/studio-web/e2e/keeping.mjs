@@ -33,11 +33,10 @@ async function fall(page, context) {
   await fell;
 }
 
-/** Points of the stroke under the pen, as far as it is written; each has four numbers. */
+/** The stroke under the pen, as far as it is written: points (of four numbers each), and the row that it comes after. */
 async function underHand(page) {
-  const rows = await stored(page, 'journal');
-  const drawn = rows.find((row) => row.requests)?.requests ?? [];
-  return (drawn.find((r) => r.kind === 'stroke')?.samples ?? 0) / 4;
+  const { after, requests = [] } = (await stored(page, 'journal')).find((row) => row.requests) ?? {};
+  return { after, points: (requests.find((r) => r.kind === 'stroke')?.samples ?? 0) / 4 };
 }
 
 /** The list of documents, as it is shown: what each row says. */
@@ -77,11 +76,11 @@ async function underPen({ page, url, context }) {
     await of.mouse.move(box.x + 180, box.y + 250, { steps });
   };
   await reach(page, 12);
-  const written = (of) =>
+  const written = (of, before) =>
     eventually(
       () => underHand(of),
-      (points) => points > 9,
-      'points under the pen that are written',
+      ({ after, points }) => points > 9 && after !== before,
+      'what is under the pen is written',
     );
   await written(page);
   assert.equal(await count(page, 'strokes'), 0, 'it is not finished');
@@ -95,10 +94,11 @@ async function underPen({ page, url, context }) {
   await reloaded(after);
   await until(after, 'strokes', ['is', 0], 'and does not come back');
   // What the system takes from the hand was no stroke.
+  const { after: before } = await underHand(after);
   await reach(after, 12);
-  await written(after);
+  await written(after, before);
   await after.locator('.sheet').dispatchEvent('pointercancel', { pointerId: 1, pointerType: 'mouse' });
-  await becomes(() => underHand(after), 0, 'what is written of it');
+  await becomes(async () => (await underHand(after)).points, 0, 'points of it that are written');
   await reloaded(after);
   await until(after, 'strokes', ['is', 0], 'a stroke that was taken back is none');
   await after.close();
