@@ -15,6 +15,7 @@ import {
   until,
 } from './journeys.mjs';
 import { frameOf, mean } from './staging.mjs';
+import { answered, becomes, eventually, loaded, pictures, rested } from './waits.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const WIDE = { viewport: { width: 1360, height: 760 } };
@@ -25,13 +26,7 @@ async function bush(page, url) {
   await drop(page, 'bush.toml', BUSH);
   await until(page, 'triangles', ['above', 1000], 'a bush has grown');
   await settled(page);
-  await still(page);
-}
-
-/** Until the view shows what there is, and its camera stands still. */
-async function still(page) {
-  await page.waitForTimeout(600);
-  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
+  await rested(page);
 }
 
 const field = (page, key) => page.locator(`[data-key=${key}]`).inputValue().then(Number);
@@ -39,6 +34,27 @@ const middle = async (page) => {
   const box = await page.locator('.view').boundingBox();
   return { x: box.x + box.width / 2, y: box.y + box.height / 2, box };
 };
+
+/** What undo would take back, as its button says it. */
+const undone = (page) => page.locator('#b-undo').getAttribute('title');
+
+/** Drags the gizmo by its first handle that is found below the middle of the view, which is drawn anew when it is hovered. */
+async function pull(page, by) {
+  const { x, y, box } = await middle(page);
+  await page.mouse.move(x, box.y + 4);
+  await rested(page);
+  for (let k = 0; k < 400; k += 1) {
+    const at = [x - 60 + 15 * (k % 25), y + box.height * (0.02 + 0.03 * Math.floor(k / 25))];
+    await page.mouse.move(...at);
+    if ((await page.locator('.view').getAttribute('data-rests')) === '1') continue;
+    await page.mouse.down();
+    await page.mouse.move(at[0] + by, at[1], { steps: 4 });
+    await page.mouse.up();
+    await settled(page);
+    return;
+  }
+  throw new Error('no handle under the pointer');
+}
 
 /** A tree that takes long tells how far it is. */
 async function progress({ page, url }) {
@@ -71,13 +87,15 @@ async function copies({ page, url, shot }) {
   const alone = (await exported(page, 'glb')).bytes.length;
   for (let k = 2; k <= 4; k += 1) {
     await page.locator('[data-plant=tree]').last().click();
+    await settled(page);
     await page.click('[id^=b-more-] >> nth=-1');
     const before = await count(page, 'revision');
     await page.click('.menu >> text=Duplicate');
     await until(page, 'revision', ['above', before], 'it is seen');
     await until(page, 'plants', ['is', k], 'a copy');
   }
-  await page.waitForTimeout(1200);
+  await settled(page);
+  await rested(page);
   assert.equal(await count(page, 'meshes'), 1, 'all of them share one plant');
   await shot('grove-copies');
   const four = (await exported(page, 'glb')).bytes.length;
@@ -101,44 +119,37 @@ async function copies({ page, url, shot }) {
 async function gizmos({ page, url, shot }) {
   await bush(page, url);
   await page.click('.scene .fold');
-  const pressed = (mode) => page.locator(`[data-gizmo=${mode}]`).getAttribute('aria-pressed');
+  const pressed = (mode, on) => page.locator(`[data-gizmo=${mode}][aria-pressed=${on}]`).waitFor();
   for (const [key, mode] of [
     ['g', 'translate'],
     ['r', 'rotate'],
     ['s', 'scale'],
   ]) {
     await page.keyboard.press(key);
-    assert.equal(await pressed(mode), 'true', key);
+    await pressed(mode, true);
   }
+  await answered(page);
   assert.equal(await count(page, 'plants'), 1, 'no dice were rolled');
   await page.keyboard.press('Escape');
-  assert.equal(await pressed('scale'), 'false');
+  await pressed('scale', false);
   await page.click('[data-key=snap]');
   await page.keyboard.press('g');
   await page.keyboard.press('x');
-  await page.waitForTimeout(900);
-  // The handle along x, wherever it is: the gizmo answers by a cursor of its own, so what moves the plant is found.
-  const { x, y, box } = await middle(page);
-  let moved = false;
-  for (let k = 0; k < 60 && !moved; k += 1) {
-    const [px, py] = [x + 30 + 3 * (k % 20), y + box.height * (0.1 + 0.06 * Math.floor(k / 20))];
-    await page.mouse.move(px, py);
-    await page.mouse.down();
-    await page.mouse.move(px + 60, py, { steps: 4 });
-    await page.mouse.up();
-    await page.waitForTimeout(60);
-    await settled(page);
-    moved = (await field(page, 'nx')) !== 0 || (await field(page, 'nz')) !== 0;
-  }
-  assert.ok(moved, 'the handle moves the plant');
+  await loaded(page, 'gizmo');
+  await pull(page, 120);
+  await eventually(
+    () => field(page, 'nx'),
+    (at) => at !== 0,
+    'the handle moves the plant',
+  );
   assert.equal(await field(page, 'nz'), 0, 'it is bound to x');
-  await page.waitForTimeout(600);
+  await rested(page);
   await shot('grove-gizmo');
   for (const key of ['nx', 'nz']) {
     const at = await field(page, key);
     assert.ok(Math.abs(at / 0.25 - Math.round(at / 0.25)) < 1e-6, `${key} is ${at}`);
   }
-  assert.match(await page.locator('#b-undo').getAttribute('title'), /place/);
+  assert.match(await undone(page), /place/);
 }
 
 /** A plant that is dragged goes as far as the pointer does on the ground, and its shadow with it. */
@@ -147,7 +158,7 @@ async function dragged({ page, url, shot }) {
   await page.click('.scene .fold');
   await page.keyboard.press('g');
   await page.keyboard.press('x');
-  await page.waitForTimeout(900);
+  await loaded(page, 'gizmo');
   const { x, y, box } = await middle(page);
   const pose = JSON.parse(await page.locator('.view').getAttribute('data-eye'));
   const frame = frameOf(pose, box.height);
@@ -156,11 +167,11 @@ async function dragged({ page, url, shot }) {
   const free = (panel.x + panel.width - box.x) / 2;
   /** How much darker the ground is where a plant there throws its shadow than beside it. */
   const shade = async (at) => {
-    await still(page);
+    await rested(page);
+    const bytes = await page.locator('.view canvas').screenshot();
     const [px, py] = frame.to(at);
     const luma = async (dx) => {
       const [u, v] = [0.5 + (px + free + dx) / box.width, 0.5 + py / box.height];
-      const bytes = await page.locator('.view canvas').screenshot();
       const { rgb } = await mean(page, bytes, [u - 0.15, v - 0.12, u - 0.03, v - 0.02]);
       return (rgb[0] + rgb[1] + rgb[2]) / 3;
     };
@@ -173,11 +184,10 @@ async function dragged({ page, url, shot }) {
   const hot = (d) => [x + free + foot[0] + d * axis[0], y + foot[1] + d * axis[1]];
   const way = 82;
   await page.mouse.move(...hot(52));
-  await page.waitForTimeout(200);
+  await pictures(page);
   await page.mouse.down();
   await page.mouse.move(...hot(52 + way), { steps: 6 });
   await page.mouse.up();
-  await page.waitForTimeout(100);
   await settled(page);
   const to = await field(page, 'nx');
   assert.ok(to > 0, 'the handle moves the plant');
@@ -198,20 +208,18 @@ async function typing({ page, url }) {
     const digest = await settled(page);
     await slide(page, 'age', share);
     await changed(page, digest, 'another age');
-    await page.waitForTimeout(300);
   };
-  const undo = () => page.locator('#b-undo').getAttribute('title');
   await page.locator('[data-key=nx]').selectText();
   await page.keyboard.type('1.2');
   // Something else changes the plant meanwhile.
   await grown(0.6);
-  assert.ok(!(await old.evaluate((e) => e.isConnected)), 'the panel was filled anew');
-  assert.doesNotMatch(await undo(), /place/, 'nothing was taken yet');
+  await becomes(() => old.evaluate((e) => e.isConnected), false, 'the panel of before');
+  assert.doesNotMatch(await undone(page), /place/, 'nothing was taken yet');
   await page.keyboard.type('5');
-  assert.equal(await page.locator('[data-key=nx]').inputValue(), '1.25');
+  await becomes(() => page.locator('[data-key=nx]').inputValue(), '1.25', 'what is typed');
   await page.keyboard.press('Enter');
   await page.locator('#b-undo[title*="place"]').waitFor();
-  assert.equal(await field(page, 'nx'), 1.25);
+  await becomes(() => field(page, 'nx'), 1.25, 'what was taken');
   // Taken by Enter, or by leaving it, also where nothing is typed any more.
   for (const [text, leave] of [
     ['0.5', 'Enter'],
@@ -220,17 +228,20 @@ async function typing({ page, url }) {
     await page.locator('[data-key=nx]').selectText();
     await page.keyboard.type(text);
     await grown(text === '0.5' ? 0.8 : 0.5);
-    assert.doesNotMatch(await undo(), /place/);
+    assert.doesNotMatch(await undone(page), /place/);
     await page.keyboard.press(leave);
     await page.locator('#b-undo[title*="place"]').waitFor();
-    assert.equal(await field(page, 'nx'), Number(text));
+    await becomes(() => field(page, 'nx'), Number(text), 'what was taken');
   }
   // A size beyond what there may be is shown as it was taken, not as it was typed.
   await page.locator('[data-key=nscale]').selectText();
   await page.keyboard.type('0');
   await page.keyboard.press('Enter');
-  await page.waitForTimeout(600);
-  assert.ok((await field(page, 'nscale')) > 0, 'no plant has no size');
+  await eventually(
+    () => field(page, 'nscale'),
+    (size) => size > 0,
+    'no plant has no size',
+  );
 }
 
 /** Plants that are chosen together are a group, and go as one. */
@@ -245,9 +256,10 @@ async function groups({ page, url, shot }) {
   for (const k of [2, 3]) {
     await menu(0, 'Duplicate');
     await until(page, 'plants', ['is', k], 'a copy');
+    await settled(page);
     await rows.first().click();
+    await settled(page);
   }
-  await settled(page);
   const choose = async (row) => {
     await rows.nth(row).click();
     await page.waitForFunction(
@@ -260,40 +272,28 @@ async function groups({ page, url, shot }) {
   await choose(2);
   await page.fill('[data-key=nz]', '-1');
   await page.locator('[data-key=nz]').blur();
-  await page.waitForFunction(() => document.querySelector('[data-key=nz]').value === '-1');
+  await settled(page);
+  await becomes(() => field(page, 'nz'), -1, 'where it stands');
   const place = async (row) => {
     await choose(row);
     return [await field(page, 'nx'), await field(page, 'nz')];
   };
   const before = [await place(1), await place(2)];
   await rows.nth(1).click();
+  await settled(page);
   await rows.nth(2).click({ modifiers: ['Control'] });
   await page.getByText('2 plants chosen').waitFor();
-  assert.equal(await page.locator('.plant[aria-pressed=true]').count(), 2);
+  await becomes(() => page.locator('.plant[aria-pressed=true]').count(), 2, 'what is chosen');
   await page.keyboard.press('Control+g');
   const group = page.locator('.plant.group');
-  await group.waitFor();
-  assert.match(await group.textContent(), /Group 1 × 2/);
-  assert.equal(await group.getAttribute('aria-pressed'), 'true', 'it is chosen');
-  // The gizmo takes both; where its handle is, is found as for one.
+  await page.locator('.plant.group[aria-pressed=true]', { hasText: 'Group 1 × 2' }).waitFor();
+  // The gizmo takes both.
   await page.keyboard.press('g');
-  await page.waitForTimeout(900);
-  const { x, y, box } = await middle(page);
-  const undone = () => page.locator('#b-undo').getAttribute('title');
-  for (let k = 0; k < 120 && !/place/.test(await undone()); k += 1) {
-    const row = [0, 1, -1, 2, -2, -3][Math.floor(k / 20)];
-    const [px, py] = [x - 40 + 10 * (k % 20), y + box.height * (0.17 + 0.05 * row)];
-    await page.mouse.move(px, py);
-    await page.mouse.down();
-    await page.mouse.move(px + 60, py, { steps: 4 });
-    await page.mouse.up();
-    await page.waitForTimeout(60);
-    // A second drag would be a second step.
-    await settled(page);
-  }
-  assert.match(await undone(), /place/, 'the handle moves them');
+  await loaded(page, 'gizmo');
+  await pull(page, 60);
+  assert.match(await undone(page), /place/, 'the handle moves them');
   await page.keyboard.press('Escape');
-  await still(page);
+  await rested(page);
   await shot('grove-group');
   const after = [await place(1), await place(2)];
   const by = after.map((at, row) => at.map((v, k) => v - before[row][k]));
@@ -318,14 +318,17 @@ async function groups({ page, url, shot }) {
   await page.getByText('Group 2 × 2').click();
   await page.keyboard.press('Control+Shift+G');
   await page.getByText('Group 2 × 2').waitFor({ state: 'detached' });
+  await settled(page);
   await group.click();
+  await settled(page);
   await group.press('Delete');
   await until(page, 'plants', ['is', 3], 'its plants went with it');
   await page.keyboard.press('Control+z');
   await until(page, 'plants', ['is', 5], 'and came back');
-  await group.waitFor();
+  await settled(page);
   // A locked plant keeps all of them.
   await group.click();
+  await settled(page);
   await page.click('#b-fix');
   await page.locator('[data-gizmo=translate]:disabled').waitFor();
 }
@@ -339,22 +342,23 @@ async function scatter({ page, url, shot }) {
   // Half a crown apart, so that several have room on what this window shows.
   await page.fill('[data-key=nspacing]', String(spacing / 2));
   await page.locator('[data-key=nspacing]').blur();
+  await rested(page);
   const { x, box } = await middle(page);
   const floor = box.y + box.height * 0.86;
   await page.click('[data-scatter=line]');
   await page.mouse.move(x - 150, floor);
   await page.mouse.down();
   await page.mouse.move(x + 260, floor, { steps: 12 });
-  await page.waitForTimeout(300);
+  await pictures(page);
   await shot('grove-line-held');
   await page.mouse.up();
   await until(page, 'plants', ['above', 2], 'copies stand along the line');
+  await settled(page);
   const many = await count(page, 'plants');
   await until(page, 'meshes', ['above', 1], 'seeds of their own');
   assert.ok((await count(page, 'meshes')) <= 4, 'three kinds and the first');
-  await page.locator('.plant.group').waitFor();
-  assert.match(await page.locator('.plant.group').textContent(), new RegExp(`bush × ${many}`));
-  await page.waitForTimeout(1500);
+  await page.locator('.plant.group', { hasText: `bush × ${many}` }).waitFor();
+  await rested(page);
   await shot('grove-line');
   await page.click('[data-key="gebush"]');
   await page.locator('li.is-hidden').first().waitFor();
@@ -362,6 +366,8 @@ async function scatter({ page, url, shot }) {
   await page.locator('li.is-hidden').first().waitFor({ state: 'detached' });
   await page.keyboard.press('Control+z');
   await until(page, 'plants', ['is', 1], 'one step of undo takes all copies back');
+  await settled(page);
+  await rested(page);
   await page.click('[data-scatter=area]');
   const ring = Array.from({ length: 25 }, (_, k) => [
     x + 210 * Math.cos(k / 4),
@@ -372,10 +378,13 @@ async function scatter({ page, url, shot }) {
   for (const at of ring) await page.mouse.move(...at);
   await page.mouse.up();
   await until(page, 'plants', ['above', 2], 'copies fill the area');
-  await page.waitForTimeout(2500);
+  await settled(page);
+  await rested(page);
   await shot('grove-area');
   await page.keyboard.press('Control+z');
   await until(page, 'plants', ['is', 1], 'they are gone');
+  await settled(page);
+  await rested(page);
   // The brush sets copies about its way, one step for the whole way.
   await page.click('[data-scatter=brush]');
   await page.mouse.move(x - 200, floor);
@@ -383,7 +392,8 @@ async function scatter({ page, url, shot }) {
   await page.mouse.move(x + 200, floor - 30, { steps: 14 });
   await page.mouse.up();
   await until(page, 'plants', ['above', 2], 'copies stand where the brush was');
-  await page.waitForTimeout(1500);
+  await settled(page);
+  await rested(page);
   await shot('grove-brush');
   await page.keyboard.press('Control+z');
   await until(page, 'plants', ['is', 1], 'one step takes them back');
@@ -409,11 +419,12 @@ async function files({ page, url, shot }) {
   await page.click('#b-open');
   await (await chooser).setFiles({ name: 'looked.glb', mimeType: 'model/gltf-binary', buffer: glb.bytes });
   await page.locator('#b-looking-close').waitFor();
-  assert.match(await page.locator('#b-looking').textContent(), /sample/);
-  await page.waitForTimeout(600);
+  await page.locator('#b-looking', { hasText: 'sample' }).waitFor();
+  await rested(page);
   await shot('grove-looking');
   await page.click('#b-looking-close');
   await page.locator('#b-looking').waitFor({ state: 'hidden' });
+  await answered(page);
   assert.equal(await count(page, 'plants'), 3, 'the scene is as it was');
 }
 
@@ -424,18 +435,22 @@ async function tools({ page, url, shot }) {
   await page.locator('.strip').waitFor();
   await page.keyboard.press('2');
   await page.keyboard.press('q');
-  assert.match(await page.locator('#b-shape-up').textContent(), /\+1$/);
+  await page.locator('#b-shape-up', { hasText: /\+1$/ }).waitFor();
   await page.keyboard.press('3');
-  assert.doesNotMatch(await page.locator('#b-shape-up').textContent(), /\+/, 'Bearer +1 stays with its tool');
+  // Bearer +1 stays with its tool.
+  await page.locator('#b-shape-up', { hasText: /^[^+]*$/ }).waitFor();
   // By keys alone: the trunk, what it bears, the next one, and back.
   await page.keyboard.press('1');
+  await rested(page);
   const { x, y, box } = await middle(page);
   await page.mouse.move(box.x + 4, box.y + 4);
+  await answered(page);
   const picked = async (key, test) => {
     const before = await page.locator('.options').textContent();
     await page.keyboard.press(key);
     if (test !== 'same')
       await page.waitForFunction((b) => document.querySelector('.options').textContent !== b, before);
+    await answered(page);
     return data(page, 'picked');
   };
   const trunk = await picked('.');
@@ -455,7 +470,7 @@ async function tools({ page, url, shot }) {
   await page.mouse.move(x + box.width * 0.3, y - box.height * 0.42, { steps: 6 });
   await page.mouse.up();
   await page.locator('.note', { hasText: 'begins on wood' }).waitFor();
-  assert.equal(await data(page, 'digest'), plain);
+  assert.equal(await settled(page), plain);
 }
 
 /** The panel: what matters first, the rest folded, search, and one value as it was. */
@@ -463,6 +478,8 @@ async function panel({ page, url, shot }) {
   await begin(page, url);
   await page.click('#b-add');
   await page.click('[data-add=tree]');
+  // The catalogue comes first.
+  await page.locator('dialog [data-preset]').first().waitFor();
   const species = await page
     .locator('dialog [data-preset]')
     .evaluateAll((all) => all.map((e) => e.dataset.preset));
@@ -476,8 +493,8 @@ async function panel({ page, url, shot }) {
   await until(page, 'triangles', ['above', 1000], 'a hazel');
   const plain = await settled(page);
   const shown = () => page.locator('.form .f-row:visible').count();
-  assert.equal(await shown(), 5, 'five settings at first');
-  await page.waitForTimeout(500);
+  await becomes(shown, 5, 'the number of settings at first');
+  await rested(page);
   await shot('grove-panel');
   const length = page.locator('input[data-path="/leaves/length_m"]');
   const was = await length.inputValue();
@@ -487,7 +504,7 @@ async function panel({ page, url, shot }) {
   await page.locator('.f-row', { has: length }).locator('.f-reset').click();
   await changed(page, longer, 'as it was');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
-  assert.equal(await length.inputValue(), was);
+  await becomes(() => length.inputValue(), was, 'the length of leaves');
   await page.locator('.f-search input').fill('light');
   await page.waitForFunction(() => {
     const found = [...document.querySelectorAll('.form .f-row')].filter((row) => row.checkVisibility());
@@ -496,10 +513,11 @@ async function panel({ page, url, shot }) {
   await shot('grove-search');
   await page.locator('.f-search input').fill('');
   await page.waitForFunction(() => document.querySelectorAll('.form details').length > 2);
-  assert.equal(await shown(), 5);
+  await becomes(shown, 5, 'the number of settings');
   await add(page, 'leaf');
   await page.waitForFunction(() => document.body.dataset.current === 'leaf');
   const made = await settled(page);
+  await rested(page);
   await shot('grove-leaf-numbers');
   const lobes = page.locator('input[data-path="/form/lobes"]');
   await lobes.fill('0.5');
@@ -509,7 +527,7 @@ async function panel({ page, url, shot }) {
   await page.click('#b-leaf-sample');
   await changed(page, lobed, 'a leaf from the sample');
   await until(page, 'triangles', ['above', 500], 'a leaf from the sample');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('grove-leaf-sample');
 }
 
@@ -520,6 +538,8 @@ async function settings({ page, url, shot }) {
   const plain = await settled(page);
   await page.click('#b-settings');
   await page.locator('.popover [data-path="/skin/petals"]').first().selectOption('blue');
+  // The rows are shown anew with what was taken.
+  await settled(page);
   await page.locator('.popover .f-search input').fill('height');
   const height = page.locator('.popover input[type=number][data-path="/height_m"]');
   await height.fill('2');
@@ -531,13 +551,31 @@ async function settings({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
+const OVER = 'dialog[open], .popover';
+
+/** Until what was asked for lies over the page, with what it shows. */
+async function opened(page) {
+  await page.locator(OVER).first().waitFor();
+  if ((await page.locator('.shelf-dialog').count()) > 0) await page.locator('.shelf-open').first().waitFor();
+}
+
+/** Until nothing on the page moves or changes its colour. */
+async function calm(page) {
+  await answered(page);
+  await page.waitForFunction(() =>
+    document
+      .getAnimations()
+      .every((a) => a.playState !== 'running' || a.effect?.getComputedTiming().endTime === Infinity),
+  );
+}
+
 /** Nothing critical or serious, in what is seen first, with panels and dialogs. */
 async function anybody({ page, url }) {
   await begin(page, url);
   // The policy of the page allows no text to become code: the driver brings it in.
   const cdp = await page.context().newCDPSession(page);
   const look = async (where) => {
-    await page.waitForTimeout(400);
+    await calm(page);
     await cdp.send('Runtime.evaluate', { expression: AXE });
     const { result, exceptionDetails } = await cdp.send('Runtime.evaluate', {
       expression:
@@ -566,9 +604,10 @@ async function anybody({ page, url }) {
   await page.keyboard.press('Escape');
   for (const id of ['export', 'help', 'documents', 'stage', 'camera', 'film', 'materials']) {
     await page.click(`#b-${id}`);
+    await opened(page);
     await look(id);
     await page.keyboard.press('Escape');
-    await page.waitForTimeout(200);
+    await page.locator(OVER).first().waitFor({ state: 'detached' });
   }
   await page.keyboard.press('Control+k');
   await page.locator('.palette input').waitFor();
@@ -581,7 +620,7 @@ async function fingers({ page, url, shot }) {
   await begin(page, url);
   assert.ok(await page.evaluate(() => matchMedia('(pointer: coarse)').matches));
   const look = async (where) => {
-    await page.waitForTimeout(300);
+    await calm(page);
     const small = await page.evaluate(() => {
       const wanted = 'button, a, select, summary, input, [role=button], [role=option], [role=tab]';
       const seen = (e) => e.getBoundingClientRect().width > 0 && getComputedStyle(e).visibility !== 'hidden';
@@ -598,16 +637,21 @@ async function fingers({ page, url, shot }) {
   await sample(page);
   await look('a drawing');
   await page.locator('.readings .chip').first().waitFor();
-  const [legend, readings] = await Promise.all(
-    ['.legend', '.readings'].map((q) => page.locator(q).boundingBox()),
+  await settled(page);
+  await eventually(
+    () => Promise.all(['.legend', '.readings'].map((q) => page.locator(q).boundingBox())),
+    ([legend, readings]) => legend.y >= readings.y + readings.height,
+    'the legend covers no reading',
   );
-  assert.ok(legend.y >= readings.y + readings.height, 'the legend covers no reading');
   await shot('grove-phone');
   for (const key of ['t', 'c', 'o', 'Shift+L', 'Shift+M', 'Shift+O', 'Control+k', 'Control+e', 'Shift+S']) {
     await page.keyboard.press(key);
+    const over = key === 'Shift+S' ? page.locator('.strip') : page.locator(OVER).first();
+    if (key === 'Shift+S') await over.waitFor();
+    else await opened(page);
     await look(key);
     await page.keyboard.press('Escape');
-    await page.waitForTimeout(200);
+    await over.waitFor({ state: 'hidden' });
   }
   await page.keyboard.press(']');
   await page.locator('.card').first().waitFor();
@@ -625,21 +669,22 @@ async function fingers({ page, url, shot }) {
   await page.locator('#b-walk-stick').waitFor();
   await look('the stick');
   const eye = () => page.evaluate(() => JSON.parse(document.querySelector('.view').dataset.eye).position);
-  await page.waitForTimeout(1500);
+  await rested(page);
   const from = await eye();
   const box = await page.locator('#b-walk-stick').boundingBox();
   const at = { x: box.x + box.width / 2, y: box.y + box.height * 0.1, id: 1 };
   const client = await page.context().newCDPSession(page);
   await client.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [at] });
-  await page.waitForTimeout(1500);
+  await eventually(
+    eye,
+    (to) => Math.hypot(...to.map((x, i) => x - from[i])) > 0.05,
+    `the stick leads from ${from}`,
+  );
   await client.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
-  await page.waitForTimeout(500);
-  const to = await eye();
-  assert.ok(Math.hypot(...to.map((x, i) => x - from[i])) > 0.05, `the stick leads: ${from} to ${to}`);
   await shot('grove-walk');
   await page.click('#b-walk-end');
   await page.waitForFunction(() => document.body.dataset.walk === '');
-  assert.equal(await page.locator('.walkpad').count(), 0);
+  await page.locator('.walkpad').waitFor({ state: 'detached' });
 }
 
 const TABLET = { viewport: { width: 820, height: 1180 }, hasTouch: true };
@@ -676,18 +721,19 @@ async function seasons({ page, url, shot }) {
       e.dispatchEvent(new Event('change', { bubbles: true }));
     }, to);
   const word = page.locator('label:has([data-path=season]) output');
-  assert.equal(await word.textContent(), 'summer');
+  const says = (what) => becomes(() => word.textContent(), what, 'the season');
+  await says('summer');
   await slide(-0.7);
   const spring = await changed(page, summer, 'leaves unfold');
   assert.ok((await count(page, 'triangles')) < all);
-  assert.equal(await word.textContent(), 'unfolding');
-  await page.waitForTimeout(900);
+  await says('unfolding');
+  await rested(page);
   await shot('grove-spring');
   await slide(0.5);
   const autumn = await changed(page, spring, 'autumn');
   assert.equal(await count(page, 'triangles'), all, 'no leaf has fallen');
-  assert.equal(await word.textContent(), 'autumn');
-  await page.waitForTimeout(900);
+  await says('autumn');
+  await rested(page);
   await shot('grove-autumn');
   await slide(0.8);
   const falling = await changed(page, autumn, 'leaves fall');

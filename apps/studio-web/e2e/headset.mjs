@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { begin, changed, count, data, drop, settled, until } from './journeys.mjs';
+import { felt, reloaded, rested, saved } from './waits.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
@@ -143,7 +144,7 @@ export async function enter(page, url, model = 'metaQuest3', command = undefined
 export async function find(page, side, { bearing = false } = {}) {
   for (let k = 0; k < 80; k += 1) {
     const at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
-    await hand(page, side, at);
+    await felt(page, () => hand(page, side, at));
     await frames(page);
     const picked = await data(page, 'picked');
     const enough = !bearing || (await count(page, 'bears')) > 0;
@@ -219,11 +220,11 @@ async function shape({ page, url, shot }) {
   // Out by the wrist: the page shows the same plant, and keeps it.
   await key(page, 'leave', 'right', { last: true });
   await page.waitForFunction(() => document.body.dataset.headset === 'off');
-  assert.equal(await data(page, 'digest'), drawn);
-  await page.waitForTimeout(700);
+  assert.equal(await settled(page), drawn);
+  await rested(page);
   await shot('headset-out');
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await saved(page);
+  await reloaded(page);
   await page.waitForFunction((d) => document.body.dataset.digest === d, drawn);
 }
 
@@ -395,7 +396,7 @@ async function hands({ page, url, shot }) {
   let at;
   for (let k = 0; k < 80; k += 1) {
     at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
-    await place('right', at);
+    await felt(page, () => place('right', at));
     await frames(page);
     const picked = await data(page, 'picked');
     if (picked !== '' && picked !== '0') break;
@@ -652,17 +653,19 @@ async function jumps({ page, url }) {
   const at = await find(page, 'right');
   await press(page, 'right', 'squeeze', 1);
   await frames(page);
-  await hand(page, 'right', [at[0] + 0.05, at[1] + 0.02, at[2]]);
+  await felt(page, () => hand(page, 'right', [at[0] + 0.05, at[1] + 0.02, at[2]]));
   const held = await carries(page);
-  await page.evaluate(async () => {
-    const { position } = window.device.controllers.right;
-    const picture = () => new Promise((done) => window.device.activeSession.requestAnimationFrame(done));
-    const { x, y, z } = position;
-    position.set(x + 1, y + 1, z);
-    await picture();
-    await picture();
-    position.set(x, y, z);
-  });
+  const jump = () =>
+    page.evaluate(async () => {
+      const { position } = window.device.controllers.right;
+      const picture = () => new Promise((done) => window.device.activeSession.requestAnimationFrame(done));
+      const { x, y, z } = position;
+      position.set(x + 1, y + 1, z);
+      await picture();
+      await picture();
+      position.set(x, y, z);
+    });
+  await felt(page, jump);
   await frames(page);
   assert.ok((await state(page)).working, 'a jump that is over ends nothing');
   assert.equal(await data(page, 'carried'), held, 'and moves nothing');
@@ -785,9 +788,9 @@ const whole =
     await at('scene');
     await key(page, 'leave', side, { last: true });
     await page.waitForFunction(() => document.body.dataset.headset === 'off');
-    assert.equal(await data(page, 'digest'), digests.at(-1));
-    await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-    await page.reload();
+    assert.equal(await settled(page), digests.at(-1));
+    await saved(page);
+    await reloaded(page);
     await page.waitForFunction((d) => document.body.dataset.digest === d, digests.at(-1));
   };
 

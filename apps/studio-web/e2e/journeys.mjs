@@ -1,6 +1,7 @@
 // What people do with the Studio, step by step.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
+import { answered, becomes, eventually, pictures, reloaded, rested, saved, take } from './waits.mjs';
 
 export const data = (page, key) => page.evaluate((k) => document.body.dataset[k] ?? '', key);
 export const count = async (page, key) => Number(await data(page, key));
@@ -20,8 +21,9 @@ export async function begin(page, url) {
   await page.waitForFunction(() => document.body.dataset.ready === 'true');
 }
 
-/** Waits until what is seen is the whole document, and says its digest. */
+/** Waits until what is seen is the whole document, with all that was done so far, and says its digest. */
 export async function settled(page) {
+  await answered(page);
   await page.waitForFunction(() => {
     const { wanted, revision, digest } = document.body.dataset;
     return wanted === revision && digest !== '';
@@ -90,12 +92,12 @@ export async function exported(page, format, levels, what, wind) {
 
 async function flower({ page, url, shot }) {
   await begin(page, url);
-  assert.equal(await page.locator('.empty').isVisible(), true);
+  await page.locator('.empty').waitFor();
   await shot('empty');
   await drawFlower(page);
-  assert.equal(await page.locator('.empty').isVisible(), false);
-  assert.ok((await count(page, 'triangles')) > 500);
-  await page.waitForTimeout(1500);
+  await page.locator('.empty').waitFor({ state: 'hidden' });
+  await until(page, 'triangles', ['above', 500], 'it has leaves and petals');
+  await rested(page);
   await shot('flower');
   const glb = await exported(page, 'glb');
   assert.match(glb.name, /\.glb$/);
@@ -118,9 +120,9 @@ async function flower({ page, url, shot }) {
   assert.match(levels.name, /\.glb\.zip$/);
   assert.ok(levels.bytes.includes('plant_LOD2.glb'), 'three levels of detail');
   await page.keyboard.press('d');
-  await page.waitForTimeout(700);
+  await page.locator('#b-front[aria-pressed=true]').waitFor();
+  await rested(page);
   await shot('front');
-  assert.equal(await page.locator('#b-front').getAttribute('aria-pressed'), 'true');
 }
 
 async function live({ page, url }) {
@@ -167,7 +169,7 @@ async function undo({ page, url }) {
   for (let i = 0; i < n; i += 1) await page.keyboard.press('Control+z');
   await until(page, 'strokes', ['is', 0], 'undo of all');
   await until(page, 'parts', ['is', 0], 'nothing is left');
-  assert.equal(await page.locator('#b-undo').isDisabled(), true);
+  await page.locator('#b-undo:disabled').waitFor();
   for (let i = 0; i < n; i += 1) await page.keyboard.press('Control+Shift+z');
   await until(page, 'strokes', ['is', n], 'redo of all');
   await until(page, 'triangles', ['above', 0], 'the plant is back');
@@ -199,8 +201,8 @@ async function habits({ page, url, shot }) {
     () => document.querySelector('#b-skeleton').getAttribute('aria-pressed') === 'true',
   );
   await page.keyboard.press('i');
-  assert.match(await page.locator('.statsbox').textContent(), /Height/);
-  await page.waitForTimeout(900);
+  await page.locator('.statsbox', { hasText: 'Height' }).waitFor();
+  await rested(page);
   await shot('skeleton');
   await page.keyboard.press('k');
   await page.keyboard.press('i');
@@ -208,14 +210,14 @@ async function habits({ page, url, shot }) {
   await page.locator('#b-lock[aria-pressed=true]').waitFor();
   await page.keyboard.press('Shift+R');
   await page.locator('.note', { hasText: 'locked' }).waitFor();
-  assert.equal(await page.locator('#b-grid').isDisabled(), true);
+  await page.locator('#b-grid:disabled').waitFor();
   await page.click('#b-lock');
   await page.locator('#b-lock[aria-pressed=false]').waitFor();
   await page.keyboard.press('Shift+G');
   await page.locator('.variations[data-full=true]').waitFor();
   assert.equal(await page.locator('.variations canvas').count(), 9);
   await shot('variations');
-  assert.equal(await data(page, 'digest'), digest, 'looking changes nothing');
+  assert.equal(await settled(page), digest, 'looking changes nothing');
   await page.locator('.variations button').nth(4).click();
   await page.waitForFunction((d) => document.body.dataset.digest !== d, digest);
 }
@@ -223,7 +225,9 @@ async function habits({ page, url, shot }) {
 async function share({ page, url, shot, context }) {
   await begin(page, url);
   await sample(page);
-  const petals = await page.locator('#b-counts').textContent();
+  await settled(page);
+  const counts = async (of) => (await of.locator('#b-counts').textContent()).split('Triangles')[0];
+  const petals = await counts(page);
   await page.click('#b-share');
   const link = await page.locator('dialog textarea').inputValue();
   await shot('share');
@@ -234,19 +238,16 @@ async function share({ page, url, shot, context }) {
   await other.goto('about:blank');
   await other.goto(link);
   await until(other, 'flowers', ['is', 1], 'the link opens');
-  assert.equal(
-    (await other.locator('#b-counts').textContent()).split('Triangles')[0],
-    petals.split('Triangles')[0],
-  );
+  await becomes(() => counts(other), petals, 'what the link holds');
   assert.equal(await other.evaluate(() => location.hash), '', 'the link is taken out of the address');
   for (const hash of ['#d=AAAA', '#d=%3Cscript%3E', `#d=${'A'.repeat(40_000)}`]) {
-    const before = await data(other, 'digest');
-    await other.waitForTimeout(900); // kept by now
+    const before = await settled(other);
+    await saved(other);
     await other.goto('about:blank');
     await other.goto(url + hash);
     await other.locator('.note.bad', { hasText: 'cannot be opened' }).waitFor();
     await until(other, 'flowers', ['is', 1], 'what was here is still here');
-    assert.equal(await data(other, 'digest'), before);
+    assert.equal(await settled(other), before);
   }
   await other.close();
 }
@@ -296,24 +297,23 @@ async function photo({ page, url, shot }) {
   await trace(line(300, 790, 300, 300, 4));
   for (let i = 0; i < 5; i += 1) await trace(blade(300, 275, -Math.PI / 2 + (i * 2 * Math.PI) / 5, 195, 48));
   await until(page, 'flowers', ['is', 1], 'a traced flower');
-  await page.waitForTimeout(1500);
+  await settled(page);
+  await rested(page);
   await shot('photo');
   const glb = await exported(page, 'glb');
   assert.ok(glb.bytes.includes('petals-traced'), 'petals have the photograph as their texture');
   await page.click('#b-photo');
   await page.getByText('Traced parts take its colours').click();
   await page.keyboard.press('Escape');
-  await page.waitForTimeout(700);
+  await settled(page);
   assert.ok(!(await exported(page, 'glb')).bytes.includes('petals-traced'), 'not when that is switched off');
   await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
-  await page.waitForTimeout(900);
-  await page.reload();
+  await reloaded(page);
   await until(page, 'strokes', ['is', n], 'drawing and photograph are recovered');
+  await settled(page);
   await page.click('#b-photo');
-  assert.equal(
-    await page.getByText('Traced parts take its colours').locator('xpath=..').locator('input').isChecked(),
-    false,
-  );
+  const traced = page.getByText('Traced parts take its colours').locator('xpath=..').locator('input');
+  await becomes(() => traced.isChecked(), false, 'that its colours are taken');
 }
 
 /** A browser without WebGL 2 whose storage is shut, as in private mode: both are told, and the work goes on. */
@@ -344,7 +344,7 @@ async function symmetry({ page, url, shot }) {
   await draw(page, blade(252, 400, -0.5, 120, 28));
   await until(page, 'strokes', ['is', 3], 'a leaf on each side');
   await until(page, 'parts', ['above', 1], 'leaves');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('symmetry');
   await page.keyboard.press('Control+z');
   await until(page, 'strokes', ['is', 1], 'one step of undo');
@@ -356,22 +356,22 @@ async function firstRun({ page, url, shot }) {
   await shot('tour');
   for (const title of ['See it grow', 'Say what is what', 'Take it with you']) {
     await page.locator('.tour .primary').click();
-    assert.equal(await page.locator('.tour strong').textContent(), title);
+    await becomes(() => page.locator('.tour strong').textContent(), title, 'the card');
   }
   await page.locator('.tour .primary').click();
-  assert.equal(await page.locator('.tour').count(), 0);
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await page.locator('.tour').waitFor({ state: 'detached' });
+  await reloaded(page);
   assert.equal(await page.locator('.tour').count(), 0, 'it comes once');
   const again = async () => {
     await page.evaluate(() => localStorage.removeItem('burgeon.tour'));
-    await page.reload();
+    await reloaded(page);
     await page.locator('.tour').waitFor();
   };
   await again();
   await page.locator('.sheet').focus();
   await page.keyboard.press('Escape');
-  assert.equal(await page.locator('.tour').count(), 0, 'Escape ends it wherever the keyboard is');
+  // Escape ends it wherever the keyboard is.
+  await page.locator('.tour').waitFor({ state: 'detached' });
   await again();
   const [card, sheet] = [
     await page.locator('.tour').boundingBox(),
@@ -417,7 +417,7 @@ async function pen({ page, url, shot }) {
   await send('pointerdown', 'touch', 7, 100, 300, 0.5);
   for (let i = 1; i < 8; i += 1) await send('pointermove', 'touch', 7, 100 + 20 * i, 300, 0.5);
   await send('pointerup', 'touch', 7, 240, 300, 0);
-  await page.waitForTimeout(400);
+  await answered(page);
   assert.equal(await count(page, 'strokes'), 1, 'with a pen at hand a finger moves the sheet');
   await shot('pen');
 }
@@ -428,10 +428,9 @@ async function reload({ page, url }) {
   await draw(page, line(100, 400, 120, 250, 6));
   await until(page, 'strokes', ['is', n], 'a stroke was drawn');
   await page.keyboard.press('Shift+R');
-  await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
-  await page.waitForTimeout(900);
   const digest = await settled(page);
-  await page.reload();
+  await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
+  await reloaded(page);
   await until(page, 'strokes', ['is', n], 'the drawing is recovered');
   await page
     .waitForFunction((d) => document.body.dataset.digest === d, digest)
@@ -442,17 +441,16 @@ async function reload({ page, url }) {
 
 async function chinese({ page, url, shot }) {
   await begin(page, url);
-  assert.match(await page.locator('.empty h1').textContent(), /画一株植物/);
+  await page.locator('.empty h1', { hasText: '画一株植物' }).waitFor();
   assert.equal(await page.evaluate(() => document.documentElement.lang), 'zh-Hans');
   await page.click('#b-samples');
   await page.click('[data-sample=sunflower]');
   await until(page, 'triangles', ['above', 0], 'a sample in Chinese');
   await shot('chinese');
   await page.click('#b-language');
-  assert.match(await page.locator('#b-export').textContent(), /Export/);
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
-  assert.match(await page.locator('#b-export').textContent(), /Export/, 'the choice is kept');
+  await page.locator('#b-export', { hasText: 'Export' }).waitFor();
+  await reloaded(page);
+  await page.locator('#b-export', { hasText: 'Export' }).waitFor();
 }
 
 async function correct({ page, url, shot }) {
@@ -462,11 +460,12 @@ async function correct({ page, url, shot }) {
   await page.locator('.sheet').focus();
   await page.keyboard.press(']');
   await page.locator('.card').waitFor();
-  await page.waitForTimeout(1200);
+  await rested(page);
   await shot('correct');
   await page.locator('.card .chip', { hasText: 'fruit' }).click();
   await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
-  assert.equal(await page.locator('.card .chip[aria-pressed=true]', { hasText: 'fruit' }).count(), 1);
+  const pressed = page.locator('.card .chip[aria-pressed=true]', { hasText: 'fruit' });
+  await becomes(() => pressed.count(), 1, 'what is pressed');
   await page.keyboard.press('Control+z');
   await page.waitForFunction((d) => document.body.dataset.digest === d, before);
 }
@@ -512,13 +511,13 @@ async function refuse({ page, url }) {
     );
     await page.locator('.note.bad', { hasText: name }).waitFor();
   }
-  assert.equal(await data(page, 'digest'), digest);
+  assert.equal(await settled(page), digest);
 }
 
 async function keyboard({ page, url }) {
   await begin(page, url);
   await page.keyboard.press('Tab');
-  assert.notEqual(await page.evaluate(() => document.activeElement.tagName), 'BODY');
+  await page.waitForFunction(() => document.activeElement.tagName !== 'BODY');
   await page.locator('#b-samples').focus();
   await page.keyboard.press('Enter');
   await page.locator('[data-sample=sample]').focus();
@@ -561,7 +560,7 @@ async function touch({ page, url, shot, context }) {
     [260, 220],
   ]);
   await send('touchEnd', []);
-  await page.waitForTimeout(500);
+  await answered(page);
   assert.equal(await count(page, 'strokes'), 1, 'two fingers do not draw');
   await shot('tablet');
 }
@@ -574,13 +573,20 @@ export async function add(page, maker, preset) {
   await page.waitForFunction((m) => document.body.dataset.current === m, maker);
 }
 
-export async function changed(page, before, what) {
+/** Waits until another plant is seen than before. More may be coming: a hand holds it, or it is played. */
+export async function stirred(page, before, what) {
   await page
     .waitForFunction((d) => document.body.dataset.digest !== d && document.body.dataset.digest !== '', before)
     .catch(() => {
       throw new Error(`${what}: nothing changed`);
     });
   return data(page, 'digest');
+}
+
+/** Waits until another plant is seen than before, and all of the change. */
+export async function changed(page, before, what) {
+  await stirred(page, before, what);
+  return settled(page);
 }
 
 /** Drags a slider to a share of its way: one step of undo. */
@@ -629,15 +635,20 @@ async function tree({ page, url, shot }) {
   await page.click('[data-obstacle=file]');
   await (await chooser).setFiles({ name: 'wall.obj', mimeType: 'model/obj', buffer: Buffer.from(WALL) });
   digest = await changed(page, digest, 'a wall in its way');
-  assert.equal(await page.locator('.obstacles li').count(), 2);
-  await page.waitForTimeout(1200);
+  await becomes(() => page.locator('.obstacles li').count(), 2, 'the obstacles');
+  await rested(page);
   await shot('tree');
   await slide(page, 'keep', 0.2);
   digest = await changed(page, digest, 'fewer leaves');
   await page.locator('#b-undo').click();
   await changed(page, digest, 'one step takes the drag back');
+  await settled(page);
   await page.locator('.f-group > summary').first().click();
-  assert.ok((await page.locator('.form .f-row').count()) > 3, 'a row for each field of the schema');
+  await eventually(
+    () => page.locator('.form .f-row').count(),
+    (n) => n > 3,
+    'a row for each field of the schema',
+  );
   await page.locator('.maker').evaluate((e) => e.scrollTo(0, 500));
   await shot('tree-panel');
   for (const [format, start] of [
@@ -678,6 +689,7 @@ async function names({ page, url, shot }) {
   const all = (of) => page.locator(`${of} button:visible`).count();
   for (const width of [1280, 1366]) {
     await page.setViewportSize({ width, height: 650 });
+    await pictures(page);
     // Of the commands of the bar, one has its name beside its icon; the language is a word.
     assert.equal(await seen('.bar'), (await all('.bar')) - 2, `names in the bar at ${width} pixels`);
     for (const of of ['.left > .tools', '.right-tools']) {
@@ -696,9 +708,14 @@ async function names({ page, url, shot }) {
   await page.click('#b-wire');
   await page.click('#b-grid');
   await page.keyboard.press('Escape');
-  assert.equal(await page.locator('#b-wire .caption, #b-grid .caption').count(), 0, 'what was used is known');
+  await becomes(
+    () => page.locator('#b-wire .caption, #b-grid .caption').count(),
+    0,
+    'names of what was used',
+  );
   await page.click('#b-language');
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
+  await pictures(page);
   await shot('names-laptop-zh');
 }
 
@@ -712,10 +729,10 @@ async function own({ page, url, shot }) {
   // What the head changed goes back to what the species has.
   const back = page.locator('.maker-head .f-reset');
   await changed(page, plain, 'fewer leaves');
-  assert.equal(await back.count(), 1, 'one value is another than at first');
+  await becomes(() => back.count(), 1, 'values that are others than at first');
   await back.click();
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
-  assert.equal(await back.count(), 0);
+  await becomes(() => back.count(), 0, 'and none any more');
   await slide(page, 'keep', 0.3);
   const mine = await changed(page, plain, 'fewer leaves');
   await page.click('#b-own-keep');
@@ -724,13 +741,13 @@ async function own({ page, url, shot }) {
   await page.locator('[data-own="Thin hazel"]').waitFor();
   await page.click('.maker [data-preset=birch]');
   const birch = await changed(page, mine, 'a birch');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('own-preset');
   // Kept under the name of another by mistake: the other comes back.
   await page.click('#b-own-keep');
   await page.locator('dialog .field').fill('Thin hazel');
   await page.keyboard.press('Enter');
-  await page.locator('.note', { hasText: 'other values' }).locator('button', { hasText: 'Undo' }).click();
+  await take(page, 'other values', 'Undo');
   await page.click('[data-own="Thin hazel"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
   assert.notEqual(birch, mine);
@@ -741,18 +758,18 @@ async function own({ page, url, shot }) {
   assert.equal(download.suggestedFilename(), 'Thin hazel.toml');
   const text = readFileSync(await download.path(), 'utf8');
   // After a reload it is there, and can be dropped and brought back.
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await saved(page);
+  await reloaded(page);
   await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
   await page.locator('.own .icon').nth(1).click();
   await page.waitForFunction(() => !document.querySelector('[data-own]'));
-  await page.locator('.note button', { hasText: 'Undo' }).click();
+  await take(page, '', 'Undo');
   await page.locator('[data-own="Thin hazel"]').waitFor();
   // Flowers have presets of their own.
   await add(page, 'flower');
   await until(page, 'triangles', ['above', 1000], 'a flower has opened');
   const lily = await settled(page);
-  assert.equal(await page.locator('[data-own]').count(), 0, 'none of trees');
+  await becomes(() => page.locator('[data-own]').count(), 0, 'presets of trees');
   await page.click('#b-own-keep');
   await page.locator('dialog .field').fill('My lily');
   await page.keyboard.press('Enter');
@@ -772,19 +789,20 @@ async function leaf({ page, url, shot }) {
   await begin(page, url);
   await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
   await until(page, 'triangles', ['above', 500], 'a leaf from marks');
-  assert.equal(await data(page, 'current'), 'leaf');
+  await becomes(() => data(page, 'current'), 'leaf', 'the plant');
   let digest = await settled(page);
   for (const surface of ['bezier', 'nurbs', 'approximate']) {
     await page.selectOption('[data-path="/surface"]', surface);
     digest = await changed(page, digest, surface);
   }
   await slide(page, '/curl#', 0.75);
-  digest = await changed(page, digest, 'curled');
-  await page.waitForTimeout(1200);
+  await changed(page, digest, 'curled');
+  digest = await settled(page);
+  await rested(page);
   await shot('leaf');
   await drop(page, 'broken.csv', 'row,mark,x\n1,1,zero');
   await page.locator('.note.bad', { hasText: 'broken.csv' }).waitFor();
-  assert.equal(await data(page, 'digest'), digest, 'a bad table changes nothing');
+  assert.equal(await settled(page), digest, 'a bad table changes nothing');
 }
 
 async function bloom({ page, url, shot }) {
@@ -816,10 +834,9 @@ async function bloom({ page, url, shot }) {
   digest = await changed(page, digest, 'a bud');
   await shot('bud');
   await page.click('.play');
-  await changed(page, digest, 'it opens');
-  await page.waitForTimeout(4000);
-  await shot('bloom');
+  await stirred(page, digest, 'it opens');
   await page.waitForFunction(() => /Play/.test(document.querySelector('.play')?.textContent ?? ''));
+  await shot('bloom');
   assert.equal(await page.locator('.note.bad').count(), 0, 'nothing was refused');
   digest = await settled(page);
   await page.keyboard.press('Control+z');
@@ -829,7 +846,7 @@ async function bloom({ page, url, shot }) {
   await until(page, 'plants', ['is', 2], 'a flower from a file');
   await page.waitForFunction(() => document.body.dataset.current === 'flower');
   await settled(page);
-  assert.equal(await field('/whorls/0/count').inputValue(), '5');
+  await becomes(() => field('/whorls/0/count').inputValue(), '5', 'the petals of its ring');
 }
 
 async function opens({ page, url, shot }) {
@@ -840,7 +857,8 @@ async function opens({ page, url, shot }) {
   await page.locator('.bloom .play').waitFor();
   await until(page, 'revision', ['above', before], 'the drawn flower at a day');
   await slide(page, 'day', 0.15);
-  await page.waitForTimeout(1500);
+  await settled(page);
+  await rested(page);
   await shot('sketch-opens');
   await page.click('#b-opens');
   await page.locator('.bloom .play').waitFor({ state: 'detached' });
@@ -857,7 +875,8 @@ async function garden({ page, url, shot }) {
   await page.locator('[data-key=nx]').fill('0.5');
   await page.locator('[data-key=nx]').press('Enter');
   await page.click('[data-gizmo=translate]');
-  await page.waitForTimeout(1500);
+  await settled(page);
+  await rested(page);
   await shot('scene');
   await page.click('[data-plant=sketch]');
   await until(page, 'strokes', ['is', 15], 'its sheet is back');
@@ -879,6 +898,7 @@ async function garden({ page, url, shot }) {
   });
   await until(page, 'plants', ['is', 3], 'the scene is open again');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await settled(page);
   await page.locator('[data-plant=flower]').focus();
   await page.keyboard.press('Delete');
   await until(page, 'plants', ['is', 2], 'deleted by keyboard');
@@ -891,15 +911,14 @@ async function garden({ page, url, shot }) {
   await page.click('#b-language');
   await page.click('[data-plant=leaf]');
   // The panel is drawn anew a moment after the click.
-  await page
-    .locator('.form .f-row > span:first-child', { hasText: /[\u4e00-\u9fff]/ })
-    .first()
-    .waitFor();
-  const labels = await page.locator('.form .f-row > span:first-child').allTextContents();
-  assert.ok(labels.length > 8 && labels.every((l) => /[\u4e00-\u9fff]/.test(l)), labels.join());
+  await eventually(
+    () => page.locator('.form .f-row > span:first-child').allTextContents(),
+    (labels) => labels.length > 8 && labels.every((l) => /[\u4e00-\u9fff]/.test(l)),
+    'settings in Chinese',
+  );
   await page.click('#b-theme');
   await page.click('#b-theme');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('scene-dark-chinese');
 }
 

@@ -1,9 +1,9 @@
 // What is drawn stays: crashes, two tabs, the list of documents, a browser that keeps nothing.
 import assert from 'node:assert/strict';
-import { begin, count, draw, line, sample, until } from './journeys.mjs';
+import { begin, count, draw, line, sample, settled, until } from './journeys.mjs';
+import { answered, becomes, eventually, reloaded, stored, take } from './waits.mjs';
 
-const standing = (page, word) =>
-  page.waitForFunction((w) => document.body.dataset.kept === w, word, { timeout: 20_000 });
+const standing = (page, word) => page.waitForFunction((w) => document.body.dataset.kept === w, word);
 const said = (page) => page.locator('#b-kept').textContent();
 /** A stroke of its own place for each number. */
 const stroke = (page, n) =>
@@ -25,6 +25,20 @@ async function another(context, url) {
   return page;
 }
 
+/** Has a page fall; the call that does it may never be answered. */
+async function fall(page, context) {
+  const cdp = await context.newCDPSession(page);
+  const fell = page.waitForEvent('crash');
+  cdp.send('Page.crash').catch(() => {});
+  await fell;
+}
+
+/** The stroke under the pen, as far as it is written: points (of four numbers each), and the row that it comes after. */
+async function underHand(page) {
+  const { after, requests = [] } = (await stored(page, 'journal')).find((row) => row.requests) ?? {};
+  return { after, points: (requests.find((r) => r.kind === 'stroke')?.samples ?? 0) / 4 };
+}
+
 /** The list of documents, as it is shown: what each row says. */
 async function shelf(page) {
   await page.locator('.sheet').focus();
@@ -36,17 +50,17 @@ async function shelf(page) {
 /** A quick hand: forty strokes one after the other, and the page ends with the last. */
 async function crash({ page, url, context }) {
   await begin(page, url);
-  assert.equal(await said(page), '', 'nothing is said of what is not there');
+  await becomes(() => said(page), '', 'what is said of what is not there');
   for (let i = 0; i < 40; i += 1) await stroke(page, i);
-  const cdp = await context.newCDPSession(page);
-  await Promise.race([cdp.send('Page.crash').catch(() => {}), page.waitForTimeout(500).catch(() => {})]);
+  await fall(page, context);
   const after = await another(context, url);
   await until(after, 'strokes', ['is', 40], 'every stroke is there after the crash');
   await standing(after, 'saved');
   assert.match(await said(after), /Saved in this browser/);
   await after.keyboard.press('Control+z');
   await until(after, 'strokes', ['is', 39], 'and can be undone');
-  await after.reload();
+  await standing(after, 'saved');
+  await reloaded(after);
   await until(after, 'strokes', ['is', 39], 'as is the undoing');
   await after.close();
 }
@@ -62,23 +76,30 @@ async function underPen({ page, url, context }) {
     await of.mouse.move(box.x + 180, box.y + 250, { steps });
   };
   await reach(page, 12);
-  await page.waitForTimeout(200);
+  const written = (of, before) =>
+    eventually(
+      () => underHand(of),
+      ({ after, points }) => points > 9 && after !== before,
+      'what is under the pen is written',
+    );
+  await written(page);
   assert.equal(await count(page, 'strokes'), 0, 'it is not finished');
-  const cdp = await context.newCDPSession(page);
-  await Promise.race([cdp.send('Page.crash').catch(() => {}), page.waitForTimeout(500).catch(() => {})]);
+  await fall(page, context);
   const after = await another(context, url);
   await until(after, 'strokes', ['is', 2], 'the stroke is there, with its mirror image');
+  await standing(after, 'saved');
   await after.keyboard.press('Control+z');
   await until(after, 'strokes', ['is', 0], 'as one step of undo');
   await standing(after, 'saved');
-  await after.reload();
+  await reloaded(after);
   await until(after, 'strokes', ['is', 0], 'and does not come back');
   // What the system takes from the hand was no stroke.
+  const { after: before } = await underHand(after);
   await reach(after, 12);
-  await after.waitForTimeout(200);
+  await written(after, before);
   await after.locator('.sheet').dispatchEvent('pointercancel', { pointerId: 1, pointerType: 'mouse' });
-  await after.waitForTimeout(200);
-  await after.reload();
+  await becomes(async () => (await underHand(after)).points, 0, 'points of it that are written');
+  await reloaded(after);
   await until(after, 'strokes', ['is', 0], 'a stroke that was taken back is none');
   await after.close();
 }
@@ -96,7 +117,7 @@ async function gestures({ page, url }) {
   await page.mouse.down();
   await page.mouse.move(box.x + 200, box.y + 300);
   await standing(page, 'saved');
-  await page.reload();
+  await reloaded(page);
   await until(page, 'strokes', ['is', 2], 'both sides are there');
   await page.keyboard.press('Control+z');
   await until(page, 'strokes', ['is', 0], 'the half of a drag is no step of undo');
@@ -110,7 +131,7 @@ async function tabs({ page, url, context, shot }) {
   let second = await another(context, url);
   await until(second, 'strokes', ['is', 3], 'the second tab shows it');
   await second.locator('#b-readonly').waitFor();
-  assert.equal(await said(second), 'Read only');
+  await becomes(() => said(second), 'Read only', 'what is said');
   // The first is closed a moment later, as one that fell is cleared up: the second has it without a word.
   await page.close();
   await second.locator('#b-readonly').waitFor({ state: 'hidden' });
@@ -132,22 +153,25 @@ async function tabs({ page, url, context, shot }) {
   await stroke(page, 6);
   await page.locator('.note.bad', { hasText: 'open in another tab' }).waitFor();
   await standing(second, 'saved');
-  await second.reload();
+  await reloaded(second);
   await until(second, 'strokes', ['is', 5], 'nothing was overwritten');
   await second.locator('#b-readonly').waitFor({ state: 'hidden' });
   // The other tab is gone: the document comes back by one click, with everything.
   await second.close();
   await page.click('#b-takeover');
   await until(page, 'strokes', ['is', 5], 'all of it');
+  await page.locator('#b-readonly').waitFor({ state: 'hidden' });
   // A second tab may have a document of its own.
   const third = await another(context, url);
   await third.click('#b-readonly-new');
   await until(third, 'strokes', ['is', 0], 'a new document');
+  await standing(third, 'empty');
   await stroke(third, 1);
+  await until(third, 'strokes', ['is', 1], 'drawn there');
   await stroke(page, 7);
   await until(page, 'strokes', ['is', 6], 'both draw');
   await standing(third, 'saved');
-  await third.reload();
+  await reloaded(third);
   await until(third, 'strokes', ['is', 1], 'each its own');
   await third.close();
 }
@@ -165,7 +189,7 @@ async function lockless({ page, url, context }) {
   await until(second, 'strokes', ['is', 2], 'the last tab draws');
   await standing(second, 'saved');
   await page.locator('#b-readonly').waitFor();
-  await second.reload();
+  await reloaded(second);
   await until(second, 'strokes', ['is', 2], 'it is kept');
   await second.close();
 }
@@ -184,7 +208,7 @@ async function mute({ page, url, context }) {
   await standing(second, 'saved');
   await stroke(page, 2);
   await standing(page, 'readonly');
-  await second.reload();
+  await reloaded(second);
   await until(second, 'strokes', ['is', 2], 'the other tab wrote nothing into it');
   await second.close();
 }
@@ -196,14 +220,15 @@ async function list({ page, url, shot }) {
   await page.locator('dialog', { hasText: 'Nothing is here yet' }).waitFor();
   await page.keyboard.press('Escape');
   await sample(page);
-  await page.waitForTimeout(2500);
+  await settled(page);
   await page.click('#b-fresh');
   await until(page, 'strokes', ['is', 0], 'a new document');
   await page.locator('.note', { hasText: 'in your documents' }).waitFor();
+  await standing(page, 'empty');
   assert.equal(await page.locator('#b-undo').isDisabled(), true, 'with a history of its own');
   await stroke(page, 1);
   await standing(page, 'saved');
-  await page.waitForTimeout(2500);
+  await settled(page);
   const names = await shelf(page);
   assert.equal(names.length, 2);
   assert.equal(await page.locator('.shelf-open img').count(), 2, 'both have a picture');
@@ -212,8 +237,7 @@ async function list({ page, url, shot }) {
   await page.locator('.shelf .shelf-open').first().focus();
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('F2');
-  await page.locator('.shelf input').waitFor();
-  await page.waitForTimeout(100);
+  await page.locator('.shelf input:focus').waitFor();
   await page.keyboard.type('A rose');
   await page.keyboard.press('Enter');
   const rose = page.locator('.shelf-open', { hasText: 'A rose' });
@@ -223,13 +247,17 @@ async function list({ page, url, shot }) {
   await page.locator('.shelf-open', { hasText: 'A rose (copy)' }).focus();
   await page.keyboard.press('Delete');
   await page.locator('.shelf-gone', { hasText: 'A rose (copy)' }).waitFor();
-  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Put back');
+  await becomes(
+    () => page.evaluate(() => document.activeElement.textContent),
+    'Put back',
+    'what has the keys',
+  );
   await shot('documents-deleted');
   await page.keyboard.press('Enter');
   await page.locator('.shelf-gone').waitFor({ state: 'hidden' });
   await page.locator('.shelf-open', { hasText: 'A rose (copy)' }).click();
   await until(page, 'strokes', ['is', 15], 'the copy is open');
-  assert.equal(await page.locator('#b-name').inputValue(), 'A rose (copy)');
+  await becomes(() => page.locator('#b-name').inputValue(), 'A rose (copy)', 'the name');
   // The one that is here may be deleted, too.
   await shelf(page);
   await page.locator('.shelf li:has([aria-current=true]) [data-act=delete]').click();
@@ -237,7 +265,7 @@ async function list({ page, url, shot }) {
   await page.locator('[data-back]').click();
   await page.locator('.shelf-open', { hasText: 'A rose (copy)' }).click();
   await until(page, 'strokes', ['is', 15], 'and back');
-  await page.reload();
+  await reloaded(page);
   await until(page, 'strokes', ['is', 15], 'this tab stays with it');
 }
 
@@ -246,7 +274,7 @@ async function listOnPhone({ page, url, shot }) {
   await page.click('#b-samples');
   await page.click('[data-sample=tulip]');
   await until(page, 'triangles', ['above', 0], 'a tulip');
-  await page.waitForTimeout(2500);
+  await settled(page);
   await page.click('#b-documents');
   await page.locator('.shelf-open').first().waitFor();
   const box = await page.locator('dialog').boundingBox();
@@ -269,14 +297,16 @@ async function palette({ page, url }) {
   await page.locator('.palette .muted').waitFor({ state: 'detached' });
   await page.keyboard.press('Enter');
   await page.keyboard.press('Escape');
+  await answered(page);
   assert.equal(await count(page, 'strokes'), n);
   // Every command of the palette that empties the sheet can be taken back.
   await page.keyboard.press('Control+k');
   await page.locator('.palette input').fill('new');
   await page.click('#p-new');
   await until(page, 'strokes', ['is', 0], 'New');
-  await page.locator('.note button', { hasText: 'Go back' }).click();
+  await take(page, '', 'Go back');
   await until(page, 'strokes', ['is', n], 'and back');
+  await standing(page, 'saved');
   await page.keyboard.press('Control+k');
   await page.locator('.palette input').fill('erase every');
   await page.keyboard.press('Enter');
@@ -312,7 +342,7 @@ async function full({ page, url, shot }) {
   await page.evaluate(() => sessionStorage.removeItem('full'));
   await stroke(page, 2);
   await standing(page, 'saved');
-  await page.reload();
+  await reloaded(page);
   await until(page, 'strokes', ['is', 3], 'all is there');
 }
 
@@ -335,7 +365,8 @@ async function long({ page, url }) {
   });
   await until(page, 'strokes', ['is', 60], 'a large file');
   await standing(page, 'saved');
-  await page.waitForTimeout(1500);
+  await becomes(async () => (await stored(page, 'wholes')).length, 1, 'documents written whole');
+  await becomes(async () => (await stored(page, 'journal')).length, 0, 'rows of the journal');
   await stroke(page, 0);
   await until(page, 'strokes', ['is', 61], 'a stroke');
   await page.keyboard.press('Control+z');
@@ -344,7 +375,7 @@ async function long({ page, url }) {
   await stroke(page, 1);
   await until(page, 'strokes', ['is', 1], 'another stroke');
   await standing(page, 'saved');
-  await page.reload();
+  await reloaded(page);
   await until(page, 'strokes', ['is', 1], 'it is as it was left');
 }
 

@@ -15,6 +15,7 @@ import {
   settled,
   until,
 } from './journeys.mjs';
+import { becomes, reloaded, rested, saved } from './waits.mjs';
 
 const wears = (page, name) =>
   page.waitForFunction((n) => (document.body.dataset.materials ?? '').split(' ').includes(n), name);
@@ -53,6 +54,7 @@ async function materials({ page, url, shot }) {
   });
   await page.locator('[data-material=picotee][aria-pressed=false]').waitFor();
   await settled(page);
+  await rested(page);
   await shot('materials');
   // All leaves.
   await page.selectOption('#b-material-of', 'leaf');
@@ -65,7 +67,7 @@ async function materials({ page, url, shot }) {
   const petal = blade(250, 210, -Math.PI / 2, 95, 28);
   await page.mouse.click(box.x + petal[3][0], box.y + petal[3][1]);
   await page.locator('.card .chip', { hasText: 'Materials' }).click();
-  assert.equal(await page.inputValue('#b-material-of'), 'strokes');
+  await becomes(() => page.inputValue('#b-material-of'), 'strokes', 'what wears it');
   const chooser = page.waitForEvent('filechooser');
   await page.click('#b-material-picture');
   await (await chooser).setFiles({ name: 'red.png', mimeType: 'image/png', buffer: RED });
@@ -84,8 +86,8 @@ async function materials({ page, url, shot }) {
   const hosta = gltf.materials.find((m) => m.name === 'leaf-variegated-1');
   assert.ok(Math.abs(hosta.pbrMetallicRoughness.roughnessFactor - 0.6) < 1e-6);
   // It is kept, and taken back step by step.
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await saved(page);
+  await reloaded(page);
   await wears(page, 'petal-picture-3');
   assert.equal(await settled(page), plain);
   for (const gone of ['petal-picture-3', 'leaf-variegated-1']) {
@@ -97,7 +99,7 @@ async function materials({ page, url, shot }) {
 /** Opens the materials by their name and gives one to all organs of a kind. */
 async function clothe(page, organ, material) {
   await page.keyboard.press('Control+k');
-  await page.keyboard.type('materials');
+  await page.locator('.palette input').fill('materials');
   await page.keyboard.press('Enter');
   await page.selectOption('#b-material-of', organ);
   await page.click(`[data-material=${material}]`);
@@ -190,7 +192,7 @@ async function layers({ page, url, shot }) {
   await page.click('.layers [data-key="eye leaves"]');
   await page.waitForFunction(() => document.body.dataset.layers === 'leaves hidden');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
-  assert.equal(await count(page, 'flowers'), petals);
+  await becomes(() => count(page, 'flowers'), petals, 'the flowers');
   await shot('layers-hidden');
   await page.click('.layers [data-key="eye leaves"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, more);
@@ -208,16 +210,16 @@ async function layers({ page, url, shot }) {
   await page.waitForFunction(() => document.body.dataset.layers === 'leaves');
   // By the palette: the layer in use is hidden. Saved and opened again, and as SVG.
   await page.keyboard.press('Control+k');
-  await page.keyboard.type('hide or show the layer');
+  await page.locator('.palette input').fill('hide or show the layer');
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => document.body.dataset.layers === 'leaves hidden');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   const svg = (await exported(page, 'svg')).bytes.toString();
   assert.match(svg, /inkscape:groupmode="layer" inkscape:label="leaves" style="display:none"/);
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await saved(page);
+  await reloaded(page);
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
-  assert.equal(await data(page, 'layers'), 'leaves hidden');
+  await becomes(() => data(page, 'layers'), 'leaves hidden', 'what is said of the layers');
   await page.keyboard.press('Shift+L');
   await page.click('.layers [data-key="eye leaves"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, more);

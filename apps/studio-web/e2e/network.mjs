@@ -5,6 +5,7 @@ import { copyFileSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { add, changed, settled, until } from './journeys.mjs';
 import { serveNetwork } from './server.mjs';
+import { eventually, reloaded } from './waits.mjs';
 
 const words = (page, text) => page.locator('footer, .status').filter({ hasText: text }).first().waitFor();
 
@@ -32,15 +33,18 @@ async function lan({ page, own, burgeon, folder, out, shot, troubles }) {
   await add(page, 'tree', 'hazel');
   await until(page, 'plants', ['is', 5], 'a tree more');
   await changed(page, digest, 'a hazel');
-  for (let k = 0; k < 200 && readFileSync(project).equals(before); k += 1) await page.waitForTimeout(100);
+  await eventually(
+    async () => readFileSync(project).equals(before),
+    (same) => !same,
+    'the file is as it was',
+  );
   await words(page, 'Written to garden.burgeon');
   await shot('network-written');
   execFileSync(burgeon, ['sketch', '-q', project, '--report', join(out, 'garden.json')]);
   const report = JSON.parse(readFileSync(join(out, 'garden.json'), 'utf8'));
   assert.equal(report.items.length, 4, 'three that are shown, and the hazel');
   // After a reload the page still knows its file.
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await reloaded(page);
   await until(page, 'plants', ['is', 5], 'kept in the browser');
   await settled(page);
   await words(page, 'Written to garden.burgeon');

@@ -16,16 +16,17 @@ import { network } from './network.mjs';
 import { shaping } from './shaping.mjs';
 import { staging } from './staging.mjs';
 import { strokes } from './strokes.mjs';
+import { overhear } from './waits.mjs';
 
 const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
+/** Journeys at a time. */
+const WALKERS = Number(process.env.WALKERS ?? 1);
+
 const url = await serve(burgeon, folder, '../../fixtures/sketches/gallery/tulip.svg');
 
-const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS });
-
-let failed = 0;
 const only = process.env.ONLY;
 const all = [
   ...journeys,
@@ -36,12 +37,16 @@ const all = [
   ...staging,
   ...grove,
   ...network,
-  ...headsetCore,
 ];
+const alone = [...headsetCore];
 // Two pictures a frame: minutes without a graphics card, so the others only when they are asked for.
-if (only?.startsWith('headset')) all.push(...headset, ...headsetHabits, ...headsetCosts);
-for (const [name, journey, options] of all) {
-  if (only && !name.includes(only)) continue;
+if (only?.startsWith('headset')) alone.push(...headset, ...headsetHabits, ...headsetCosts);
+const wanted = ([name]) => !only || name.includes(only);
+
+let failed = 0;
+
+/** Walks through one journey and says how it went. */
+async function walk(browser, [name, journey, options]) {
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },
     locale: 'en-GB',
@@ -49,6 +54,7 @@ for (const [name, journey, options] of all) {
     ...options,
   });
   if (!options?.fresh) await context.addInitScript(() => localStorage.setItem('burgeon.tour', 'done'));
+  await context.addInitScript(overhear);
   const page = await context.newPage();
   const troubles = [];
   const foreign = [];
@@ -90,6 +96,16 @@ for (const [name, journey, options] of all) {
   }
   await context.close();
 }
-await browser.close();
+
+/** Takes one journey after another from a list, with a browser of its own: clipboard and keyboard are shared by none. */
+async function walker(list) {
+  const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS });
+  for (let next = list.shift(); next; next = list.shift()) await walk(browser, next);
+  await browser.close();
+}
+
+const list = all.filter(wanted);
+await Promise.all(Array.from({ length: Math.min(WALKERS, list.length) }, () => walker(list)));
+await walker(alone.filter(wanted));
 console.log(`Studio journeys: ${failed} failed; pictures in ${out}`);
 process.exit(failed > 0 ? 1 : 0);

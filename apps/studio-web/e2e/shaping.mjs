@@ -1,7 +1,20 @@
 // Hands on plants in the view: prune, turn, draw, brush; what survives and what says that it did not.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
+import {
+  add,
+  begin,
+  changed,
+  count,
+  data,
+  drop,
+  exported,
+  sample,
+  settled,
+  stirred,
+  until,
+} from './journeys.mjs';
+import { answered, becomes, eventually, pictures, reloaded, rested } from './waits.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 
@@ -13,14 +26,15 @@ async function bush(page, url, tool) {
   await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   await page.keyboard.press(String(tool));
-  await page.waitForTimeout(900);
-  return data(page, 'digest');
+  await rested(page);
+  return settled(page);
 }
 
 /** A place of the view where the pointer means a branch that is not the trunk. */
 async function branch(page, from = 4, trunk = false) {
-  const box = await page.locator('.view').boundingBox();
   await page.keyboard.press('1');
+  await rested(page);
+  const box = await page.locator('.view').boundingBox();
   for (let k = from; k < 60; k += 1) {
     const [x, y] = [
       box.x + box.width * (0.5 + 0.25 * Math.sin(k * 2.4)),
@@ -28,7 +42,7 @@ async function branch(page, from = 4, trunk = false) {
     ];
     await page.mouse.move(x, y);
     await page.mouse.move(x + 1, y);
-    await page.waitForTimeout(120);
+    await answered(page);
     const picked = await data(page, 'picked');
     if (picked !== '' && (trunk || picked !== '0')) return { x: x + 1, y, k };
   }
@@ -51,7 +65,7 @@ const CENTRE = async (page) => {
 async function prune({ page, url, shot }) {
   const plain = await bush(page, url, 4);
   const at = await branch(page);
-  await page.waitForTimeout(500);
+  await rested(page);
   await shot('shape-pick');
   await page.keyboard.press('4');
   await page.click('#b-shape-whole');
@@ -59,11 +73,11 @@ async function prune({ page, url, shot }) {
   await until(page, 'edits', ['is', 1], 'one edit');
   await until(page, 'done', ['is', 1], 'it was done');
   const pruned = await changed(page, plain, 'pruned');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('shape-prune');
   await unfold(page);
-  assert.match(await page.locator('.edits li').textContent(), /prune−\d+ branches/);
-  assert.match(await page.locator('#b-undo').getAttribute('title'), /prune/);
+  await page.locator('.edits li', { hasText: /prune−\d+ branches/ }).waitFor();
+  await page.locator('#b-undo[title*="prune"]').waitFor();
   // Left out, done again, removed; each is a step.
   await page.click('[data-key=eye0]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
@@ -71,6 +85,7 @@ async function prune({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, pruned);
   await page.click('[data-key=gone0]');
   await until(page, 'edits', ['is', 0], 'removed');
+  await settled(page);
   for (let i = 0; i < 4; i += 1) await page.keyboard.press('Control+z');
   await until(page, 'edits', ['is', 0], 'undone');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
@@ -115,9 +130,13 @@ async function bearer({ page, url, shot }) {
     steps += 1;
   }
   await page.keyboard.press('q');
-  assert.match(await page.locator('#b-shape-up').textContent(), new RegExp(`\\+${steps}$`));
-  for (let k = 0; k < steps; k += 1) await page.click('#b-shape-down');
-  assert.equal(await page.locator('#b-shape-down').isDisabled(), true);
+  await answered(page);
+  await page.locator('#b-shape-up', { hasText: new RegExp(`\\+${steps}$`) }).waitFor();
+  for (let k = 0; k < steps; k += 1) {
+    await page.click('#b-shape-down');
+    await answered(page);
+  }
+  await page.locator('#b-shape-down:disabled').waitFor();
   await page.mouse.move(at.x - 1, at.y);
   await page.mouse.move(at.x, at.y);
   await see('same', twig);
@@ -135,8 +154,8 @@ async function bearer({ page, url, shot }) {
   await page.keyboard.press('Delete');
   await changed(page, plain, 'the bough is gone');
   await unfold(page);
-  const removed = Number(/−(\d+)/.exec(await page.locator('.edits li').textContent())[1]);
-  assert.ok(removed >= bough[1], `${removed} branches are gone, it bore ${bough[1]}`);
+  const removed = async () => Number(/−(\d+)/.exec(await page.locator('.edits li').textContent())?.[1]);
+  await eventually(removed, (n) => n >= bough[1], `branches are gone, it bore ${bough[1]}`);
   await shot('shape-bearer-pruned');
 }
 
@@ -162,7 +181,8 @@ async function rotate({ page, url, shot }) {
   await page.mouse.up();
   await until(page, 'edits', ['is', 1], 'one drag is one edit');
   await until(page, 'done', ['is', 1], 'done');
-  await page.waitForTimeout(700);
+  await settled(page);
+  await rested(page);
   await shot('shape-rotate');
   await page.keyboard.press('Control+z');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
@@ -174,17 +194,18 @@ async function rotate({ page, url, shot }) {
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => document.body.dataset.carried === '');
   await page.mouse.up();
-  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  assert.equal(await settled(page), plain);
   assert.equal(await count(page, 'edits'), 0);
   // The second button turns the view meanwhile.
+  await rested(page);
   const before = await page.screenshot();
   await page.mouse.move(at.x, at.y);
   await page.mouse.down({ button: 'right' });
   await page.mouse.move(at.x + 150, at.y, { steps: 6 });
   await page.mouse.up({ button: 'right' });
-  await page.waitForTimeout(900);
+  await rested(page);
   assert.notDeepEqual(await page.screenshot(), before);
-  assert.equal(await data(page, 'digest'), plain);
+  assert.equal(await settled(page), plain);
 }
 
 async function draw({ page, url, shot }) {
@@ -194,16 +215,16 @@ async function draw({ page, url, shot }) {
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
   for (let k = 1; k <= 14; k += 1) await page.mouse.move(at.x + 9 * k, at.y - 7 * k + 0.4 * k * k);
-  await page.waitForTimeout(600);
+  await answered(page);
   await shot('shape-sketch-held');
   await page.mouse.up();
   await until(page, 'edits', ['is', 1], 'a drawn branch');
   await until(page, 'done', ['is', 1], 'done');
   await changed(page, plain, 'it bears a new branch');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('shape-sketch');
   await unfold(page);
-  assert.match(await page.locator('.edits li').textContent(), /draw a branch\+\d+ branches/);
+  await page.locator('.edits li', { hasText: /draw a branch\+\d+ branches/ }).waitFor();
 }
 
 async function brush({ page, url, shot }) {
@@ -211,16 +232,16 @@ async function brush({ page, url, shot }) {
   const centre = await CENTRE(page);
   await page.mouse.move(centre.x, centre.y);
   await page.keyboard.press(']');
-  await page.waitForTimeout(300);
+  await answered(page);
   await page.mouse.down();
   for (let k = 1; k <= 10; k += 1) await page.mouse.move(centre.x - 11 * k, centre.y - 9 * k);
-  await page.waitForTimeout(500);
+  await pictures(page);
   await shot('shape-brush-held');
   await page.mouse.up();
   await until(page, 'edits', ['is', 1], 'a brush stroke');
   await until(page, 'done', ['is', 1], 'branches grew along it');
   digest = await changed(page, digest, 'brushed');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('shape-brush');
   // Leaves: fewer within the stroke.
   await page.keyboard.press('9');
@@ -238,12 +259,12 @@ async function brush({ page, url, shot }) {
     await page.mouse.move(centre.x + 120 * Math.sin(a), centre.y - 40 - 110 * Math.cos(a));
     if (i === 0) await page.mouse.down();
   }
-  await page.waitForTimeout(500);
+  await pictures(page);
   await shot('shape-silhouette-held');
   await page.mouse.up();
   await until(page, 'edits', ['is', 3], 'an outline');
   await changed(page, digest, 'filled');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('shape-silhouette');
 }
 
@@ -261,14 +282,14 @@ async function seeds({ page, url, shot }) {
   }
   assert.equal(await count(page, 'undone'), 1, 'a seed without such a branch');
   await unfold(page);
-  assert.match(await page.locator('.edits .is-bad').textContent(), /not done: the branch is gone/);
-  await page.waitForTimeout(700);
+  await page.locator('.edits .is-bad', { hasText: 'not done: the branch is gone' }).waitFor();
+  await rested(page);
   await shot('shape-gone');
   await page.click('#b-language');
   await page.locator('.edits .is-bad', { hasText: '枝条已不存在' }).waitFor();
   await page.click('#b-theme');
   await page.click('#b-theme');
-  await page.waitForTimeout(900);
+  await rested(page);
   await shot('shape-dark-chinese');
 }
 
@@ -279,13 +300,11 @@ async function kept({ page, url, troubles }) {
   await page.click('#b-shape-whole');
   await page.mouse.click(at.x, at.y);
   await until(page, 'done', ['is', 1], 'pruned');
-  await page.waitForTimeout(500);
   const digest = await settled(page);
   const [project] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
   const path = await project.path();
   await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
-  await page.waitForTimeout(900);
-  await page.reload();
+  await reloaded(page);
   await until(page, 'edits', ['is', 1], 'the edit is recovered');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
   await page.click('#b-fresh');
@@ -327,20 +346,21 @@ async function drawn({ page, url, shot }) {
   await page.mouse.up();
   await until(page, 'done', ['is', 1], 'a drawn stem is turned');
   await changed(page, plain, 'turned');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('shape-drawing');
   assert.equal((await exported(page, 'glb')).bytes.subarray(0, 4).toString(), 'glTF');
   // The sheet keeps its own tools and keys.
-  assert.equal(await count(page, 'strokes'), 15);
+  await becomes(() => count(page, 'strokes'), 15, 'the number of strokes');
   await page.keyboard.press('Escape');
   // A click on a plant of the scene chooses it.
   await add(page, 'flower');
-  await page.waitForTimeout(1500);
+  await settled(page);
+  await rested(page);
   const box = await page.locator('.view').boundingBox();
   search: for (let k = 0; k < 12; k += 1) {
     for (let j = 0; j < 8; j += 1) {
       await page.mouse.click(box.x + box.width * (0.45 + 0.045 * k), box.y + box.height * (0.25 + 0.08 * j));
-      await page.waitForTimeout(60);
+      await answered(page);
       if ((await data(page, 'current')) === 'sketch') break search;
     }
   }
@@ -363,14 +383,15 @@ async function fingers({ page, url, context, shot }) {
     [at.x + 90, at.y + 60],
   ]);
   await page.waitForFunction(() => document.body.dataset.carried === '');
-  assert.equal(await data(page, 'digest'), plain);
   await send('touchEnd', []);
+  assert.equal(await settled(page), plain);
   assert.equal(await count(page, 'edits'), 0, 'a second finger lets go');
   await send('touchStart', [[at.x, at.y]]);
   for (let k = 1; k < 8; k += 1) await send('touchMove', [[at.x + 4 * k, at.y + 10 * k]]);
   await send('touchEnd', []);
   await until(page, 'done', ['is', 1], 'one finger, one edit');
-  await page.waitForTimeout(700);
+  await settled(page);
+  await rested(page);
   await shot('shape-tablet');
 }
 
@@ -383,7 +404,7 @@ async function grow({ page, url, shot }) {
   await page.mouse.down();
   const seen = [plain];
   for (let k = 0; k < 5; k += 1) {
-    seen.push(await changed(page, seen.at(-1), 'it grows'));
+    seen.push(await stirred(page, seen.at(-1), 'it grows'));
     if (k === 2) await page.mouse.wheel(0, -100);
   }
   assert.equal(new Set(seen).size, seen.length, 'another plant each time');
@@ -392,18 +413,18 @@ async function grow({ page, url, shot }) {
   await until(page, 'edits', ['is', 1], 'one edit');
   await until(page, 'done', ['is', 1], 'it was done');
   const grown = await changed(page, plain, 'grown');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('shape-grown');
-  assert.match(await page.locator('#b-undo').getAttribute('title'), /growth/);
+  await page.locator('#b-undo[title*="growth"]').waitFor();
   // Nothing grows on after that, and one undo takes all of it back.
-  assert.equal(await data(page, 'digest'), grown);
+  assert.equal(await settled(page), grown);
   await page.keyboard.press('Control+z');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   // On the ground beside it, and Escape.
   const box = await page.locator('.view').boundingBox();
   await page.mouse.move(box.x + box.width * 0.78, box.y + box.height * 0.66);
   await page.mouse.down();
-  await changed(page, plain, 'a stem grows');
+  await stirred(page, plain, 'a stem grows');
   await page.keyboard.press('Escape');
   await page.mouse.up();
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
@@ -422,7 +443,7 @@ async function sky({ page, url, shot }) {
   for (let x = edge; x > at.x; x -= 25) {
     await page.mouse.move(x, at.y);
     await page.mouse.move(x + 1, at.y);
-    await page.waitForTimeout(200);
+    await answered(page);
     const over = await data(page, 'picked');
     await page.evaluate(() => {
       for (const note of document.querySelectorAll('.note')) note.remove();
@@ -433,6 +454,7 @@ async function sky({ page, url, shot }) {
     await page.waitForFunction(
       () => document.body.dataset.edits === '1' || document.querySelector('.note') !== null,
     );
+    await answered(page);
     if ((await count(page, 'edits')) === 1) {
       assert.equal(over, '', 'it began in the sky');
       break;
@@ -444,13 +466,14 @@ async function sky({ page, url, shot }) {
   await until(page, 'edits', ['is', 1], 'a drawn branch');
   await until(page, 'done', ['is', 1], 'done');
   await changed(page, plain, 'it bears a new branch');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('shape-sky');
 }
 
 /** Where the control balls of a leaf are on the page, the tip first. */
 async function balls(page) {
-  await page.waitForFunction(() => document.body.dataset.balls !== '');
+  await rested(page);
+  await page.waitForFunction(() => (document.body.dataset.balls ?? '') !== '');
   const box = await page.locator('.view').boundingBox();
   const places = (await data(page, 'balls')).split(' ').map(Number);
   return Array.from({ length: places.length / 3 }, (_, i) => [
@@ -468,7 +491,6 @@ async function marks({ page, url, shot }) {
   await page.selectOption('[data-path="/surface"]', 'approximate');
   await changed(page, through, 'another surface');
   const plain = await settled(page);
-  await page.waitForTimeout(900);
   assert.equal((await data(page, 'balls')) ?? '', '');
   await page.keyboard.press('Shift+S');
   const before = await balls(page);
@@ -482,22 +504,18 @@ async function marks({ page, url, shot }) {
   const pulled = await settled(page);
   // The camera follows the plant: what counts is where the tip is beside the base of the leaf.
   const away = (all) => Math.hypot(all[0][0] - all[67][0], all[0][1] - all[67][1]);
-  let after = before;
-  for (let tries = 0; tries < 100 && Math.abs(away(after) - away(before)) < 8; tries += 1) {
-    await page.waitForTimeout(100);
-    after = await balls(page);
-  }
-  assert.ok(Math.abs(away(after) - away(before)) > 8, 'the tip went with the pointer');
-  await page.waitForTimeout(500);
-  after = await balls(page);
+  const after = await eventually(
+    () => balls(page),
+    (now) => Math.abs(away(now) - away(before)) > 8,
+    'the tip went with the pointer',
+  );
   await shot('leaf-marks');
-  assert.equal(await page.locator('#b-measured').count(), 1);
+  await becomes(() => page.locator('#b-measured').count(), 1, 'the button of what was measured');
   // The wheel over a mark makes its veins thicker, and does not zoom.
   const mark = after[11];
   await page.mouse.move(...mark);
   for (let k = 0; k < 6; k += 1) await page.mouse.wheel(0, -100);
   await changed(page, pulled, 'a thicker vein');
-  await page.waitForTimeout(500);
   const thick = await settled(page);
   // On a busy machine the turns of the wheel come apart, and are as many steps back.
   let back = 0;
@@ -520,16 +538,15 @@ async function marks({ page, url, shot }) {
   await page.mouse.move(now[4][0] + 40, now[4][1] + 20);
   await page.keyboard.press('Escape');
   await page.mouse.up();
-  await page.waitForFunction((d) => document.body.dataset.digest === d, thick);
+  assert.equal(await settled(page), thick);
   // Elsewhere the view is turned as always.
   const centre = await CENTRE(page);
   await page.mouse.move(centre.x, centre.y + 200);
   await page.mouse.down();
   await page.mouse.move(centre.x + 120, centre.y + 200, { steps: 5 });
   await page.mouse.up();
-  await page.waitForTimeout(300);
   assert.notDeepEqual(await balls(page), now, 'another view');
-  assert.equal(await data(page, 'digest'), thick);
+  assert.equal(await settled(page), thick);
   await page.click('#b-measured');
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   await page.keyboard.press('Escape');

@@ -3,7 +3,20 @@ import assert from 'node:assert/strict';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { inflateRawSync } from 'node:zlib';
-import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
+import { add, begin, changed, count, exported, sample, settled, until } from './journeys.mjs';
+import {
+  answered,
+  becomes,
+  eventually,
+  loaded,
+  pictures,
+  reloaded,
+  rested,
+  restingEye,
+  saved,
+  stored,
+  take,
+} from './waits.mjs';
 
 /** The pixels of a part of a picture file, four bytes each, and the size of the whole; shares of its width and height. */
 export async function pixels(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
@@ -40,17 +53,16 @@ export async function mean(page, bytes, part) {
 }
 
 /** What is to be seen, when nothing more is coming. */
-const seen = (page, part) =>
-  page
-    .waitForSelector('.view[data-rests="1"]', { timeout: 60_000 })
-    .then(() => page.locator('.view canvas').screenshot())
-    .then((b) => mean(page, b, part));
+async function seen(page, part) {
+  await rested(page);
+  return mean(page, await page.locator('.view canvas').screenshot(), part);
+}
 const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** How much neighbouring pixels of a part of the view differ, 0 to 255. */
 async function edges(page, part) {
-  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
+  await rested(page);
   const { p, across } = await pixels(page, await page.locator('.view canvas').screenshot(), part);
   let sum = 0;
   for (let i = 0; i + 4 * across < p.length; i += 4)
@@ -74,10 +86,8 @@ async function air({ page, url, shot }) {
       e.dispatchEvent(new Event('change', { bubbles: true }));
     }, String(value));
     await page.keyboard.press('Escape');
-    await page.waitForTimeout(1500);
   };
   await set('fog', 0);
-  await rest(page);
   // Where the ground is far away, beside the plant.
   const far = [0.02, 0.66, 0.3, 0.78];
   const clear = [(await seen(page, far)).rgb, await edges(page, far)];
@@ -88,21 +98,13 @@ async function air({ page, url, shot }) {
   assert.ok(fogged[1] < 0.7 * clear[1], `fog hides the ground: ${fogged[1]} of ${clear[1]}`);
   await set('fog', 0);
   await set('blur', 1);
-  const blurred = await edges(page, far);
+  // What blurs is loaded when it is first asked for.
+  await eventually(
+    () => edges(page, far),
+    (blurred) => blurred < 0.7 * clear[1],
+    `it is out of focus: of ${clear[1]}`,
+  );
   await shot('stage-blur');
-  assert.ok(blurred < 0.7 * clear[1], `it is out of focus: ${blurred} of ${clear[1]}`);
-}
-
-/** Waits until the camera rests. */
-async function rest(page) {
-  let last = '';
-  for (let k = 0; k < 60; k += 1) {
-    const now = await page.locator('.view').getAttribute('data-eye');
-    if (now === last) return JSON.parse(now);
-    last = now;
-    await page.waitForTimeout(700);
-  }
-  throw new Error('the camera does not come to rest');
 }
 
 async function palette(page, id) {
@@ -134,10 +136,12 @@ async function stage({ page, url, shot }) {
   for (const name of ['studio', 'noon', 'golden', 'overcast', 'night']) {
     await preset(name);
     await page.locator(`[data-preset-stage=${name}][aria-pressed=true]`).waitFor();
-    await page.waitForTimeout(2500);
-    looks[name] = {};
-    for (const [part, box] of Object.entries({ all, sky, foot })) looks[name][part] = await look(box);
     await page.keyboard.press('Escape');
+    await rested(page);
+    const picture = await page.locator('.view canvas').screenshot();
+    looks[name] = {};
+    for (const [part, box] of Object.entries({ all, sky, foot }))
+      looks[name][part] = (await mean(page, picture, box)).rgb;
     await shot(`stage-${name}`);
     await page.keyboard.press('t');
   }
@@ -157,14 +161,12 @@ async function stage({ page, url, shot }) {
   // By hand: soil, a colour, a picture.
   await preset('noon');
   await page.selectOption('[data-stage=ground]', 'soil');
-  await page.waitForTimeout(1500);
   const soil = await look(foot);
   assert.ok(soil[0] > soil[1] && soil[1] > soil[2], `soil is brown: ${soil}`);
   await shot('stage-soil');
   await page.selectOption('[data-stage=background]', 'colour');
   await page.locator('[data-stage=colour]').fill('#3366cc');
   await page.selectOption('[data-stage=ground]', 'none');
-  await page.waitForTimeout(1200);
   const painted = await look(sky);
   assert.ok(apart(painted, [0x33, 0x66, 0xcc]) < 4, `the colour behind is the one chosen: ${painted}`);
   await page.selectOption('[data-stage=background]', 'picture');
@@ -175,22 +177,23 @@ async function stage({ page, url, shot }) {
     'base64',
   );
   await (await chooser).setFiles({ name: 'red.png', mimeType: 'image/png', buffer: red });
-  await page.waitForTimeout(1500);
-  const behind = await look(sky);
-  assert.ok(behind[0] > 180 && behind[1] < 60, `a picture stands behind: ${behind}`);
+  // It is read first.
+  const behind = await eventually(
+    () => look(sky),
+    ([r, g]) => r > 180 && g < 60,
+    'a picture stands behind',
+  );
   // Another quality: more is drawn, and it is told.
   assert.equal(await page.locator('.view').getAttribute('data-quality'), 'fast', 'no graphics card here');
   await page.selectOption('[data-stage=quality]', 'fine');
   await page.locator('.view[data-quality=fine]').waitFor();
-  await page.waitForTimeout(4000);
-  const fine = await look(sky);
-  assert.ok(apart(fine, behind) < 6, `the picture keeps its colours: ${fine}`);
+  await loaded(page, 'post');
+  const like = (rgb) => apart(rgb, behind) < 6;
+  await eventually(() => look(sky), like, `the picture keeps its colours: ${behind}`);
   await page.selectOption('[data-stage=quality]', 'auto');
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
-  await page.waitForTimeout(2500);
-  const again = (await seen(page, sky)).rgb;
-  assert.ok(apart(again, behind) < 6, `the stage is remembered: ${again}`);
+  await backdropKept(page);
+  await reloaded(page);
+  await eventually(async () => (await seen(page, sky)).rgb, like, `the stage is remembered: ${behind}`);
 }
 
 /** Where a point of the world is on the screen, pixels from the middle, for the camera as the page tells it. */
@@ -218,17 +221,16 @@ export function frameOf({ position, target, lens }, height) {
 async function camera({ page, url, shot }) {
   await begin(page, url);
   await sample(page);
-  await rest(page);
+  const before = await restingEye(page);
   const box = await page.locator('.view').boundingBox();
   const [dx, dy] = [70, -110];
-  const before = await rest(page);
   await page.mouse.move(box.x + box.width / 2 + dx, box.y + box.height / 2 + dy);
   const point = frameOf(before, box.height).at(dx, dy);
   for (let k = 0; k < 4; k += 1) {
     await page.mouse.wheel(0, -240);
-    await page.waitForTimeout(120);
+    await pictures(page);
   }
-  const near = await rest(page);
+  const near = await restingEye(page);
   const size = ({ position, target }) => Math.hypot(...position.map((p, i) => p - target[i]));
   assert.ok(size(near) < 0.8 * size(before), 'the wheel came nearer');
   const [x, y] = frameOf(near, box.height).to(point);
@@ -240,10 +242,10 @@ async function camera({ page, url, shot }) {
     await page.mouse.up({ button: 'right' });
     await page.mouse.move(box.x + box.width - 90, box.y + 300);
   }
-  const far = await rest(page);
+  const far = await restingEye(page);
   assert.ok(Math.hypot(far.target[0], far.target[1] - 0.48, far.target[2]) < 3.01, `${far.target}`);
   await page.keyboard.press('f');
-  const focused = await rest(page);
+  const focused = await restingEye(page);
   assert.ok(Math.abs(focused.target[0]) < 0.3 && Math.abs(focused.target[2]) < 0.3, 'F comes back');
   for (const [side, axis, sign] of [
     ['left', 0, -1],
@@ -254,53 +256,60 @@ async function camera({ page, url, shot }) {
     ['front', 2, 1],
   ]) {
     await palette(page, `side-${side}`);
-    const { position, target } = await rest(page);
+    const { position, target } = await restingEye(page);
     const arm = position.map((p, i) => p - target[i]);
     assert.ok(sign * arm[axis] > 0.95 * Math.hypot(...arm), `${side}: ${arm}`);
   }
   // The lens: another angle, the same size.
   await page.keyboard.press('c');
-  const wide = await rest(page);
+  const wide = await restingEye(page);
   const lens = page.locator('[data-stage="camera.lens"]');
   await lens.evaluate((e) => {
     e.value = '60';
     e.dispatchEvent(new Event('input', { bubbles: true }));
   });
-  const narrow = await rest(page);
+  const narrow = await restingEye(page);
   const seenHeight = (e) => size(e) * Math.tan((e.lens * Math.PI) / 360);
   assert.equal(narrow.lens, 60);
   assert.ok(Math.abs(seenHeight(narrow) / seenHeight(wide) - 1) < 0.02, 'what is looked at keeps its size');
   // A camera that is kept, also over a new start of the page.
   await page.click('[data-camera=keep]');
-  const kept = await rest(page);
+  const kept = await restingEye(page);
   await page.click('[data-side=left]');
-  await rest(page);
+  await rested(page);
   await page.click('[data-camera="1"]');
-  assert.deepEqual(await rest(page), kept);
+  assert.deepEqual(await restingEye(page), kept);
   await page.click('[data-guide=figure]');
   await page.click('[data-guide=staff]');
   await page.click('[data-guide=grid]');
   await page.keyboard.press('Escape');
   await palette(page, 'frame');
-  await rest(page);
+  await rested(page);
   await shot('guides');
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
-  await page.waitForTimeout(1500);
+  await reloaded(page);
+  await rested(page);
   await page.keyboard.press('c');
-  assert.equal(await page.locator('[data-guide=figure]').getAttribute('aria-pressed'), 'true');
+  await page.locator('[data-guide=figure][aria-pressed=true]').waitFor();
   await page.click('[data-camera="1"]');
-  assert.deepEqual((await rest(page)).position, kept.position, 'kept in the browser');
+  assert.deepEqual((await restingEye(page)).position, kept.position, 'kept in the browser');
   await page.keyboard.press('Escape');
   // On foot.
   await page.keyboard.press('n');
   await page.waitForFunction(() => document.body.dataset.walk === 'walk');
-  const from = await rest(page);
-  await page.keyboard.down('w');
-  await page.waitForTimeout(1500);
-  await page.keyboard.up('w');
-  const to = await rest(page);
-  assert.ok(size({ position: from.position, target: to.position }) > 0.1, 'W walks');
+  const from = await restingEye(page);
+  // The key is held until there is something to be seen of it.
+  const held = async (key, went, what) => {
+    await page.keyboard.down(key);
+    await eventually(
+      async () => JSON.parse(await page.locator('.view').getAttribute('data-eye')),
+      went,
+      what,
+    );
+    await page.keyboard.up(key);
+    return restingEye(page);
+  };
+  const away = ({ position }) => size({ position: from.position, target: position });
+  const to = await held('w', (eye) => away(eye) > 0.1, 'W walks');
   assert.equal(to.position[1], from.position[1], 'on the ground');
   assert.equal(await page.locator('#b-wire').getAttribute('aria-pressed'), 'false', 'W is the walker’s');
   await page.keyboard.press('Escape');
@@ -308,15 +317,11 @@ async function camera({ page, url, shot }) {
   // In flight, E rises.
   await page.keyboard.press('Shift+N');
   await page.waitForFunction(() => document.body.dataset.walk === 'fly');
-  await page.keyboard.down('e');
-  await page.waitForTimeout(900);
-  await page.keyboard.up('e');
-  const up = await rest(page);
-  assert.ok(up.position[1] > to.position[1] + 0.05, `${up.position[1]} is above ${to.position[1]}`);
+  await held('e', ({ position }) => position[1] > to.position[1] + 0.05, `it is above ${to.position[1]}`);
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => document.body.dataset.walk === '');
   await palette(page, 'frame');
-  await rest(page);
+  await rested(page);
 }
 
 /** Fills the dialogue for pictures and films, and starts. */
@@ -341,7 +346,7 @@ async function filmed(page, wanted) {
 async function picture({ page, url, out }) {
   await begin(page, url);
   await sample(page);
-  await page.waitForTimeout(1500);
+  await rested(page);
   const { name, bytes } = await filmed(page, {
     shot: 'picture',
     width: 3000,
@@ -365,7 +370,7 @@ async function picture({ page, url, out }) {
   const size = { width: Math.round(width), height: Math.round(height) };
   for (const preset of ['studio', 'noon']) {
     await palette(page, `stage-${preset}`);
-    await page.waitForTimeout(3000);
+    await rested(page);
     const same = await filmed(page, { shot: 'picture', ...size, transparent: false });
     writeFileSync(join(out, `picture-${preset}.png`), same.bytes);
     for (const part of [
@@ -422,8 +427,8 @@ async function films({ page, url, context }) {
   await begin(page, url);
   await add(page, 'flower');
   await until(page, 'triangles', ['above', 200], 'a lily');
-  await page.waitForTimeout(1200);
   const digest = await settled(page);
+  await rested(page);
   const undo = await page.locator('#b-undo').getAttribute('title');
   for (const [format, type] of [
     ['webm', 'video/webm'],
@@ -454,7 +459,8 @@ async function films({ page, url, context }) {
   assert.deepEqual([bud.width, bud.height, bud.alpha], [480, 400, 0]);
   assert.ok(apart(bud.rgb, open.rgb) > 2, 'the flower opens');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
-  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo, 'no step of undo is left');
+  const step = () => page.locator('#b-undo').getAttribute('title');
+  await becomes(step, undo, 'what is left to undo');
   // Stopped: nothing is written, and the plant is as it was.
   const files = [];
   page.on('download', (d) => files.push(d.suggestedFilename()));
@@ -463,10 +469,14 @@ async function films({ page, url, context }) {
   await page.click('#b-film-stop');
   await page.locator('.note', { hasText: 'Nothing was written' }).waitFor();
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
-  await page.waitForTimeout(800);
-  assert.deepEqual(files, []);
-  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo);
+  await settled(page);
+  await becomes(step, undo, 'what is left to undo');
   assert.equal(await count(page, 'plants'), 1);
+  // Whatever had been written would come before this.
+  const next = page.waitForEvent('download');
+  await page.click('#b-save');
+  await next;
+  assert.equal(files.length, 1, files.join());
 }
 
 /** What a binary glTF file holds: triangles, vertices and meshes that are drawn; bytes of its meshes. */
@@ -502,6 +512,7 @@ function unzipped(zip, name) {
 
 /** Waits until what is asked for is seen, and says the figures. */
 async function lookedAt(page) {
+  await answered(page);
   await page.waitForFunction(() => {
     const panel = document.querySelector('#b-exportview')?.dataset;
     const { dataset } = document.body;
@@ -535,8 +546,7 @@ async function slide(page, key, value) {
 
 /** The same where nothing is to move: not before the view has come to rest. */
 async function stirs(page, part) {
-  await page.waitForTimeout(800);
-  await page.waitForSelector('.view[data-rests="1"]', { timeout: 60_000 });
+  await rested(page);
   return sways(page, part);
 }
 
@@ -572,7 +582,7 @@ async function preview({ page, url, shot }) {
   assert.equal(whole.seen, triangles, 'the view shows what is counted');
   assert.ok(whole.parts.petal.triangles > 0 && whole.parts.leaf.triangles > 0, JSON.stringify(whole.parts));
   // Still, then in the wind.
-  await rest(page);
+  await rested(page);
   const [crown, foot] = [
     [0.1, 0.1, 0.85, 0.7],
     [0.1, 0.88, 0.85, 1],
@@ -581,8 +591,11 @@ async function preview({ page, url, shot }) {
   await slide(page, 'wind', 1);
   const windy = await lookedAt(page);
   assert.ok(windy.file > whole.file, 'wind takes room in the file');
-  await page.waitForTimeout(1200);
-  assert.ok((await sways(page, crown)) > 300, 'the flower sways');
+  await eventually(
+    () => sways(page, crown),
+    (differ) => differ > 300,
+    'the flower sways',
+  );
   assert.ok((await sways(page, foot)) < 60, 'its foot stands');
   await shot('export-wind');
   const blown = await exported(page, 'glb', 1, undefined, true);
@@ -596,7 +609,7 @@ async function preview({ page, url, shot }) {
   const level = unzipped(levels.bytes, 'plant_LOD2.glb');
   assert.equal(coarse.parts.all.triangles, heldBy(level).triangles);
   assert.equal(coarse.file, level.length);
-  assert.equal(await page.inputValue('#b-exported-levels'), '3', 'what is looked at is written');
+  await becomes(() => page.inputValue('#b-exported-levels'), '3', 'what is looked at and written');
   assert.equal(coarse.written, levels.bytes.length, 'all levels together');
   // All in one file, with views from all sides.
   await page.check('#b-exported-impostor');
@@ -617,12 +630,12 @@ async function preview({ page, url, shot }) {
   await page.uncheck('#b-exported-impostor');
   await page.selectOption('#b-exported-levels', '1');
   await lookedAt(page);
-  assert.equal(await page.inputValue('[data-exported=level]'), '0');
+  await becomes(() => page.inputValue('[data-exported=level]'), '0', 'the level');
   // Formats without wind say so; a zip is counted as one.
   await page.selectOption('[data-exported=format]', 'obj');
   await slide(page, 'level', 0);
   const obj = await lookedAt(page);
-  assert.equal(await page.locator('[data-exported=wind]').isDisabled(), true);
+  await page.locator('[data-exported=wind]:disabled').waitFor();
   const zip = await exported(page, 'obj', 1);
   assert.equal(obj.file, zip.bytes.length);
   assert.equal(obj.parts.all.triangles, triangles);
@@ -655,21 +668,20 @@ async function scene({ page, url, shot }) {
   await page.click('#b-undo');
   await page.waitForFunction((n) => Number(document.body.dataset.triangles) === n, one);
   await lookedAt(page);
-  assert.equal(await age.count(), 1, 'the age is still lent');
+  await becomes(() => age.count(), 1, 'sliders of the age, which is still lent,');
   // Less motion: the tree leans and does not sway.
   await slide(page, 'wind', 0);
   await lookedAt(page);
-  await rest(page);
+  await rested(page);
   const still = await page.locator('.view canvas').screenshot();
   await slide(page, 'wind', 1);
   await lookedAt(page);
-  await page.waitForTimeout(1500);
   assert.equal(await stirs(page, [0.1, 0.1, 0.85, 0.9]), 0, 'less motion was asked for');
   const leans = await page.locator('.view canvas').screenshot();
   assert.ok(!leans.equals(still), 'it leans');
   await shot('export-calm');
   await page.click('#b-exportview-close');
-  assert.equal(await page.locator('#b-maker [data-path=age]').count(), 1, 'the age is back');
+  await page.locator('#b-maker [data-path=age]').waitFor({ state: 'attached' });
   // Copies are drawn twice and written once.
   await page.click('.scene .fold');
   await page.click('[id^=b-more-]');
@@ -718,10 +730,10 @@ async function obstacles({ page, url, shot }) {
   await settled(page);
   await page.click('[data-obstacle=ball]');
   await page.locator('[data-obstacle-name="1"]').waitFor();
+  await settled(page);
   const names = await page.locator('[data-obstacle-name]').evaluateAll((all) => all.map((n) => n.value));
   assert.equal(names[0], 'Old well');
   assert.notEqual(names[1], names[0]);
-  await settled(page);
   await page.keyboard.press('Escape');
   await page.click('#b-undo');
   await page.locator('[data-obstacle-name="1"]').waitFor({ state: 'detached' });
@@ -739,7 +751,7 @@ async function obstacles({ page, url, shot }) {
     );
     await settled(page);
   }
-  await rest(page);
+  await rested(page);
   const before = await settled(page);
   const centre = () =>
     page.evaluate(() =>
@@ -748,25 +760,26 @@ async function obstacles({ page, url, shot }) {
   const grip = await under(page, 'grab');
   assert.ok(grip, 'the ball can be taken');
   const [x, y] = grip;
-  const eye = await page.locator('.view').getAttribute('data-eye');
   const drag = async (dx, dy) => {
+    const eye = await restingEye(page);
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + dx, y + dy, { steps: 5 });
-    await page.waitForTimeout(900);
+    return eye;
   };
   // Escape takes it back.
   await drag(60, 0);
+  await rested(page);
   await shot('obstacle-dragged');
   await page.keyboard.press('Escape');
   await page.mouse.up();
+  assert.equal(await settled(page), before);
   assert.deepEqual(await centre(), [1.9, 1.2, 0], 'nothing was done');
-  assert.equal(await data(page, 'digest'), before);
   // Along the ground: the tree grows anew when it is let go, and not before.
-  await drag(110, 0);
-  assert.equal(await data(page, 'digest'), before, 'while it is dragged the tree stays');
-  const now = JSON.parse(await page.locator('.view').getAttribute('data-eye'));
-  assert.ok(apart(now.position, JSON.parse(eye).position) < 0.002, 'and the camera');
+  const eye = await drag(110, 0);
+  const now = await restingEye(page);
+  assert.equal(await settled(page), before, 'while it is dragged the tree stays');
+  assert.ok(apart(now.position, eye.position) < 0.002, 'and the camera');
   await page.mouse.up();
   await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
   const after = await settled(page);
@@ -774,13 +787,13 @@ async function obstacles({ page, url, shot }) {
   assert.ok(cx > 2.3, `it went to the right: ${cx}`);
   assert.equal(cy, 1.2, 'along the ground');
   assert.notEqual(after, before, 'it is out of the way');
-  assert.match(await page.locator('#b-undo').getAttribute('title'), /move an obstacle/);
+  await page.locator('#b-undo[title*="move an obstacle"]').waitFor();
   await shot('obstacle-let-go');
   await page.click('#b-undo');
   await page.waitForFunction((d) => document.body.dataset.digest === d, before);
-  assert.deepEqual(await centre(), [1.9, 1.2, 0], 'one step takes it back');
+  await becomes(centre, [1.9, 1.2, 0], 'after one step back its middle');
   // With Shift, up.
-  await rest(page);
+  await rested(page);
   const again = await under(page, 'grab');
   await page.mouse.move(...again);
   await page.keyboard.down('Shift');
@@ -789,6 +802,7 @@ async function obstacles({ page, url, shot }) {
   await page.mouse.up();
   await page.keyboard.up('Shift');
   await page.waitForFunction(() => Number(document.querySelector('[data-path=o0centre1]').value) > 1.3);
+  await settled(page);
   const up = await centre();
   assert.deepEqual([up[0], up[2]], [1.9, 0], 'straight up');
 }
@@ -806,11 +820,11 @@ async function fixed({ page, url, shot }) {
   await page.locator('#b-fix[aria-pressed=true]').waitFor();
   await shot('place-locked');
   for (const key of ['nx', 'nz', 'nyaw', 'nscale'])
-    assert.equal(await page.locator(`[data-key=${key}]`).isDisabled(), true, key);
-  assert.equal(await page.locator('[data-gizmo=translate]').isDisabled(), true);
+    await page.locator(`[data-key=${key}]:disabled`).waitFor();
+  await page.locator('[data-gizmo=translate]:disabled').waitFor();
+  await page.locator('#b-undo[title*="lock the place"]').waitFor();
   const [was, undo] = [await place(), await page.locator('#b-undo').getAttribute('title')];
-  assert.match(undo, /lock the place/);
-  await rest(page);
+  await rested(page);
   const box = await page.locator('.view canvas').boundingBox();
   const pull = async () => {
     for (let k = 0; k < 60; k += 1) {
@@ -826,17 +840,18 @@ async function fixed({ page, url, shot }) {
     }
   };
   await pull();
+  await settled(page);
   assert.deepEqual(await place(), was, 'the gizmo is gone');
   assert.equal(await page.locator('#b-undo').getAttribute('title'), undo);
   // It is kept, and can be unlocked.
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await saved(page);
+  await reloaded(page);
   await settled(page);
   await page.click('.scene .fold');
-  assert.equal(await page.locator('#b-fix').getAttribute('aria-pressed'), 'true', 'it is kept');
+  await page.locator('#b-fix[aria-pressed=true]').waitFor();
   await page.click('#b-fix');
   await page.locator('#b-fix[aria-pressed=false]').waitFor();
-  assert.equal(await page.locator('[data-key=nx]').isDisabled(), false);
+  await page.locator('[data-key=nx]:enabled').waitFor();
 }
 
 /** What is to note of a plant is read by one click, in both languages. */
@@ -850,8 +865,7 @@ async function warnings({ page, url, shot }) {
   const chooser = page.waitForEvent('filechooser');
   await page.click('[data-obstacle=file]');
   await (await chooser).setFiles({ name: 'wall.obj', mimeType: 'model/obj', buffer: Buffer.from(wall) });
-  await page.waitForFunction((d) => document.body.dataset.digest !== d, digest);
-  await settled(page);
+  await changed(page, digest, 'a wall in its way');
   await page.locator('#b-warnings').click();
   const first = page.locator('.warnings li').first();
   const english = await first.textContent();
@@ -863,6 +877,7 @@ async function warnings({ page, url, shot }) {
   await page.keyboard.press('Escape');
   await palette(page, 'language');
   await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
+  await settled(page);
   await page.locator('#b-warnings').click();
   const chinese = await first.textContent();
   assert.match(chinese, /[\u4e00-\u9fff]{4}/);
@@ -896,6 +911,13 @@ function noise(width, height) {
   return Buffer.concat([head, pixels]);
 }
 
+const backdropKept = (page) =>
+  eventually(
+    () => stored(page, 'pictures', 'getAllKeys'),
+    (keys) => keys.includes('.backdrop'),
+    'pictures that are kept',
+  );
+
 async function chooseBackdrop(page, buffer) {
   const chooser = page.waitForEvent('filechooser');
   await page.click('.scenery .link');
@@ -918,21 +940,19 @@ async function keptStage({ page, url, shot }) {
   await page.keyboard.press('c');
   for (const side of ['front', 'left', 'back']) {
     await page.click(`[data-side=${side}]`);
-    await rest(page);
+    await rested(page);
     await page.click('[data-camera=keep]');
   }
   await page.click('[data-camera="2"]');
-  const left = await rest(page);
+  const left = await restingEye(page);
   await page.click('[data-camera="3"]');
-  const back = await rest(page);
+  const back = await restingEye(page);
   await page.click('[data-camera-drop="2"]');
   await page.waitForFunction(() => !document.querySelector('[data-camera="3"]'));
-  await page.locator('.note button', { hasText: 'Undo' }).click();
-  // A click beside the panel closes it.
-  await page.keyboard.press('c');
+  await take(page, '', 'Undo');
   await page.locator('[data-camera="3"]').waitFor();
   await page.click('[data-camera="2"]');
-  assert.deepEqual(await rest(page), left, 'the camera is in its place again');
+  assert.deepEqual(await restingEye(page), left, 'the camera is in its place again');
   assert.notDeepEqual(left, back);
   await page.keyboard.press('Escape');
   await page.keyboard.press('t');
@@ -941,15 +961,18 @@ async function keptStage({ page, url, shot }) {
   const sky = [0.4, 0.01, 0.8, 0.05];
   const reddish = async (why) => {
     await page.keyboard.press('Escape');
-    await page.waitForTimeout(1500);
-    const { rgb } = await seen(page, sky);
-    assert.ok(rgb[0] > 160 && rgb[2] < 110, `${why}: ${rgb}`);
+    await eventually(
+      async () => (await seen(page, sky)).rgb,
+      ([r, , b]) => r > 160 && b < 110,
+      why,
+    );
   };
   await reddish('the picture stands behind');
+  // It is kept after it is shown, or a note says that it is not.
+  await backdropKept(page);
   assert.equal(await page.locator('.note.bad').count(), 0);
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await saved(page);
+  await reloaded(page);
   await reddish('and after a reload');
   await shot('kept-backdrop');
   await page.evaluate(() => sessionStorage.setItem('full', 'yes'));

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { begin, blade, changed, count, draw, drawFlower, line, settled, until } from './journeys.mjs';
 import { pixels } from './staging.mjs';
+import { answered, becomes, eventually, reloaded, rested, saved } from './waits.mjs';
 
 /** The middle of the knob over the frame round some points, and its lower right corner. */
 function handles(points) {
@@ -82,7 +83,7 @@ async function edit({ page, url, shot }) {
     field.dispatchEvent(new Event('change', { bubbles: true }));
   });
   const red = await changed(page, before, 'coloured');
-  await page.waitForTimeout(800);
+  await rested(page);
   await shot('strokes-coloured');
   await page.locator('.card .chip', { hasText: 'Smooth' }).click();
   await changed(page, red, 'smoothed');
@@ -93,7 +94,7 @@ async function edit({ page, url, shot }) {
   }
   await step(page, 'draw');
   await page.waitForFunction((digest) => document.body.dataset.digest === digest, plain);
-  assert.equal(await count(page, 'strokes'), strokes);
+  await becomes(() => count(page, 'strokes'), strokes, 'the number of strokes');
 }
 
 /** The whole is read as something else by one click, and a stroke that another one turned is turned back. */
@@ -102,13 +103,9 @@ async function readings({ page, url, shot }) {
   await until(page, 'triangles', ['above', 0], 'the file is open');
   const plain = await settled(page);
   const chips = page.locator('.readings .chip[data-reading]');
-  await chips.first().waitFor();
-  assert.equal(await chips.count(), 3, 'three readings');
-  assert.equal(await page.locator('.readings .chip[aria-pressed=true]').count(), 1);
-  assert.equal(
-    await page.locator('.readings .chip[data-reading=flower]').getAttribute('aria-pressed'),
-    'true',
-  );
+  await becomes(() => chips.count(), 3, 'the number of readings');
+  await becomes(() => page.locator('.readings .chip[aria-pressed=true]').count(), 1, 'those pressed');
+  await page.locator('.readings .chip[data-reading=flower][aria-pressed=true]').waitFor();
   await shot('readings');
   const other = page.locator('.readings .chip[data-reading][aria-pressed=false]').first();
   const kind = await other.getAttribute('data-reading');
@@ -117,8 +114,8 @@ async function readings({ page, url, shot }) {
   await page.locator(`.readings .chip[data-reading="${kind}"][aria-pressed=true]`).waitFor();
   await shot('readings-other');
   // The document remembers it.
-  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
-  await page.reload();
+  await saved(page);
+  await reloaded(page);
   await page.waitForFunction((d) => document.body.dataset.digest === d, read);
   await page.locator('.readings .chip', { hasText: 'automatic' }).click();
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
@@ -144,7 +141,6 @@ async function turned({ page, url, shot }) {
     drawn += 1;
     await until(page, 'strokes', ['is', drawn], 'a stroke was drawn');
     await changed(page, before, 'it is read');
-    await page.waitForTimeout(300);
   }
   assert.equal(await chip.count(), 1, 'a ring alone is something else than one among petals');
   await shot('readings-turned');
@@ -171,7 +167,7 @@ async function doubtful({ page, url, shot }) {
   /** The darkest that the sheet is within three pixels of points, of 255, mean of all. */
   const dark = async (points) => {
     await page.mouse.move(5, 300);
-    await page.waitForTimeout(500);
+    await answered(page);
     const { p, across, width, height } = await pixels(page, await page.locator('.sheet').screenshot());
     const least = points.map(([x, y]) => {
       let low = 255;
@@ -195,8 +191,11 @@ async function doubtful({ page, url, shot }) {
   await settled(page);
   await page.keyboard.press('Escape');
   await page.mouse.click(box.x + 60, box.y + 60);
-  const clear = await dark(some);
-  assert.ok(clear < faint - 40, `${faint} when it was hardly understood, ${clear} now`);
+  await eventually(
+    () => dark(some),
+    (clear) => clear < faint - 40,
+    `it was ${faint} when it was hardly understood, and is now`,
+  );
 }
 
 export const strokes = [
