@@ -184,8 +184,8 @@ impl Plan {
             points.reverse();
             first = last;
         }
-        if let Some((_, on_it)) = first.filter(|(gap, _)| *gap < LED_ON * self.extent.y) {
-            points.insert(0, on_it);
+        if let Some((gap, nearest)) = first.filter(|(gap, _)| *gap < LED_ON * self.extent.y) {
+            points.insert(0, onwards(&points, gap, midrib).unwrap_or(nearest));
         }
         let width = |share: f64| share * vein.boldness * self.extent.y;
         Vein { points, width: (width(SIDE_VEIN.0), width(SIDE_VEIN.1)) }
@@ -407,6 +407,22 @@ fn tips(blade: &Blade, far: fn(DVec2) -> f64) -> Vec<DVec2> {
     tips
 }
 
+/// Where a vein that begins `gap` beside a midrib comes from, if it began as it goes on: by its way over as much again.
+fn onwards(vein: &[DVec2], gap: f64, midrib: &[DVec2]) -> Option<DVec2> {
+    // Beyond this many gaps it would run beside the midrib.
+    const FARTHEST: f64 = 3.0;
+    let from = *vein.first()?;
+    let way = (from - geom::point_at(vein, gap)?).try_normalize()?;
+    let hits = midrib.windows(2).filter_map(|w| {
+        let (along, across) = (w[1] - w[0], way.perp_dot(w[1] - w[0]));
+        let (far, share) = ((w[0] - from).perp_dot(along) / across, (w[0] - from).perp_dot(way) / across);
+        (across.abs() > 0.0 && (0.0..=FARTHEST * gap).contains(&far) && (0.0..=1.0).contains(&share))
+            .then_some(far)
+    });
+    let nearest = hits.fold(f64::INFINITY, f64::min);
+    nearest.is_finite().then(|| from + way * nearest)
+}
+
 /// A curve from `a` to `b` that `pull` draws to itself.
 fn curve(a: DVec2, pull: DVec2, b: DVec2) -> Vec<DVec2> {
     let at = |k: u32| {
@@ -483,7 +499,9 @@ mod tests {
         let blade = Blade { veins: vec![light, bold], ..any_blade() };
         let veins = Plan::new(VeinPattern::Pinnate, &blade, &Serial).veins(&blade);
         assert_eq!(veins.len(), 3, "the midrib and what was drawn, nothing else");
-        assert_eq!(veins[1].points, [p(0.0, 0.4), p(0.04, 0.4), p(0.15, 0.5), p(0.25, 0.6)]);
+        assert_eq!(veins[1].points[1..], [p(0.04, 0.4), p(0.15, 0.5), p(0.25, 0.6)]);
+        let start = veins[1].points[0];
+        assert!(start.distance(p(0.0, 0.4 - 0.04 / 1.1)) < 1e-12, "{start}: straight on");
         assert_eq!(veins[2].points[0], p(-0.2, 0.5));
         assert!((veins[2].width.0 - 4.0 * veins[1].width.0).abs() < 1e-12);
     }
