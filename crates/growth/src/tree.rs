@@ -16,9 +16,9 @@ use crate::surface_roots::add_surface_roots;
 use crate::variation::Habit;
 use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
 use crate::{
-    Ages, ColonizeSpec, Colonized, Cycle, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem, Method,
-    Obstacles, PointFate, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec, add_leaves,
-    grow_lsystem, guide, self_organize,
+    Ages, ColonizeSpec, Colonized, Cycle, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem,
+    Method, Obstacles, PointFate, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec,
+    add_leaves, grow_lsystem, guide, self_organize,
 };
 
 /// The key under which a seed draws the fates of limbs.
@@ -624,8 +624,9 @@ mod tests {
     #[test]
     fn rules_may_know_the_share_of_a_life() {
         let of = |ages: &str, age: Option<u32>| {
-            let rules =
-                format!("{ages}\nlet q = 0.2 + 0.8 * life\naxiom = A(9.5 * q)\nsteps = 40\nA(n) if n > 0 -> F(q) A(n - 1)");
+            let rules = format!(
+                "{ages}\nlet q = 0.2 + 0.8 * life\naxiom = A(9.5 * q)\nsteps = 40\nA(n) if n > 0 -> F(q) A(n - 1)"
+            );
             let method = Method::Lsystem { rules, most_modules: 1000 };
             let wood = WoodSpec { relax: 0, smooth: false, ..WoodSpec::default() };
             let spec = TreeSpec { years: Some(80), age, method, bare: true, wood, ..TreeSpec::default() };
