@@ -66,7 +66,7 @@ pub use guided::{
 pub use leaves::{FoliageSpec, LeafCount, add_leaves};
 pub use limbs::LimbsSpec;
 pub use look::{Bark, BladeSpec, BlossomSpec, Look};
-pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
+pub use lsystem::{Ages, LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};

@@ -32,8 +32,8 @@ const CONTROL: f64 = 4.0;
 const WIDE: f64 = 0.5;
 /// Crowns that are narrower over their height than this are columns from the start: limbs on the leader have at most so many times
 /// the share of their length that it has of its own.
-const SLENDER: f64 = 0.12;
-const COLUMN: f64 = 1.6;
+const SLENDER: f64 = 0.09;
+const COLUMN: f64 = 1.2;
 /// How far the bearer of the shortest twig is beyond it when it is whole, over its length.
 const WHOLE_AT: f64 = 1.2;
 /// How much a leader grows by the lengthening of all of its internodes rather than by new ones at its tip, 0 to 1; shorter

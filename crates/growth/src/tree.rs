@@ -16,9 +16,9 @@ use crate::surface_roots::add_surface_roots;
 use crate::variation::Habit;
 use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
 use crate::{
-    ColonizeSpec, Colonized, Cycle, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem, Method,
-    Obstacles, PointFate, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec, add_leaves,
-    grow_lsystem, guide, self_organize,
+    Ages, ColonizeSpec, Colonized, Cycle, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem,
+    Method, Obstacles, PointFate, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec,
+    add_leaves, grow_lsystem, guide, self_organize,
 };
 
 /// The key under which a seed draws the fates of limbs.
@@ -492,10 +492,11 @@ fn bones(
         }
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles, run)?;
-            let mut system = Lsystem::parse(rules)?;
+            let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
+            let mut system = Lsystem::parse_at(rules, life)?;
             // Of a tree with years, all steps make the whole, which is younger later on, unless the rules follow growth.
             let last = match (spec.age, spec.years) {
-                (Some(age), Some(years)) if system.ages_by_steps => {
+                (Some(age), Some(years)) if system.ages == Ages::Steps => {
                     Some((system.steps * age.min(years)).div_ceil(years.max(1)))
                 }
                 (age, years) => age.filter(|_| years.is_none()),
@@ -503,7 +504,7 @@ fn bones(
             system.steps = last.map_or(system.steps, |age| age.min(system.steps));
             let tally = GrowthTally { iterations: system.steps, cycles: 1, ..GrowthTally::default() };
             let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
-            let aged = system.ages_by_steps;
+            let aged = spec.years.is_some() && system.ages != Ages::Whole;
             let mut bones = Bones { marks: tree.leaves, aged, ..Bones::new(tree.skeleton, tally) };
             if !obstacles.is_empty() {
                 bones.cut_off(obstacles);
@@ -618,6 +619,23 @@ mod tests {
         assert!((of("ages = steps", 200).0 - 8.0).abs() < 1e-9);
         // Without it a quarter of the life is what the law of growth says.
         assert!((of("", 20).0 / 8.0 - grown_by(0.25, 80)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rules_may_know_the_share_of_a_life() {
+        let of = |ages: &str, age: Option<u32>| {
+            let rules = format!(
+                "{ages}\nlet q = 0.2 + 0.8 * life\naxiom = A(9.5 * q)\nsteps = 40\nA(n) if n > 0 -> F(q) A(n - 1)"
+            );
+            let method = Method::Lsystem { rules, most_modules: 1000 };
+            let wood = WoodSpec { relax: 0, smooth: false, ..WoodSpec::default() };
+            let spec = TreeSpec { years: Some(80), age, method, bare: true, wood, ..TreeSpec::default() };
+            tree(&spec).plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max)
+        };
+        assert!((of("ages = rules", None) - 10.0).abs() < 1e-9);
+        // Half a life: six pieces of six tenths, and nothing is grown back.
+        assert!((of("ages = rules", Some(40)) - 3.6).abs() < 1e-9);
+        assert!((of("ages = rules", Some(200)) - 10.0).abs() < 1e-9, "no older than it gets");
     }
 
     #[test]

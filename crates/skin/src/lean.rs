@@ -17,6 +17,12 @@ pub(crate) const COPIED_WIDER: f64 = 6.0;
 /// How much wider than its outline a blade of a coarser copy is drawn before its bays are closed instead.
 const WIDE: f64 = 1.5;
 
+/// A blade that fills less of its margin without bays has lobes that make its form, as a maple's or a fig's: few triangles go to
+/// their tips and the bays between, and none to a midrib that bends.
+const LOBED: f64 = 0.8;
+/// With so many pairs of triangles and more there are enough for both.
+const MANY_PAIRS: f64 = 3.0;
+
 /// How much shorter the way from root to tip is than along the midrib where a blade of a coarser copy is drawn in steps along it,
 /// and how slender it is at least, half its width over its length: corners of its form alone would leave its arch out.
 const ARCHED: f64 = 0.97;
@@ -107,17 +113,17 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<Tr
     if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
         return None;
     }
-    if widest > WIDE {
-        let compound = || closed(blade).and_then(|closed| spikes(blade, &closed, triangles));
-        if let Some(mesh) = compound().or_else(|| arched(blade, triangles, widest)) {
-            return Some(mesh);
-        }
+    let compound = closed(blade).and_then(|closed| spikes(blade, &closed, triangles, widest > WIDE));
+    if let Some(mesh) = compound.or_else(|| arched(blade, triangles, widest).filter(|_| widest > WIDE)) {
+        return Some(mesh);
     }
     let end = *blade.midrib.last()?;
     let tip = nearest(outline, end)?;
     let pairs = (0.5 * triangles.clamp(2.0, 60.0)).round();
     // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
-    let with_middle = pairs >= 2.0;
+    let lobed =
+        || closed(blade).is_some_and(|all| geom::signed_area(outline) < LOBED * geom::signed_area(&all));
+    let with_middle = pairs >= 2.0 && (widest <= WIDE || pairs >= MANY_PAIRS || !lobed());
     let sides = base::ops::whole(pairs - f64::from(u8::from(with_middle))).max(1) as usize;
     let (kept, end) = corners(outline, (0..outline.len()).collect(), tip, 2 * sides + 2);
     let at = |kept: &[usize]| -> Vec<DVec2> { kept.iter().map(|&i| outline[i]).collect() };
@@ -324,6 +330,47 @@ mod tests {
             let wide = mesh.positions.iter().map(|p| f64::from(p[0].abs())).fold(0.0, f64::max);
             assert!(wide <= WIDE * half_width(&fingers.outline), "{wish}: {wide}");
         }
+    }
+
+    /// As a maple's of a coarser copy.
+    #[test]
+    fn four_triangles_keep_three_lobes_and_the_bays_between() {
+        let maple = blade(&[(0.15, -0.1), (0.6, 0.4), (0.18, 0.45)]);
+        let mesh = lean_mesh(&maple, 4.0, COPIED_WIDER).expect("a simple outline");
+        assert_eq!((mesh.validate().next(), mesh.triangles.len()), (None, 4));
+        // Drawn wider and folded, but on its side and at its height.
+        let drawn = |x: f64, y: f64| {
+            let at = |p: &[f32; 3]| {
+                (0.7..1.5).contains(&(f64::from(p[0]) / x)) && (f64::from(p[1]) - y).abs() < 0.05
+            };
+            mesh.positions.iter().any(at)
+        };
+        for side in [-1.0, 1.0] {
+            assert!(drawn(0.6 * side, 0.4) && drawn(0.18 * side, 0.45), "the tip of a lobe, and a bay");
+        }
+    }
+
+    /// As a leaflet of a far copy.
+    #[test]
+    fn a_blade_of_few_corners_is_drawn_as_it_is() {
+        let corners = |corners: &[(f64, f64)]| Blade {
+            outline: corners.iter().map(|&(x, y)| DVec2::new(x, y)).collect(),
+            relief: Relief::default(),
+            ..blade(&[])
+        };
+        let kite = [(0.0, 0.0), (0.1, 0.2), (0.0, 1.0), (-0.1, 0.2)];
+        for (outline, count) in [(&kite[..], 2), (&kite[1..], 1)] {
+            let leaflet = corners(outline);
+            let mesh = lean_mesh(&leaflet, 60.0, COPIED_WIDER).expect("convex");
+            assert_eq!((mesh.validate().next(), mesh.triangles.len()), (None, count));
+            let at: Vec<DVec2> =
+                (0..).take(mesh.positions.len()).map(|i| mesh.position(i).truncate()).collect();
+            let near = |p: &DVec2| at.iter().any(|q| q.distance(*p) < 1e-6);
+            assert!(leaflet.outline.iter().all(near), "{at:?}");
+        }
+        let backwards: Vec<_> = kite.iter().rev().copied().collect();
+        let flawed = [kite[0], (f64::NAN, 0.2), kite[2]];
+        assert!(few_corners(&corners(&backwards)).is_none() && few_corners(&corners(&flawed)).is_none());
     }
 
     /// As a grass's.

@@ -1,4 +1,5 @@
-//! Compound leaves and bundles of needles of coarser copies: a triangle for each leaflet or needle, as many as there may be.
+//! Compound leaves and bundles of needles of a crowd: a kite for each leaflet or needle, a triangle where there are few, as many as
+//! there may be.
 //!
 //! `Blade -> lobes between its bays -> those that stay, wider -> triangles`
 
@@ -29,9 +30,13 @@ struct Lobe {
     area: f64,
 }
 
-/// A compound blade in at most about so many triangles, each of them one of its leaflets or needles; those that stay are
-/// as much wider, and then longer, as all of them together cover. None of a blade of another form.
-pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64) -> Option<TriMesh> {
+/// With so many triangles for each lobe it is a kite, on both sides of its midrib.
+const FOR_KITES: f64 = 1.5;
+
+/// A compound blade in at most about so many triangles, one for each of its leaflets or needles, or two for each; those that
+/// stay are as much wider, and then longer, as all of them together cover. None of a blade of another form, and none of one
+/// that is to be no `wider` and has more lobes.
+pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64, wider: bool) -> Option<TriMesh> {
     let outline = &blade.outline;
     let area = geom::signed_area(outline);
     if area.is_nan() || area <= 0.0 || area > COMPOUND * geom::signed_area(closed) {
@@ -39,7 +44,8 @@ pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64) -> Option<
     }
     let all = lobes(outline, SHALLOW * blade.length());
     let wanted = base::ops::whole(triangles.round()).max(2) as usize;
-    if all.len() < FEW_LOBES || all.len() > MOST_LOBES {
+    let kites = triangles >= FOR_KITES * all.len() as f64;
+    if all.len() < FEW_LOBES || all.len() > MOST_LOBES || !(wider || kites) {
         return None;
     }
     let kept = evenly(all.len(), wanted);
@@ -47,14 +53,14 @@ pub(crate) fn spikes(blade: &Blade, closed: &[DVec2], triangles: f64) -> Option<
     let times = all.iter().map(|l| l.area).sum::<f64>() / have.max(f64::MIN_POSITIVE);
     let (mut mesh, chart, surface) = (TriMesh::default(), BladeChart::new(blade), blade.surface());
     for &k in &kept {
-        for p in all[k].triangle(times) {
+        let (corners, n) = (all[k].corners(times, kites), mesh.positions.len());
+        for &p in &corners {
             let lifted = surface.point(p);
             mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
             let uv = chart.uv(p.clamp(DVec2::new(-1.0, 0.0) * blade.length(), DVec2::ONE * blade.length()));
             mesh.uvs.push(narrow2(uv.x, uv.y));
         }
-        let n = mesh.positions.len();
-        mesh.triangles.push([n - 3, n - 2, n - 1].map(crate::sleeve::index));
+        mesh.triangles.extend((2..corners.len()).map(|c| [n, n + c - 1, n + c].map(crate::sleeve::index)));
     }
     drop_flat(&mut mesh);
     mesh.compute_normals();
@@ -100,14 +106,18 @@ impl Lobe {
         Some(Self { root, tip, wide_at: (along.dot(*widest - root) / length).clamp(0.0, 1.0), side, area })
     }
 
-    /// Counter-clockwise, with so many times the lobe's area.
-    fn triangle(&self, times: f64) -> [DVec2; 3] {
+    /// A triangle or a kite, counter-clockwise, with so many times the lobe's area.
+    fn corners(&self, times: f64, kite: bool) -> Vec<DVec2> {
         let along = self.tip - self.root;
         let width = 2.0 * times * self.area / along.length_squared();
         let longer = (width / STOUT).max(1.0).sqrt();
         let tip = self.root + along * longer;
-        let wide = self.root + along * (self.wide_at * longer) + along.perp() * (self.side * width / longer);
-        if self.side > 0.0 { [self.root, tip, wide] } else { [self.root, wide, tip] }
+        let (at, aside) = (self.root + along * (self.wide_at * longer), along.perp() * (width / longer));
+        match (kite, self.side > 0.0) {
+            (true, _) => vec![self.root, at - 0.5 * aside, tip, at + 0.5 * aside],
+            (false, true) => vec![self.root, tip, at + aside],
+            (false, false) => vec![self.root, at - aside, tip],
+        }
     }
 }
 
@@ -128,9 +138,14 @@ mod tests {
             let mut blade = form.blade();
             blade.relief = plant::Relief::default();
             for wish in [2.0, 3.0, 5.0, 40.0] {
-                let mesh = spikes(&blade, &closed(&blade), wish).expect("a compound leaf");
+                let mesh = spikes(&blade, &closed(&blade), wish, true).expect("a compound leaf");
                 assert_eq!(mesh.validate().next(), None, "{form:?}");
-                assert_eq!(mesh.triangles.len(), count.min(base::ops::whole(wish) as usize), "{form:?}");
+                let each = if wish >= FOR_KITES * count as f64 { 2 } else { 1 };
+                assert_eq!(
+                    mesh.triangles.len(),
+                    each * count.min(base::ops::whole(wish) as usize),
+                    "{form:?}"
+                );
                 let area = |t: &[u32; 3]| {
                     let [a, b, c] = t.map(|i| mesh.position(i).truncate());
                     0.5 * (b - a).perp_dot(c - a)
@@ -150,7 +165,10 @@ mod tests {
             let compound =
                 matches!(form, BladeForm::Tuft | BladeForm::Brush | BladeForm::Pinnate | BladeForm::Feather);
             let blade = form.blade();
-            assert_eq!(spikes(&blade, &closed(&blade), 4.0).is_some(), compound, "{form:?}");
+            assert_eq!(spikes(&blade, &closed(&blade), 4.0, true).is_some(), compound, "{form:?}");
+            // No wider than it is, only where each lobe has its own.
+            assert!(spikes(&blade, &closed(&blade), 4.0, false).is_none(), "{form:?}");
+            assert_eq!(spikes(&blade, &closed(&blade), 40.0, false).is_some(), compound, "{form:?}");
         }
     }
 }

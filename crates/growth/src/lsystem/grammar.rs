@@ -52,16 +52,32 @@ pub struct Lsystem {
     pub width_m: f64,
     /// Direction and strength of what bends every step; default none.
     pub tropism: (DVec3, f64),
-    /// Whether a younger plant is what fewer steps make, and not the whole grown back; default false.
-    pub ages_by_steps: bool,
+    /// What a younger plant is; default the whole grown back.
+    pub ages: Ages,
 }
+
+/// What makes a plant of rules younger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ages {
+    /// The whole is grown back, whatever the rules say.
+    #[default]
+    Whole,
+    /// Fewer steps.
+    Steps,
+    /// The rules, which know the share of its life that it has lived.
+    Rules,
+}
+
+/// The name by which rules know the share of a plant's life, above 0 to 1.
+const LIFE: &str = "life";
 
 impl Lsystem {
     /// Reads an L-system.
     ///
     /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 100, default 5),
     /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`,
-    /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth).
+    /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth),
+    /// `ages = rules` (it is what the rules make of `life`, the share of its years, which is 1 for the whole).
     /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same
     /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
     /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
@@ -71,6 +87,14 @@ impl Lsystem {
     /// # Errors
     /// [`LsystemError`] with the line.
     pub fn parse(text: &str) -> Result<Self, LsystemError> {
+        Self::parse_at(text, 1.0)
+    }
+
+    /// As [`Self::parse`], for a plant at a share of its life, 0 to 1, which rules know as `life`.
+    ///
+    /// # Errors
+    /// [`LsystemError`] with the line.
+    pub fn parse_at(text: &str, life: f64) -> Result<Self, LsystemError> {
         let mut system = Self {
             axiom: Vec::new(),
             rules: Vec::new(),
@@ -79,9 +103,9 @@ impl Lsystem {
             length_m: 0.2,
             width_m: 0.0,
             tropism: (DVec3::NEG_Y, 0.0),
-            ages_by_steps: false,
+            ages: Ages::Whole,
         };
-        let mut constants: Vec<(String, f64)> = Vec::new();
+        let mut constants: Vec<(String, f64)> = vec![(LIFE.to_owned(), life.clamp(0.0, 1.0))];
         for (number, line) in text.lines().enumerate() {
             let line = line.split('#').next().unwrap_or_default().trim();
             if line.is_empty() {
@@ -124,7 +148,8 @@ impl Lsystem {
             "angle" => self.angle_deg = number("angle", -360.0, 360.0)?,
             "length" => self.length_m = number("length", 0.0, 1e4)?,
             "width" => self.width_m = number("width", 0.0, 100.0)?,
-            "ages" if value == "steps" => self.ages_by_steps = true,
+            "ages" if value == "steps" => self.ages = Ages::Steps,
+            "ages" if value == "rules" => self.ages = Ages::Rules,
             "tropism" => {
                 let c: Vec<f64> =
                     value.split_whitespace().map(|w| evaluate(w, constants)).collect::<Result<_, _>>()?;

@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::error::usable;
 use crate::{GrowthError, JointId, Skeleton};
 
-pub use grammar::Lsystem;
+pub use grammar::{Ages, Lsystem};
 
 /// A leaf or a flower that the turtle set.
 #[derive(Clone, Copy, Debug, PartialEq)]

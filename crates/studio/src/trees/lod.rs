@@ -161,8 +161,9 @@ pub(super) fn keep_out(
 
 /// From so many leaves on an axis on, they may be the leaflets of a frond.
 const FROND: usize = 16;
-/// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
-const LEVEL: f64 = 0.8;
+/// How far leaflets of a frond lie in one plane, where those of both sides may fall off from the stalk as a coconut's do, by half of a right
+/// angle together; and how parallel those of one side are, as mean cosines.
+const LEVEL: f64 = 0.7;
 const PARALLEL: f64 = 0.95;
 /// A leaflet of a frond, or a petal, that stands for several is at most so wide over its length before it becomes longer, too.
 const STOUT: f64 = 1.0;
@@ -386,6 +387,9 @@ fn cover_as_much(
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+    use plant::Frame;
+
     use super::*;
 
     #[test]
@@ -401,6 +405,87 @@ mod tests {
             let left = stay.iter().filter(|n| **n % 2 == 0).count();
             assert_eq!(left, stay.len() / 2, "{halvings}");
             before = stay;
+        }
+    }
+
+    #[test]
+    fn leaflets_become_wider_while_they_are_slender() {
+        let blade = |half: f64| Blade {
+            outline: vec![DVec2::ZERO, DVec2::new(half, 0.5), DVec2::Y, DVec2::new(-half, 0.5)],
+            midrib: vec![DVec2::ZERO, DVec2::Y],
+            veins: vec![vec![DVec2::ZERO, DVec2::Y]],
+            needles: None,
+            lift: plant::Lift::Flat,
+            relief: plant::Relief::default(),
+        };
+        for (half, times, want) in [(0.05, 4.0, 4.0), (0.05, 40.0, 10.0), (0.8, 4.0, 1.0), (0.05, 0.5, 1.0)] {
+            let mut wide = blade(half);
+            let got = widened(&mut wide, times).expect("it has a width");
+            assert!((got - want).abs() < 1e-12, "{half}, {times}: {got}");
+            assert!((wide.outline[1].x - half * want).abs() < 1e-12 && wide.outline[2] == DVec2::Y);
+            assert!(wide.veins.is_empty(), "its veins are not where they were");
+        }
+        assert_eq!(widened(&mut blade(0.0), 2.0), None);
+        assert_eq!(widened(&mut blade(f64::NAN), 2.0), None);
+    }
+
+    /// A crown of so many fronds of twenty leaflets, which fall off from the stalk by so many radians on both sides.
+    fn fronds(count: u32, falls: f64) -> Plant {
+        let mut plant = Plant { name: "palm".to_owned(), ..Plant::default() };
+        plant.shapes.push(Shape::Blade(plant::BladeForm::Leaflet.blade()));
+        plant.add_axis(AxisKind::Branch, None, 0, &[DVec3::ZERO, DVec3::Y], None);
+        let foot = NodeId::new(1);
+        for k in 0..count {
+            let out = base::turn::about(DVec3::Y, f64::from(k)) * DVec3::X;
+            let points: Vec<DVec3> = (0..12).map(|n| DVec3::Y + out * (0.1 * f64::from(n))).collect();
+            let id = plant.add_axis(AxisKind::Branch, Some(foot), u64::from(k), &points, None);
+            let nodes: Vec<NodeId> = plant.axis(id).node_ids().skip(2).collect();
+            for node in nodes {
+                for side in [1.0, -1.0] {
+                    let aside = out.cross(DVec3::Y) * side;
+                    let (s, c) = base::ops::sin_cos(falls);
+                    let frame = Frame::looking(
+                        plant.nodes.position[node.index()],
+                        aside * c - DVec3::Y * s,
+                        DVec3::Y,
+                    );
+                    plant.organs.push(Organ {
+                        kind: OrganKind::Leaf,
+                        bearer: Some(node),
+                        flower: None,
+                        shape: plant::ShapeId::new(0),
+                        frame,
+                        scale: 0.4,
+                        paint: plant::Paint::default(),
+                        key: plant.organs.len() as u64,
+                        source: None,
+                    });
+                }
+            }
+        }
+        plant
+    }
+
+    #[test]
+    fn leaflets_keep_the_stalk_of_their_frond() {
+        let skin = SkinSpec { foliage: FoliageStyle::Outlines, ..SkinSpec::default() };
+        // As many as would lose half of their stalks in the second level if leaves hid them.
+        let palm = fronds(60, 0.3);
+        assert!(has_fronds(&palm, &skin));
+        for level in 1..=2 {
+            let (copy, _) = coarser(&palm, &skin, level);
+            // Of an axis that is gone leaves are borne by the stem, far from where they lie.
+            let away =
+                |o: &Organ| o.bearer.map_or(1.0, |b| copy.nodes.position[b.index()].distance(o.frame.origin));
+            assert!(leaves(&copy).count() >= 60 && leaves(&copy).all(|o| away(o) < 1e-9), "{level}");
+        }
+    }
+
+    #[test]
+    fn fronds_may_fall_off_on_both_sides_but_not_hang() {
+        let skin = SkinSpec { foliage: FoliageStyle::Outlines, ..SkinSpec::default() };
+        for (falls, want) in [(0.0, true), (0.38, true), (0.7, false)] {
+            assert_eq!(has_fronds(&fronds(9, falls), &skin), want, "{falls}");
         }
     }
 
