@@ -161,9 +161,8 @@ pub(super) fn keep_out(
 
 /// From so many leaves on an axis on, they may be the leaflets of a frond.
 const FROND: usize = 16;
-/// How far leaflets of a frond lie in one plane, where those of both sides may fall off from the stalk as a coconut's do, by half of a right
-/// angle together; and how parallel those of one side are, as mean cosines.
-const LEVEL: f64 = 0.7;
+/// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
+const LEVEL: f64 = 0.8;
 const PARALLEL: f64 = 0.95;
 /// A leaflet of a frond, or a petal, that stands for several is at most so wide over its length before it becomes longer, too.
 const STOUT: f64 = 1.0;
@@ -413,7 +412,7 @@ mod tests {
         let blade = |half: f64| Blade {
             outline: vec![DVec2::ZERO, DVec2::new(half, 0.5), DVec2::Y, DVec2::new(-half, 0.5)],
             midrib: vec![DVec2::ZERO, DVec2::Y],
-            veins: vec![vec![DVec2::ZERO, DVec2::Y]],
+            veins: vec![vec![DVec2::ZERO, DVec2::Y].into()],
             needles: None,
             lift: plant::Lift::Flat,
             relief: plant::Relief::default(),
@@ -484,7 +483,7 @@ mod tests {
     #[test]
     fn fronds_may_fall_off_on_both_sides_but_not_hang() {
         let skin = SkinSpec { foliage: FoliageStyle::Outlines, ..SkinSpec::default() };
-        for (falls, want) in [(0.0, true), (0.38, true), (0.7, false)] {
+        for (falls, want) in [(0.0, true), (0.3, true), (0.7, false)] {
             assert_eq!(has_fronds(&fronds(9, falls), &skin), want, "{falls}");
         }
     }
