@@ -22,8 +22,8 @@ const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
-/** Journeys at a time. */
-const WALKERS = Number(process.env.WALKERS ?? 1);
+/** Journeys at a time: while one waits another walks. */
+const WALKERS = Number(process.env.WALKERS ?? 2);
 
 const url = await serve(burgeon, folder, '../../fixtures/sketches/gallery/tulip.svg');
 
