@@ -492,7 +492,8 @@ fn bones(
         }
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles, run)?;
-            let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
+            let lived = |(age, years): (u32, u32)| f64::from(age) / f64::from(years.max(1));
+            let life = spec.age.zip(spec.years).map_or(1.0, lived);
             let mut system = Lsystem::parse_at(rules, life)?;
             // Of a tree with years, all steps make the whole, which is younger later on, unless the rules follow growth.
             let last = match (spec.age, spec.years) {
