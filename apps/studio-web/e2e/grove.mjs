@@ -3,11 +3,12 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import {
   add,
+  BUSH,
   begin,
+  bush,
   changed,
   count,
   data,
-  drop,
   exported,
   sample,
   settled,
@@ -17,15 +18,12 @@ import {
 import { frameOf, mean } from './staging.mjs';
 import { answered, becomes, eventually, loaded, pictures, rested } from './waits.mjs';
 
-const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const WIDE = { viewport: { width: 1360, height: 760 } };
 const AXE = readFileSync(new URL('../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
 
-async function bush(page, url) {
-  await begin(page, url);
-  await drop(page, 'bush.toml', BUSH);
-  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  await settled(page);
+/** A small tree, grown and seen. */
+async function planted(page, url) {
+  await bush(page, url);
   await rested(page);
 }
 
@@ -82,7 +80,7 @@ async function progress({ page, url }) {
 
 /** A copy shares its meshes and is written once. */
 async function copies({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   const alone = (await exported(page, 'glb')).bytes.length;
   for (let k = 2; k <= 4; k += 1) {
@@ -117,7 +115,7 @@ async function copies({ page, url, shot }) {
 
 /** Move, turn and size by keys, with steps and along an axis. */
 async function gizmos({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   const pressed = (mode, on) => page.locator(`[data-gizmo=${mode}][aria-pressed=${on}]`).waitFor();
   for (const [key, mode] of [
@@ -154,7 +152,7 @@ async function gizmos({ page, url, shot }) {
 
 /** A plant that is dragged goes as far as the pointer does on the ground, and its shadow with it. */
 async function dragged({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   await page.keyboard.press('g');
   await page.keyboard.press('x');
@@ -201,7 +199,7 @@ async function dragged({ page, url, shot }) {
 
 /** What is being typed stays while the panel is filled anew; what was taken is shown as it was taken. */
 async function typing({ page, url }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   const old = await page.locator('[data-key=nx]').elementHandle();
   const grown = async (share) => {
@@ -246,7 +244,7 @@ async function typing({ page, url }) {
 
 /** Plants that are chosen together are a group, and go as one. */
 async function groups({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   const rows = page.locator('.plant[data-plant=tree]');
   const menu = async (row, item) => {
@@ -335,7 +333,7 @@ async function groups({ page, url, shot }) {
 
 /** Copies along a line on the ground; they are a group. */
 async function scatter({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.click('.scene .fold');
   const spacing = await field(page, 'nspacing');
   assert.ok(spacing > 0.1, `the crown is ${spacing} m wide`);
@@ -430,7 +428,7 @@ async function files({ page, url, shot }) {
 
 /** What a tool was set to is its own; branches by keys; a line from the sky. */
 async function tools({ page, url, shot }) {
-  await bush(page, url);
+  await planted(page, url);
   await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   await page.keyboard.press('2');

@@ -2,10 +2,9 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { begin, changed, count, data, drop, settled, until } from './journeys.mjs';
+import { bush, changed, count, data, settled, until } from './journeys.mjs';
 import { felt, reloaded, rested, saved } from './waits.mjs';
 
-const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
 export const WIDE = { viewport: { width: 700, height: 420 } };
 
@@ -126,10 +125,7 @@ export async function click(page, side, button) {
 
 export async function enter(page, url, model = 'metaQuest3', command = undefined) {
   await wear(page, model);
-  await begin(page, url);
-  await drop(page, 'bush.toml', BUSH);
-  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  const digest = await settled(page);
+  const digest = await bush(page, url);
   if (command) {
     await page.keyboard.press('Control+k');
     await page.locator('.palette input').fill('the room');
@@ -378,10 +374,7 @@ async function plane({ page, url, shot }) {
 /** Hands without controllers: a pinch is the trigger; one that is lost for good has let go. */
 async function hands({ page, url, shot }) {
   await wear(page, 'metaQuest3');
-  await begin(page, url);
-  await drop(page, 'bush.toml', BUSH);
-  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  const plain = await settled(page);
+  const plain = await bush(page, url);
   await page.evaluate(() => {
     window.device.primaryInputMode = 'hand';
   });

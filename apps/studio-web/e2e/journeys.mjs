@@ -613,6 +613,16 @@ export async function drop(page, name, text) {
   );
 }
 
+export const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
+
+/** A small tree, grown. */
+export async function bush(page, url) {
+  await begin(page, url);
+  await drop(page, 'bush.toml', BUSH);
+  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+  return settled(page);
+}
+
 const WALL =
   'v 0.3 0 -3\nv 1 0 -3\nv 1 0 3\nv 0.3 0 3\nv 0.3 4 -3\nv 1 4 -3\nv 1 4 3\nv 0.3 4 3\n' +
   'f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n';

@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import {
   add,
   begin,
+  bush,
   changed,
   count,
   data,
@@ -16,13 +17,9 @@ import {
 } from './journeys.mjs';
 import { answered, becomes, eventually, pictures, reloaded, rested } from './waits.mjs';
 
-const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
-
 /** A small tree, grown, with a tool in the hand. */
-async function bush(page, url, tool) {
-  await begin(page, url);
-  await drop(page, 'bush.toml', BUSH);
-  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+async function inHand(page, url, tool) {
+  await bush(page, url);
   await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   await page.keyboard.press(String(tool));
@@ -63,7 +60,7 @@ const CENTRE = async (page) => {
 };
 
 async function prune({ page, url, shot }) {
-  const plain = await bush(page, url, 4);
+  const plain = await inHand(page, url, 4);
   const at = await branch(page);
   await rested(page);
   await shot('shape-pick');
@@ -101,7 +98,7 @@ async function prune({ page, url, shot }) {
 
 /** Q takes what bears the twig under the pointer, for every tool that means a branch. */
 async function bearer({ page, url, shot }) {
-  const plain = await bush(page, url, 1);
+  const plain = await inHand(page, url, 1);
   const meant = () =>
     page.evaluate(() => [document.body.dataset.picked, Number(document.body.dataset.bears)]);
   const see = (what, of) =>
@@ -166,7 +163,7 @@ async function carries(page, before = '') {
 }
 
 async function rotate({ page, url, shot }) {
-  const plain = await bush(page, url, 2);
+  const plain = await inHand(page, url, 2);
   const at = await branch(page);
   await page.keyboard.press('2');
   await page.mouse.move(at.x, at.y);
@@ -209,7 +206,7 @@ async function rotate({ page, url, shot }) {
 }
 
 async function draw({ page, url, shot }) {
-  const plain = await bush(page, url, 6);
+  const plain = await inHand(page, url, 6);
   const at = await branch(page);
   await page.keyboard.press('6');
   await page.mouse.move(at.x, at.y);
@@ -228,7 +225,7 @@ async function draw({ page, url, shot }) {
 }
 
 async function brush({ page, url, shot }) {
-  let digest = await bush(page, url, 7);
+  let digest = await inHand(page, url, 7);
   const centre = await CENTRE(page);
   await page.mouse.move(centre.x, centre.y);
   await page.keyboard.press(']');
@@ -269,7 +266,7 @@ async function brush({ page, url, shot }) {
 }
 
 async function seeds({ page, url, shot }) {
-  const plain = await bush(page, url, 4);
+  const plain = await inHand(page, url, 4);
   const at = await branch(page, 9);
   await page.keyboard.press('4');
   await page.click('#b-shape-whole');
@@ -294,7 +291,7 @@ async function seeds({ page, url, shot }) {
 }
 
 async function kept({ page, url, troubles }) {
-  await bush(page, url, 4);
+  await inHand(page, url, 4);
   const at = await branch(page);
   await page.keyboard.press('4');
   await page.click('#b-shape-whole');
@@ -369,7 +366,7 @@ async function drawn({ page, url, shot }) {
 
 /** Fingers: one shapes, a second one lets go and turns the view. */
 async function fingers({ page, url, context, shot }) {
-  const plain = await bush(page, url, 2);
+  const plain = await inHand(page, url, 2);
   const at = await branch(page);
   await page.keyboard.press('2');
   const cdp = await context.newCDPSession(page);
@@ -397,7 +394,7 @@ async function fingers({ page, url, context, shot }) {
 
 /** What is held grows on while nothing moves, and faster with the wheel; letting go keeps it. */
 async function grow({ page, url, shot }) {
-  const plain = await bush(page, url, 1);
+  const plain = await inHand(page, url, 1);
   const at = await branch(page);
   await page.keyboard.press('0');
   await page.mouse.move(at.x, at.y);
@@ -433,7 +430,7 @@ async function grow({ page, url, shot }) {
 
 /** From the empty sky a branch begins at the wood beside it; too far away it is said why nothing happens. */
 async function sky({ page, url, shot }) {
-  const plain = await bush(page, url, 6);
+  const plain = await inHand(page, url, 6);
   const at = await branch(page);
   await page.keyboard.press('6');
   const box = await page.locator('.view').boundingBox();

@@ -637,6 +637,9 @@ mod tests {
         // Half a life: six pieces of six tenths, and nothing is grown back.
         assert!((of("ages = rules", Some(40)) - 3.6).abs() < 1e-9);
         assert!((of("ages = rules", Some(200)) - 10.0).abs() < 1e-9, "no older than it gets");
+        // Whoever has a number of that name keeps it.
+        assert!((of("let life = 1", None) - 10.0).abs() < 1e-9);
+        assert!((of("let life = 0.5", None) - 3.6).abs() < 1e-9);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use glam::DVec2;
 use ink::{Classified, Drawing, Ink, KeptMeasures, StrokeClass};
 use mesh::{Model, Texture};
 use plant::Plant;
-use reading::{KeptStrokes, Kind, Reading};
+use reading::{KeptStrokes, Kind, Reading, VeinReading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
@@ -251,7 +251,7 @@ impl Evaluator {
         }
         let mut report = Report::default();
         let kept = &mut self.understood;
-        let reading =
+        let mut reading =
             report.stage("structure", run.clock, |r| match self.taken.filter(|_| read_as.is_none()) {
                 Some(Taken::For(kind)) => reading::read_again(Some(kind), &[], (ink, &classes), kept, r),
                 Some(Taken::Strokes) => {
@@ -260,6 +260,12 @@ impl Evaluator {
                 None => reading::read_again(read_as, &[], (ink, &classes), kept, r),
             });
         run.cancel.check()?;
+        if self.preview {
+            // A vein under the pen would have the surface of leaves painted anew at each of its points.
+            let last = strokes.from.strokes.len().saturating_sub(1);
+            let lies = |v: &VeinReading| v.source.is_none_or(|source| source as usize != last);
+            reading.leaves.iter_mut().for_each(|leaf| leaf.veins.retain(lies));
+        }
         self.plant = None;
         self.reading = Some(Self::keep(&mut self.done, stages, from, reading, report));
         Ok(())
@@ -592,6 +598,29 @@ mod tests {
         // Another first stroke is unknown again.
         d.strokes[0].samples.truncate(20);
         assert!(preview.update(&d, &o, Seed::new(1), &run).is_ok());
+    }
+
+    #[test]
+    fn leaves_keep_their_surface_while_a_vein_is_drawn() {
+        let mut d = drawing();
+        let mut o = SketchOptions::default();
+        let mut draw = |from: (f64, f64), to: (f64, f64)| {
+            let at = |i: u32| DVec2::from(from).lerp(DVec2::from(to), f64::from(i) / 10.0);
+            let line = Drawing::from_polylines("", &[(0..=10).map(at).collect::<Vec<_>>()]);
+            d.strokes.extend(line.strokes);
+            o.classes.insert(u32::try_from(d.strokes.len() - 1).unwrap(), StrokeClass::Vein);
+            (d.clone(), o.clone())
+        };
+        draw((4.0, 15.2), (5.5, 16.8));
+        let [two, three] = [((7.0, 15.2), (8.5, 17.2)), ((7.0, 14.8), (8.5, 12.8))].map(|(a, b)| draw(a, b));
+        let of = |mut e: Evaluator, (d, o): &(Drawing, SketchOptions)| {
+            e.update(d, o, Seed::new(1), &Run::plain()).unwrap();
+            let leaf = e.model().unwrap().materials.iter().find(|m| m.kind == mesh::MaterialKind::Leaf);
+            leaf.and_then(|m| m.texture.clone()).unwrap()
+        };
+        let (before, after) = (of(Evaluator::default(), &two), of(Evaluator::default(), &three));
+        assert_ne!(before.pixels, after.pixels, "a vein is seen");
+        assert_eq!(of(Evaluator::previewing(), &three).pixels, before.pixels, "when the pen is lifted");
     }
 
     #[test]

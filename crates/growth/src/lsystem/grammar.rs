@@ -77,7 +77,8 @@ impl Lsystem {
     /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 100, default 5),
     /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`,
     /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth),
-    /// `ages = rules` (it is what the rules make of `life`, the share of its years, which is 1 for the whole).
+    /// `ages = rules` (it is what the rules make of `life`, the share of its years, which is 1 for the whole and known to
+    /// the statements below).
     /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same
     /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
     /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
@@ -90,7 +91,7 @@ impl Lsystem {
         Self::parse_at(text, 1.0)
     }
 
-    /// As [`Self::parse`], for a plant at a share of its life, 0 to 1, which rules know as `life`.
+    /// As [`Self::parse`], for a plant at a share of its life, 0 to 1, which rules with `ages = rules` know as `life`.
     ///
     /// # Errors
     /// [`LsystemError`] with the line.
@@ -105,7 +106,7 @@ impl Lsystem {
             tropism: (DVec3::NEG_Y, 0.0),
             ages: Ages::Whole,
         };
-        let mut constants: Vec<(String, f64)> = vec![(LIFE.to_owned(), life.clamp(0.0, 1.0))];
+        let mut constants: Vec<(String, f64)> = Vec::new();
         for (number, line) in text.lines().enumerate() {
             let line = line.split('#').next().unwrap_or_default().trim();
             if line.is_empty() {
@@ -117,7 +118,7 @@ impl Lsystem {
                     read_rule(left.trim(), right.trim(), line, number + 1, &constants).map_err(fault)?;
                 system.rules.push(rule);
             } else if let Some((name, value)) = line.split_once('=') {
-                system.set(name.trim(), value.trim(), &mut constants).map_err(fault)?;
+                system.set(name.trim(), value.trim(), life, &mut constants).map_err(fault)?;
             } else {
                 return Err(fault(RuleFault::NoStatement));
             }
@@ -128,7 +129,13 @@ impl Lsystem {
         Ok(system)
     }
 
-    fn set(&mut self, name: &str, value: &str, constants: &mut Vec<(String, f64)>) -> Result<(), RuleFault> {
+    fn set(
+        &mut self,
+        name: &str,
+        value: &str,
+        life: f64,
+        constants: &mut Vec<(String, f64)>,
+    ) -> Result<(), RuleFault> {
         let number = |name, least: f64, most: f64| {
             let value = evaluate(value, constants)?;
             if (least..=most).contains(&value) {
@@ -149,7 +156,10 @@ impl Lsystem {
             "length" => self.length_m = number("length", 0.0, 1e4)?,
             "width" => self.width_m = number("width", 0.0, 100.0)?,
             "ages" if value == "steps" => self.ages = Ages::Steps,
-            "ages" if value == "rules" => self.ages = Ages::Rules,
+            "ages" if value == "rules" => {
+                self.ages = Ages::Rules;
+                constants.push((LIFE.to_owned(), life.clamp(0.0, 1.0)));
+            }
             "tropism" => {
                 let c: Vec<f64> =
                     value.split_whitespace().map(|w| evaluate(w, constants)).collect::<Result<_, _>>()?;
