@@ -105,6 +105,8 @@ const STEPS: usize = 64;
 /// begin on it; shares of the blade's length.
 const SIDE_VEIN: (f64, f64) = (0.0058, 0.0012);
 const LED_ON: f64 = 0.12;
+/// What runs over the midrib by less than this share of a vein is its beginning.
+const RUN_OVER: f64 = 0.2;
 
 impl Plan {
     pub(super) fn new(venation: VeinPattern, blade: &Blade, executor: &dyn Executor) -> Self {
@@ -143,7 +145,7 @@ impl Plan {
         let mut veins = vec![Vein { points: blade.midrib.clone(), width: (0.011 * length, 0.002 * length) }];
         match self.venation {
             _ if !blade.veins.is_empty() => {
-                veins.extend(blade.veins.iter().map(|v| self.drawn(v, &blade.midrib)))
+                veins.extend(blade.veins.iter().flat_map(|v| self.drawn(v, &blade.midrib)))
             }
             VeinPattern::Pinnate => {
                 let lobes = tips(blade, |p| p.x);
@@ -174,9 +176,33 @@ impl Plan {
         veins
     }
 
-    /// A vein as it was drawn, from the midrib outwards: where it begins a little beside it, it is led on to it.
-    fn drawn(&self, vein: &BladeVein, midrib: &[DVec2]) -> Vein {
-        let mut points = vein.line.clone();
+    /// A vein as it was drawn, from the midrib outwards: two of one that crosses it, but for an end that only runs over it;
+    /// one that begins a little beside it is led on to it.
+    fn drawn(&self, vein: &BladeVein, midrib: &[DVec2]) -> Vec<Vein> {
+        let line = &vein.line;
+        let across = line.windows(2).enumerate().find_map(|(k, w)| {
+            let way = w[1] - w[0];
+            Some((k, w[0] + way * hit(w[0], way, 1.0, midrib)?))
+        });
+        let lines = match across {
+            Some((k, at)) => {
+                let outwards = |side: &mut dyn Iterator<Item = &DVec2>| -> Vec<DVec2> {
+                    core::iter::once(at).chain(side.copied()).collect()
+                };
+                let sides = [outwards(&mut line[..=k].iter().rev()), outwards(&mut line[k + 1..].iter())];
+                let least = RUN_OVER * geom::polyline_length(line);
+                sides.into_iter().filter(|side| geom::polyline_length(side) > least).collect()
+            }
+            None => vec![self.led_on(line, midrib)],
+        };
+        let width = |share: f64| share * vein.boldness * self.extent.y;
+        let width = (width(SIDE_VEIN.0), width(SIDE_VEIN.1));
+        lines.into_iter().map(|points| Vein { points, width }).collect()
+    }
+
+    /// A vein that does not cross the midrib, from the end that is nearer to it, and from the midrib itself where that is near.
+    fn led_on(&self, line: &[DVec2], midrib: &[DVec2]) -> Vec<DVec2> {
+        let mut points = line.to_vec();
         let to_midrib =
             |p: Option<&DVec2>| geom::closest_on_polyline(midrib, *p?).map(|c| (c.distance, c.point));
         let (mut first, last) = (to_midrib(points.first()), to_midrib(points.last()));
@@ -184,11 +210,11 @@ impl Plan {
             points.reverse();
             first = last;
         }
-        if let Some((gap, nearest)) = first.filter(|(gap, _)| *gap < LED_ON * self.extent.y) {
+        let near = (LED_ON * self.extent.y).min(0.5 * geom::polyline_length(&points));
+        if let Some((gap, nearest)) = first.filter(|(gap, _)| *gap < near) {
             points.insert(0, onwards(&points, gap, midrib).unwrap_or(nearest));
         }
-        let width = |share: f64| share * vein.boldness * self.extent.y;
-        Vein { points, width: (width(SIDE_VEIN.0), width(SIDE_VEIN.1)) }
+        points
     }
 
     /// Side veins that leave the midrib and arch to the margin, those of both sides half a step apart.
@@ -413,14 +439,17 @@ fn onwards(vein: &[DVec2], gap: f64, midrib: &[DVec2]) -> Option<DVec2> {
     const FARTHEST: f64 = 3.0;
     let from = *vein.first()?;
     let way = (from - geom::point_at(vein, gap)?).try_normalize()?;
-    let hits = midrib.windows(2).filter_map(|w| {
+    hit(from, way, FARTHEST * gap, midrib).map(|far| from + way * far)
+}
+
+/// How many times `way` it is from a point along it to a line, at most so many.
+fn hit(from: DVec2, way: DVec2, most: f64, line: &[DVec2]) -> Option<f64> {
+    let hits = line.windows(2).filter_map(|w| {
         let (along, across) = (w[1] - w[0], way.perp_dot(w[1] - w[0]));
         let (far, share) = ((w[0] - from).perp_dot(along) / across, (w[0] - from).perp_dot(way) / across);
-        (across.abs() > 0.0 && (0.0..=FARTHEST * gap).contains(&far) && (0.0..=1.0).contains(&share))
-            .then_some(far)
+        (across.abs() > 0.0 && (0.0..=most).contains(&far) && (0.0..=1.0).contains(&share)).then_some(far)
     });
-    let nearest = hits.fold(f64::INFINITY, f64::min);
-    nearest.is_finite().then(|| from + way * nearest)
+    hits.min_by(f64::total_cmp)
 }
 
 /// A curve from `a` to `b` that `pull` draws to itself.
@@ -503,6 +532,18 @@ mod tests {
         let start = veins[1].points[0];
         assert!(start.distance(p(0.0, 0.4 - 0.04 / 1.1)) < 1e-12, "{start}: straight on");
         assert_eq!(veins[2].points[0], p(-0.2, 0.5));
+        // Across the midrib: one on each side, but not of an end that runs over it.
+        let plan = Plan::new(VeinPattern::Pinnate, &blade, &Serial);
+        let of = |from: DVec2, to: DVec2| -> Vec<Vec<DVec2>> {
+            let vein = BladeVein::from(vec![from, to]);
+            plan.drawn(&vein, &blade.midrib).into_iter().map(|v| v.points).collect()
+        };
+        let (left, right, short) = (p(-0.2, 0.5), p(0.2, 0.3), p(-0.02, 0.41));
+        assert_eq!(of(left, right), [[p(0.0, 0.4), left], [p(0.0, 0.4), right]]);
+        let over = of(right, short);
+        assert!(over.len() == 1 && over[0][0].x.abs() < 1e-12 && over[0][1] == right, "{over:?}");
+        // A short one beside it is no vein that begins on it.
+        assert_eq!(of(p(0.1, 0.4), p(0.11, 0.45)), [[p(0.1, 0.4), p(0.11, 0.45)]]);
         assert!((veins[2].width.0 - 4.0 * veins[1].width.0).abs() < 1e-12);
     }
 
