@@ -55,7 +55,7 @@ const FRONDS_FIRST: f64 = 0.4;
 /// `McMahon`, Science 179, 1973).
 const ELASTIC: f64 = 1.5;
 /// Twigs of the youngest are no thinner than this share of those of the whole tree.
-const SLIMMEST: f64 = 0.45;
+const SLIMMEST: f64 = 0.16;
 
 /// The share of the final length at a share of a life of so many years.
 pub(crate) fn grown_by(life: f64, years: u32) -> f64 {
@@ -121,7 +121,12 @@ fn rosettes(full: &Skeleton) -> Vec<bool> {
     let foot = full.position.first().map_or(0.0, |p| p.y);
     let high = full.position.iter().map(|p| p.y - foot).fold(0.0, f64::max);
     let on_a_stem = |j: usize| full.position[j].y - foot >= ON_A_STEM * high;
-    (0..full.len()).map(|j| children[j] >= FRONDS && on_a_stem(j)).collect()
+    let rosette: Vec<bool> = (0..full.len()).map(|j| children[j] >= FRONDS && on_a_stem(j)).collect();
+    let branches = |of: &dyn Fn(usize) -> bool| -> usize {
+        children.iter().enumerate().filter(|(j, _)| of(*j)).map(|(_, n)| n.saturating_sub(1)).sum()
+    };
+    // Twigs of a close column may meet in one joint, too, and are few of all.
+    if 2 * branches(&|j| rosette[j]) >= branches(&|_| true) { rosette } else { vec![false; full.len()] }
 }
 
 /// By how much leaves of this length, which are a part of the tree's own height, are shorter at a share of its life. On a stem of
@@ -388,6 +393,27 @@ mod tests {
         // A third of its life makes about two fifths of its height, with limbs of its own.
         let (young, _) = younger(&full, &wood, 0.33, 40);
         assert!((0.33..0.6).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
+    }
+
+    #[test]
+    fn fronds_are_most_of_what_a_palm_bears_and_twigs_of_one_joint_few() {
+        // A stem of ten joints that bears a limb at each, and ten more at its top.
+        let stem = |limbs: bool| {
+            let mut s = Skeleton::default();
+            let mut top = s.push_root(DVec3::ZERO, 0);
+            for n in 1..=10 {
+                top = s.push(DVec3::Y * f64::from(n), top, 0);
+                for k in 0..if limbs { 3 } else { 0 } {
+                    s.push(DVec3::new(f64::from(k) + 1.0, f64::from(n), 0.0), top, 0);
+                }
+            }
+            for k in 0..10 {
+                s.push(DVec3::new(f64::from(k), 10.0, 1.0), top, 0);
+            }
+            s
+        };
+        assert_eq!(rosettes(&stem(false)).iter().filter(|r| **r).count(), 1, "a palm");
+        assert_eq!(rosettes(&stem(true)).iter().filter(|r| **r).count(), 0, "a column");
     }
 
     #[test]

@@ -62,6 +62,9 @@ pub struct Grown {
     pub flowers: Vec<FlowerPlace>,
 }
 
+/// A blade of needles is a shoot: of a young tree it is at most this share of its size, and stands closer by as much.
+const LONGEST_SHOOT: f64 = 0.4;
+
 /// Where a flower stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowerPlace {
@@ -144,7 +147,12 @@ pub fn grow(
         let blade = blade.unwrap_or_else(|| leaf.blade());
         // Shoots that are thicker by a factor bear leaves where they are thicker by that.
         let mean = thick.iter().sum::<f64>() / thick.len().max(1) as f64;
-        let leaf = FoliageSpec { max_radius_m: (leaf.max_radius_m * mean).min(100.0), ..leaf.clone() };
+        let mut leaf = FoliageSpec { max_radius_m: (leaf.max_radius_m * mean).min(100.0), ..leaf.clone() };
+        if life < 1.0 && blade.needles.is_some() && places.is_empty() {
+            let smaller = (LONGEST_SHOOT * skeleton.size() / leaf.length_m).min(1.0);
+            leaf.length_m *= smaller;
+            leaf.spacing_m *= smaller;
+        }
         leaves = add_leaves(&mut plant, &leaf, blade, &places, &obstacles, seed, run, report)?;
         let gone = strip_leaves(&mut plant, &wood.node_of_joint, &leafless);
         (leaves.kept, leaves.fallen) = (leaves.kept - gone, leaves.fallen + gone);

@@ -102,6 +102,28 @@ fn an_oak_of_ten_years_is_a_young_tree() {
     }
 }
 
+#[test]
+fn a_tree_of_one_year_is_a_seedling() {
+    let mut looked_at = 0;
+    for preset in PRESETS {
+        let spec = preset.spec().expect(preset.key);
+        // Palms and ferns have their stem's thickness first, and baobabs their tuber; those of rules know their own youth.
+        let by_pipes = matches!(spec.method, Method::Competition(_) | Method::Colonization { .. });
+        if !by_pipes || spec.bare || spec.wood.swell > 1.0 {
+            continue;
+        }
+        for seed in [1, 5] {
+            let grown = tree(&TreeSpec { age: Some(1), ..spec.clone() }, seed);
+            let slender = diameter(&grown) / height(&grown);
+            println!("{} {seed}: {:.2} m, {slender:.3} as thick", preset.key, height(&grown));
+            // Seedlings of trees are 2 to 6 mm thick and 10 to 60 cm high in their first autumn; wide crowns have many pipes early.
+            assert!(slender < 0.1, "{} {seed}: {slender} as thick as high", preset.key);
+        }
+        looked_at += 1;
+    }
+    assert!(looked_at > 25, "{looked_at}");
+}
+
 /// How far the thickest stem's tip is up the tree, and the longest stretch of that stem without a branch above its lowest
 /// one, the tip included; both as shares of the height.
 fn leader(grown: &Grown) -> (f64, f64) {

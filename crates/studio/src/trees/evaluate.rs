@@ -372,11 +372,11 @@ pub(super) fn skinned(
     Ok((model, layout))
 }
 
-/// The share of a life in which a plant comes to flower: of trees of forty years, seedlings flower after five to fifteen.
-const JUVENILE: f64 = 0.3;
+/// Between these shares of a life a plant comes to flower: of trees of forty years, seedlings flower after five to fifteen.
+const JUVENILE: [f64; 2] = [0.1, 0.3];
 
 /// The share of its flowers that a plant has at its age.
 fn flowering(spec: &TreeSpec) -> f64 {
     let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years.max(1)));
-    base::ops::smoothstep(0.0, JUVENILE, life)
+    base::ops::smoothstep(JUVENILE[0], JUVENILE[1], life)
 }

@@ -12,7 +12,7 @@ use skin::{FoliageStyle, Shoots, SkinSpec};
 const FEW_AXES: usize = 100;
 const FEW_LEAVES: usize = 300;
 /// Flowers of a coarser copy are no wider than this share of the plant's size if they are halved more than once.
-const WIDEST_FLOWER: f64 = 0.07;
+const WIDEST_FLOWER: f64 = 0.05;
 const FEW_FLOWERS: usize = 120;
 /// A flower keeps all of its petals in the first level, half of so many in the second, and half of those in each further one.
 const FEW_PETALS: usize = 5;
@@ -32,16 +32,16 @@ const LEAVES_LEFT_ALONE: f64 = 0.42;
 /// one before, so that leaves that stay are no larger than they have to be. The first level halves them once.
 fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) -> u32 {
     let (level, count) = (level.min(6), leaves(plant).count());
-    let mut halved = halvings(count, FEW_LEAVES, level.min(1));
+    let first = halvings(count, FEW_LEAVES, level.min(1));
     if level < 2 {
-        return halved;
+        return first;
     }
     let fronds = has_fronds(plant, skin);
     let drawn = |at: u32| {
         let style = crowded(plant, skin, at);
         if fronds {
             let mut copy = plant.clone();
-            widen(&mut copy, 1.0, at);
+            widen(&mut copy, f64::from(1_u32 << first), leaflet_level(plant, at));
             return skin::drawn_triangles(&copy, &style);
         }
         skin::drawn_triangles(plant, &style)
@@ -51,6 +51,7 @@ fn leaf_halvings(plant: &Plant, skin: &SkinSpec, places: &Places, level: u32) ->
         staying.map(|(_, o)| each.get(o.shape.index()).copied().unwrap_or(0)).sum::<usize>() as f64
     };
     let least = if plant.axes.len() > FEW_AXES { LEAVES_LEFT } else { LEAVES_LEFT_ALONE };
+    let mut halved = first;
     let mut before = of_all(&drawn(1), halved);
     for at in 2..=level {
         let (most, each) = (halvings(count, FEW_LEAVES, at), drawn(at));
@@ -162,8 +163,10 @@ pub(super) fn keep_out(
 /// From so many leaves on an axis on, they may be the leaflets of a frond.
 const FROND: usize = 16;
 /// How far leaflets of a frond lie in one plane, and how parallel those of one side are, as mean cosines.
-const LEVEL: f64 = 0.8;
+const LEVEL: f64 = 0.7;
 const PARALLEL: f64 = 0.95;
+/// Fewer leaflets than this keep their form in the second level: they hook where they hang, and that is seen.
+const MANY_LEAFLETS: usize = 1_000;
 /// A leaflet of a frond, or a petal, that stands for several is at most so wide over its length before it becomes longer, too.
 const STOUT: f64 = 1.0;
 
@@ -186,6 +189,11 @@ fn has_fronds(plant: &Plant, skin: &SkinSpec) -> bool {
     let blades =
         plant.shapes.iter().all(|s| matches!(s, Shape::Blade(b) if b.needles.is_none() && b.length() > 0.0));
     blades && all.len() >= FROND * axes.len().max(1) && flat >= LEVEL * n && parallel >= PARALLEL * n
+}
+
+/// The level whose form leaflets of fronds have: where they are few, that of the one before.
+fn leaflet_level(plant: &Plant, level: u32) -> u32 {
+    level.saturating_sub(u32::from(leaves(plant).count() < MANY_LEAFLETS))
 }
 
 /// Makes leaflets of fronds that stand for several `times` as large in area: wider as long as they are slender, which leaves
@@ -320,7 +328,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     let leaf_halvings = if whole_shoots.is_some() { 0 } else { leaf_halvings(plant, skin, &places, level) };
     let mut larger = larger(plant, &places, leaf_halvings);
     if fronds {
-        larger = widen(&mut copy, larger * larger, level);
+        larger = widen(&mut copy, larger * larger, leaflet_level(plant, level));
     }
     let mut row = 0;
     for organ in &plant.organs {
