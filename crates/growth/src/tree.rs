@@ -111,13 +111,13 @@ pub fn grow(
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
     let mut thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
-    take_limbs(&spec.variation, &wood_spec, seed, &mut bones);
+    let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
+    take_limbs(&spec.variation, &wood_spec, life, seed, &mut bones);
     let slim = age(spec, &wood_spec, &mut bones);
     // One number for all, or one for each.
     thick.resize(thick.len().max(slim.len()), thick.first().copied().unwrap_or(1.0));
     thick.iter_mut().zip(slim).for_each(|(thick, slim)| *thick *= slim);
     strip_twigs(&wood_spec, &mut bones);
-    let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
     let grown = bones.skeleton.len();
     add_props(&mut bones.skeleton, &wood_spec, grown_by(life, spec.years.unwrap_or(1)), seed);
     let Bones { skeleton, marks, dead: mut leafless, mut tally, .. } = bones;
@@ -215,17 +215,21 @@ fn differ(
     Ok(habits.iter().map(factor).collect())
 }
 
-/// Limbs that are lost go; those that are dead are marked.
-fn take_limbs(variation: &VariationSpec, wood: &WoodSpec, seed: Seed, bones: &mut Bones) {
+/// Limbs of a whole tree that are dead have died after this share of its life, each at its own time.
+const LIMBS_LIVE: f64 = 0.4;
+
+/// Limbs that are lost go; those that are dead at a share of the tree's life are marked.
+fn take_limbs(variation: &VariationSpec, wood: &WoodSpec, life: f64, seed: Seed, bones: &mut Bones) {
     if variation.lost <= 0.0 && variation.dead <= 0.0 {
         return;
     }
     let n = bones.skeleton.len();
     let (mut lost, mut dead) = (vec![false; n], vec![false; n]);
     for (j, i) in limbs(&bones.skeleton, wood).into_iter().zip(0_u64..) {
-        let chance = |k: u64, p: f64| seed.child(FATE).child(i).child(k).stream(Draw::Habit).chance(p);
-        lost[j] = chance(0, variation.lost);
-        dead[j] = chance(1, variation.dead);
+        let draw = |k: u64| seed.child(FATE).child(i).child(k).stream(Draw::Habit);
+        lost[j] = draw(0).chance(variation.lost);
+        let died = ops::lerp(LIMBS_LIVE, 1.0, draw(2).uniform());
+        dead[j] = life >= died && draw(1).chance(variation.dead);
     }
     for j in 0..n {
         dead[j] |= bones.skeleton.parent[j].is_some_and(|p| dead[p.index()]);
@@ -604,6 +608,16 @@ mod tests {
         let low = |p: &DVec3| p.y < 1.0 && DVec3::new(p.x, 0.0, p.z).length() > 0.4;
         assert!(got.plant.nodes.position.iter().filter(|p| low(p)).count() > 24);
         assert!(!got.plant.organs.iter().any(|o| low(&o.frame.origin)));
+    }
+
+    #[test]
+    fn limbs_that_died_lived_before() {
+        let leaves = |dead: f64, age: u32| {
+            let variation = crate::VariationSpec { dead, ..crate::VariationSpec::default() };
+            tree(&TreeSpec { years: Some(50), age: Some(age), variation, ..TreeSpec::default() }).leaves.kept
+        };
+        assert_eq!(leaves(0.8, 15), leaves(0.0, 15), "each of them is young");
+        assert!(leaves(0.8, 50) < leaves(0.0, 50));
     }
 
     #[test]
