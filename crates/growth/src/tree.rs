@@ -613,7 +613,7 @@ mod tests {
     #[test]
     fn limbs_that_died_lived_before() {
         let leaves = |dead: f64, age: u32| {
-            let variation = crate::VariationSpec { dead, ..crate::VariationSpec::default() };
+            let variation = VariationSpec { dead, ..VariationSpec::default() };
             tree(&TreeSpec { years: Some(50), age: Some(age), variation, ..TreeSpec::default() }).leaves.kept
         };
         assert_eq!(leaves(0.8, 15), leaves(0.0, 15), "each of them is young");
