@@ -171,7 +171,7 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
 fn types() -> Outcome {
     let mut c = shell::prepare(
         shell::cargo_path(),
-        &["test", "--test", "schemas", "--test", "wire", "--test", "types"],
+        &["test", "--workspace", "--test", "suite", "--", "schemas::", "wire::", "types::"],
     );
     c.env("BURGEON_WRITE_TYPES", "1");
     shell::finish(c)

@@ -1,0 +1,20 @@
+//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-cli --test suite MODULE::`.
+
+#[path = "../../../../crates/base/tests/missing/mod.rs"]
+mod missing;
+
+mod bloom;
+mod clouds;
+mod command;
+mod files;
+mod generated;
+mod grow;
+mod hostile;
+mod leaf;
+mod limits;
+mod options;
+mod replay;
+mod shape;
+mod times;
+mod tools;
+mod truth;

@@ -1,0 +1,6 @@
+//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-leaf --test suite MODULE::`.
+
+#[path = "../../../base/tests/missing/mod.rs"]
+mod missing;
+
+mod density;

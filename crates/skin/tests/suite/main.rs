@@ -1,0 +1,6 @@
+//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-skin --test suite MODULE::`.
+
+mod leaves;
+mod scenes;
+mod surfaces;
+mod wind;

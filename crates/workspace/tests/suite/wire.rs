@@ -1,0 +1,73 @@
+//! The TypeScript types of what travels between a page and a workspace, made from the Rust types.
+//!
+//! `cargo xtask types` writes them to `apps/studio-web/src/wire.ts`; this test fails when that file is stale.
+
+use crate::typescript;
+use std::fmt::Write as _;
+
+use burgeon::document::Command;
+use burgeon::shape::ToolKind;
+use burgeon::skin::OrganMaterial;
+use burgeon::{Coded, LeafBalls, Refusal};
+use schemars::JsonSchema;
+use schemars::generate::{SchemaGenerator, SchemaSettings};
+use workspace::{
+    Action, DocumentState, ExportRequest, ExportView, GestureRecord, Opened, PenStyle, SceneView,
+    ShapeAnswer, ShapeInput, ShapeReach, WorkspaceError,
+};
+
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
+
+const HEAD: &str = "\
+// Made by `cargo xtask types` from the types of the crate `workspace`. Change those instead.
+
+/** What has no type of its own here: the page passes it on. */
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+";
+
+#[test]
+fn the_types_of_the_page_are_those_of_the_workspace() {
+    let made = types();
+    if std::env::var_os("BURGEON_WRITE_TYPES").is_some() {
+        std::fs::write(FILE, &made).expect("strings take all");
+    }
+    let kept = std::fs::read_to_string(FILE).unwrap_or_default();
+    let differs = made.lines().zip(kept.lines()).find(|(a, b)| a != b);
+    assert!(made == kept, "stale, run `cargo xtask types`; first {differs:?}");
+}
+
+fn types() -> String {
+    // As the core writes them: every field is there.
+    let mut all = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    fn add<T: JsonSchema>(all: &mut SchemaGenerator) {
+        all.subschema_for::<T>();
+    }
+    add::<Command>(&mut all);
+    add::<Action>(&mut all);
+    add::<DocumentState<'_>>(&mut all);
+    add::<SceneView>(&mut all);
+    add::<Opened>(&mut all);
+    add::<ExportRequest>(&mut all);
+    add::<PenStyle>(&mut all);
+    add::<OrganMaterial>(&mut all);
+    add::<ExportView>(&mut all);
+    add::<ToolKind>(&mut all);
+    add::<ShapeReach>(&mut all);
+    add::<ShapeInput>(&mut all);
+    add::<ShapeAnswer>(&mut all);
+    add::<LeafBalls>(&mut all);
+    add::<GestureRecord>(&mut all);
+    add::<Refusal>(&mut all);
+    let mut out = HEAD.to_owned();
+    let mut codes = Vec::new();
+    WorkspaceError::codes(&mut codes);
+    codes.sort_unstable();
+    codes.dedup();
+    out += "\n/** Every code of a `Refusal`, with its fields. */\nexport const CODES = {\n";
+    for (code, fields) in codes {
+        writeln!(out, "  {code:?}: {fields:?},").expect("strings take all");
+    }
+    out += "} as const;\n";
+    typescript::declare(&mut out, &all.take_definitions(true));
+    out
+}
