@@ -1,8 +1,8 @@
 //! One file to download: the command with the Studio in it, its manual pages and completions.
 
-use crate::shell::{Outcome, built_burgeon, command, finish, output, prepare, repository, say, target_dir};
 use crate::toolchain::shown;
 use crate::{studio, web};
+use xtask::shell::{Outcome, built_burgeon, command, finish, output, prepare, repository, say, target_dir};
 
 /// The shells that packages have completions for, and what their files are called.
 const SHELLS: [(&str, &str); 3] = [("bash", "burgeon.bash"), ("zsh", "_burgeon"), ("fish", "burgeon.fish")];

@@ -1,9 +1,9 @@
 //! The extension for Blender: the file that people install, and its tests with Blender as a module of Python.
 
 use crate::python::{BUILD, build, environment, install, lint, pip};
-use crate::shell::{Outcome, finish, output, prepare, repository, say, target_dir};
 use crate::toolchain::shown;
 use std::path::{Path, PathBuf};
+use xtask::shell::{Outcome, finish, output, prepare, repository, say, target_dir};
 
 /// What the tests import: a gigabyte, and for one version of Python only, so that it is no part of `test`.
 const TEST: &[&str] = &["bpy>=4.2", "numpy", "pytest"];

@@ -10,7 +10,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::native;
-use crate::shell::{Outcome, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir};
+use xtask::shell::{Outcome, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir};
 
 /// Digest (and for trees the size of their meshes) by what was made.
 type Digests = BTreeMap<String, String>;

@@ -1,44 +1,21 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
-mod ablation;
-mod adam;
 mod archive;
-mod bare_numbers;
 mod blender;
-mod circles;
-mod contact_sheet;
-mod flowers;
-mod gallery;
 mod golden;
-mod habits;
-mod layers;
-mod made_drawings;
-mod made_strokes;
-mod names;
+mod minutes;
 mod native;
 mod npm;
-mod pixels;
 mod python;
-mod quickdraw;
-mod read_drawings;
-mod read_in_turn;
-mod scenes;
-mod sheets;
-mod shell;
-mod skips;
-mod species;
 mod studio;
 mod toolchain;
-mod train_glance;
-mod train_kinds;
-mod train_strokes;
 mod web;
-mod workshop;
 
 use std::process::ExitCode;
 
-use shell::{Outcome, beside, cargo, repository, say};
+use minutes::Minutes;
+use xtask::shell::{self, Outcome, beside, cargo, repository, say};
 
 const HELP: &str = "\
 cargo xtask COMMAND
@@ -47,7 +24,9 @@ cargo xtask COMMAND
                  Studio and opens it with the sample (not with --no-open, in CI, or where there is no screen)
   studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
-  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, npm, Python, Studio
+  test           sets up what the tests need and runs them: native, WASM in Node, Khronos validator, npm, Python, Studio.
+                 With --all everything of it: all on one thread and on four, all kills of pages, all journeys in a headset,
+                 and the packages for people (wheel, archive, extension for Blender)
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
@@ -79,32 +58,33 @@ cargo xtask COMMAND
   setup          installs the wasm32 target and the WASM tools only
 ";
 
+/// Chores of the crate `lab`, which only they compile.
+const LABORATORY: [&str; 9] = [
+    "gallery",
+    "species",
+    "sheets",
+    "flowers",
+    "train-strokes",
+    "train-kinds",
+    "train-glance",
+    "read-drawings",
+    "read-in-turn",
+];
+
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let rest = args.get(1..).unwrap_or_default();
     let outcome = match args.first().map(String::as_str) {
         Some("run") => run(rest),
-        Some("test") => test(),
+        Some("test") => share(rest).and_then(test),
         Some("bless") => golden::bless(rest),
-        Some("gallery") => gallery::run(),
-        Some("species") => species::run(rest),
-        Some("sheets") => sheets::run(rest),
-        Some("flowers") => flowers::run(),
+        Some(chore) if LABORATORY.contains(&chore) => laboratory(&args),
         Some("types") => types(),
-        Some("habits") => habits::check(),
-        Some("layers") => {
-            [layers::check, circles::check, names::check, skips::check].iter().try_for_each(|check| check())
-        }
-        Some("train-kinds") => train_kinds::run(rest),
-        Some("train-glance") => train_glance::run(rest),
-        Some("train-strokes") => train_strokes::run(rest),
-        Some("read-drawings") => read_drawings::run(rest),
-        Some("read-in-turn") => read_in_turn::run(rest),
+        Some("habits" | "layers") => checks(&args),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
-        Some("test-web") => {
-            web::setup().and_then(|tools| web::test(&tools, false).and_then(|()| test_studio(&tools)))
-        }
+        Some("test-web") => web::setup()
+            .and_then(|tools| web::test(&tools, false, Share::Some).and_then(|()| test_studio(&tools))),
         Some("test-studio") => web::setup().and_then(|tools| test_studio(&tools)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
         Some("archive") => archive::run(),
@@ -131,10 +111,23 @@ fn main() -> ExitCode {
     }
 }
 
+/// A chore of the laboratory, optimised: most of them draw and read thousands of drawings.
+fn laboratory(args: &[String]) -> Outcome {
+    let lab = ["run", "--release", "--quiet", "--package", "burgeon-lab", "--"];
+    cargo(&lab.into_iter().chain(args.iter().map(String::as_str)).collect::<Vec<_>>())
+}
+
+/// A check of the sources, by the program that can parse them. Named as a program and not as a package it stands on what
+/// the tests have compiled.
+fn checks(args: &[String]) -> Outcome {
+    let program = ["run", "--quiet", "--workspace", "--bin", "xtask-checks", "--"];
+    cargo(&program.into_iter().chain(args.iter().map(String::as_str)).collect::<Vec<_>>())
+}
+
 /// The main job on the sample sketch, as a newcomer would do it.
 fn run(args: &[String]) -> Outcome {
     let root = repository();
-    let burgeon = shell::built_burgeon()?;
+    let burgeon = shell::quick_burgeon()?;
     std::fs::create_dir_all(root.join("out")).map_err(|e| format!("cannot make the folder out: {e}"))?;
     say("\n$ burgeon sketch fixtures/sketches/sample.svg -o out/sample.glb --png out/sample.png");
     shell::command(
@@ -155,7 +148,8 @@ Made from fixtures/sketches/sample.svg:
   out/sample.glb   the plant: open it in Blender, Godot, Unity or any glTF viewer
   out/sample.png   a picture of it
   out/sample.json  what each stroke was understood as, counts, times, fidelity
-Next: draw your own (docs/drawings.md) and give it to the same command.");
+Next: draw your own (docs/drawings.md) and give it to the same command, target/debug/burgeon. It was built in a hurry:
+`cargo build --release --package burgeon-cli` makes target/release/burgeon, which takes a fraction of the time.");
     if args.iter().any(|a| a == "--no-open") || studio::headless() {
         say(
             "The Studio is not opened here (--no-open, CI or no screen). `cargo xtask studio` builds and serves it.",
@@ -179,19 +173,47 @@ fn types() -> Outcome {
 
 fn test_studio(tools: &web::Tools) -> Outcome {
     studio::check(tools)?;
-    studio::journeys(false)?;
-    studio::kills()
+    studio::journeys(false, Share::All)?;
+    studio::kills(Share::All)
+}
+
+/// How much the tests ask where a part of it says nearly as much as all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Share {
+    /// A part, by a rule that stands where it is taken: in each run.
+    Some,
+    /// All: each night, and before a release.
+    All,
+}
+
+fn share(args: &[String]) -> Outcome<Share> {
+    match args {
+        [] => Ok(Share::Some),
+        [all] if all == "--all" => Ok(Share::All),
+        _ => Err("`cargo xtask test` takes --all or nothing".into()),
+    }
 }
 
 /// Everything that must be green. What waits much runs beside what computes.
-fn test() -> Outcome {
-    let tools = web::setup()?;
-    cargo(&["test", "--workspace", "--no-run", "--quiet"])?;
-    beside(test_native, || web::compile(&tools))?;
-    web::test(&tools, true)?;
-    npm::test(&tools)?;
-    studio::check(&tools)?;
-    beside(|| python::test(true).and_then(|()| studio::kills()), || studio::journeys(true))?;
+fn test(share: Share) -> Outcome {
+    let mut minutes = Minutes::default();
+    let tools = minutes.of("tools", web::setup)?;
+    minutes.of("tests and programs compiled", || cargo(&["test", "--workspace", "--no-run", "--quiet"]))?;
+    minutes.of("native tests, cores compiled", || beside(test_native, || web::compile(&tools)))?;
+    minutes.of("digests, WASM in Node, validator", || web::test(&tools, true, share))?;
+    minutes.of("npm", || npm::test(&tools))?;
+    minutes.of("the page in Node", || studio::check(&tools))?;
+    minutes.of("Python, kills of pages, journeys", || {
+        let python_and_kills = || python::test(true).and_then(|()| studio::kills(share));
+        beside(python_and_kills, || studio::journeys(true, share))
+    })?;
+    if share == Share::All {
+        // Without `npm::pack`: the core of trees alone is larger than it allows today.
+        minutes.of("the wheel", python::wheel)?;
+        minutes.of("the archive", archive::run)?;
+        minutes.of("the extension for Blender", blender::pack)?;
+    }
+    minutes.tell();
     Ok(())
 }
 

@@ -1,14 +1,16 @@
-//! Everything that the repository makes, made by the native program on one and on four threads: its digests.
+//! Everything that the repository makes, made by the native program on four threads, and of it a share on one: its digests.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, beside, burgeon, finish, prepare, repository, say};
+use crate::Share;
 use crate::toolchain::shown;
+use xtask::shell::{Outcome, beside, burgeon, finish, prepare, repository, say};
 
 /// The report of all drawings and the digests of leaves, flowers and trees, by the native program alone.
 pub(crate) fn all(out: &Path) -> Outcome<(PathBuf, PathBuf)> {
-    let drawings = models(&drawings()?, &out.join("native"))?;
-    Ok((drawings, organs(out)?.0))
+    let drawings = models(&drawings()?, &out.join("native"), Share::All)?;
+    Ok((drawings, organs(out, Share::All)?.0))
 }
 
 /// Every drawing among the fixtures, in order of name.
@@ -98,9 +100,22 @@ fn made_organs(out: &Path, burgeon: &Path) -> Outcome<Vec<PathBuf>> {
 /// Fineness of the trees' surfaces in the comparison.
 pub(crate) const DETAIL: &str = "0.1";
 
-/// The digests of every kind of leaf, every flower and the tree of every preset, by the native program on one and on
-/// four threads; returns their file and the files that they were made of.
-pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
+/// Of what is made on four threads, one in so many is made on one thread, too, in order of name from the first on, unless
+/// all is asked for. Whether it is what it was, and the same in WASM, is asked of all.
+const ON_ONE_THREAD: usize = 4;
+
+/// Every `ON_ONE_THREAD`th, or all.
+fn sample<T: Clone>(all: &[T], share: Share) -> Vec<T> {
+    let step = match share {
+        Share::All => 1,
+        Share::Some => ON_ONE_THREAD,
+    };
+    all.iter().step_by(step).cloned().collect()
+}
+
+/// The digests of every kind of leaf, every flower and the tree of every preset, by the native program on four threads, and
+/// of a share of them on one; returns their file and the files that they were made of.
+pub(crate) fn organs(out: &Path, share: Share) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let burgeon = burgeon("debug");
     let mut files: Vec<PathBuf> =
         (1..=3).map(|k| repository().join(format!("fixtures/leaves/leaf{k}.csv"))).collect();
@@ -110,16 +125,25 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     c.arg(&law).arg(out.join("stages.toml"));
     finish(c)?;
     let made = Organs { burgeon, files, law, out };
-    let [digests, others] = beside(|| made.digests("1"), || made.digests("4"))?;
-    if digests != others {
-        return Err("digests of leaves, flowers or trees differ between 1 and 4 threads".into());
+    let whole = made.list()?;
+    let sample = sample(&whole, share);
+    let [digests, others] = beside(|| made.digests(&whole, "4"), || made.digests(&sample, "1"))?;
+    if let Some((name, _)) = others.iter().find(|(name, digest)| digests.get(*name) != Some(*digest)) {
+        return Err(format!("{name}: its digest differs between 1 and 4 threads"));
     }
-    say(&format!("{} digests of leaves, flowers and trees are the same on 1 and 4 threads", digests.len()));
+    say(&format!(
+        "{} of {} digests of leaves, flowers and trees were asked for on 1 and 4 threads and are the same",
+        others.len(),
+        digests.len()
+    ));
     let path = out.join("organs.json");
     let text = serde_json::Value::Object(digests).to_string();
     std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
     Ok((path, made.files))
 }
+
+/// Stands for the file of a model in what makes one.
+const GLB: &str = "{model}";
 
 /// What organs are made of, and with.
 struct Organs<'a> {
@@ -129,15 +153,56 @@ struct Organs<'a> {
     out: &'a Path,
 }
 
+/// A leaf, a flower or a tree of the comparison: its name, and what makes it.
+#[derive(Clone, Debug)]
+struct Organ {
+    name: String,
+    args: Vec<String>,
+}
+
 impl Organs<'_> {
+    /// All of them, in order of name. `GLB` stands for a file that is written and not looked at.
+    fn list(&self) -> Outcome<Vec<Organ>> {
+        let mut list = Vec::new();
+        let mut add = |name: &str, args: &[&str], last: &[&Path]| {
+            let last = last.iter().map(|p| p.display().to_string());
+            let args = args.iter().map(|a| (*a).to_owned()).chain(last).collect();
+            list.push(Organ { name: name.to_owned(), args });
+        };
+        let opening = ["bloom", "run", "--frames", FRAMES, "-o", GLB];
+        for path in &self.files {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            match path.extension().and_then(|e| e.to_str()).unwrap_or_default() {
+                "svg" => add(&name, &opening, &[path]),
+                "xyz" if name.starts_with("stage") => {}
+                "xyz" => add(&name, &["leaf", "--scan", "--unit", "mm"], &[path]),
+                _ => add(&name, &["leaf"], &[path]),
+            }
+        }
+        for species in presets_in("crates/bloom/presets")? {
+            add(&species, &opening, &[Path::new(&species)]);
+        }
+        let stages = self.out.join("stages.toml");
+        add("stages", &opening, &[&stages, Path::new("--law"), &self.law]);
+        for preset in &presets_in("crates/studio/presets")? {
+            // Needles are painted on cards where there are textures: the counts are those of what is drawn without.
+            let args = ["grow", preset, "--detail", DETAIL, "--no-textures", "-o", GLB];
+            add(&format!("tree {preset}"), &args, &[]);
+        }
+        list.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(list)
+    }
+
     /// What is made of each on so many threads.
-    fn digests(&self, threads: &str) -> Outcome<serde_json::Map<String, serde_json::Value>> {
-        let Self { burgeon, files, law, out } = self;
+    fn digests(&self, list: &[Organ], threads: &str) -> Outcome<serde_json::Map<String, serde_json::Value>> {
+        let report = self.out.join(format!("organ-{threads}.json"));
+        let glb = self.out.join(format!("organ-{threads}.glb")).display().to_string();
         let mut digests = serde_json::Map::new();
-        let report = out.join(format!("organ-{threads}.json"));
-        let mut digest_of = |name: String, c: &mut std::process::Command| -> Outcome {
+        for Organ { name, args } in list {
+            let mut c = prepare(&self.burgeon, &[]);
+            c.args(args.iter().map(|a| if a == GLB { &glb } else { a }));
             c.args(["--quiet", "--threads", threads, "--report"]).arg(&report);
-            let status = c.status().map_err(|e| format!("{}: {e}", shown(burgeon)))?;
+            let status = c.status().map_err(|e| format!("{}: {e}", shown(&self.burgeon)))?;
             let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
             let json: serde_json::Value =
                 serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
@@ -148,31 +213,7 @@ impl Organs<'_> {
             }
             let of_tree = format!("{digest} {} {}", item["counts"]["vertices"], item["counts"]["triangles"]);
             let digest = if name.starts_with("tree ") { of_tree } else { digest.to_owned() };
-            digests.insert(name, digest.into());
-            Ok(())
-        };
-        let opening = ["bloom", "run", "--frames", FRAMES, "-o"];
-        let glb = out.join(format!("organ-{threads}.glb"));
-        for path in files {
-            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-            match extension {
-                "svg" => digest_of(name, prepare(burgeon, &opening).arg(&glb).arg(path))?,
-                "xyz" if name.starts_with("stage") => {}
-                "xyz" => digest_of(name, prepare(burgeon, &["leaf", "--scan", "--unit", "mm"]).arg(path))?,
-                _ => digest_of(name, prepare(burgeon, &["leaf"]).arg(path))?,
-            }
-        }
-        for species in presets_in("crates/bloom/presets")? {
-            digest_of(species.clone(), prepare(burgeon, &opening).arg(&glb).arg(species))?;
-        }
-        let mut c = prepare(burgeon, &opening);
-        digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(law))?;
-        for preset in &presets_in("crates/studio/presets")? {
-            // Needles are painted on cards where there are textures: the counts are those of what is drawn without.
-            let mut c = prepare(burgeon, &["grow", preset, "--detail", DETAIL, "--no-textures", "-o"]);
-            c.arg(&glb);
-            digest_of(format!("tree {preset}"), &mut c)?;
+            digests.insert(name.clone(), digest.into());
         }
         Ok(digests)
     }
@@ -190,32 +231,51 @@ fn presets_in(folder: &str) -> Outcome<Vec<String>> {
     if keys.is_empty() { Err(format!("{}: no presets", shown(&folder))) } else { Ok(keys) }
 }
 
-/// Makes every drawing with the native program on one and on four threads; returns the report of the first.
-pub(crate) fn models(drawings: &[PathBuf], to: &Path) -> Outcome<PathBuf> {
+/// Makes every drawing with the native program on four threads and a share of them on one; returns the report of all.
+pub(crate) fn models(drawings: &[PathBuf], to: &Path, share: Share) -> Outcome<PathBuf> {
     std::fs::create_dir_all(to).map_err(|e| format!("{}: {e}", shown(to)))?;
-    let burgeon = burgeon("debug");
-    let mut reports = Vec::new();
-    for threads in ["1", "4"] {
-        let report = to.join(format!("threads-{threads}.json"));
-        let folder = to.join(threads);
-        let mut c = prepare(&burgeon, &["sketch", "--quiet", "--threads", threads]);
-        c.args(drawings).arg("-o").arg(&folder).arg("--report").arg(&report);
-        finish(c)?;
-        let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
-        let json: serde_json::Value =
-            serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
-        let digests: Vec<String> = json["items"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .map(|item| format!("{} {}", item["name"], item["digest"]))
-            .collect();
-        reports.push((report, digests));
+    let (report, digests) = made_drawings(drawings, to, "4")?;
+    let (_, others) = made_drawings(&sample(drawings, share), to, "1")?;
+    if let Some((name, _)) = others.iter().find(|(name, digest)| digests.get(*name) != Some(*digest)) {
+        return Err(format!("{name}: its digest differs between 1 and 4 threads"));
     }
-    if reports[0].1 == reports[1].1 && !reports[0].1.is_empty() {
-        say(&format!("{} digests are the same on 1 and 4 threads", reports[0].1.len()));
-        Ok(reports.swap_remove(0).0)
-    } else {
-        Err("digests differ between 1 and 4 threads, or there are none".into())
+    if others.is_empty() {
+        return Err("there are no digests of drawings".into());
+    }
+    say(&format!(
+        "{} of {} digests of drawings were asked for on 1 and 4 threads and are the same",
+        others.len(),
+        digests.len()
+    ));
+    Ok(report)
+}
+
+/// Makes drawings on so many threads: their report, and their digests by name.
+fn made_drawings(
+    drawings: &[PathBuf],
+    to: &Path,
+    threads: &str,
+) -> Outcome<(PathBuf, BTreeMap<String, String>)> {
+    let report = to.join(format!("threads-{threads}.json"));
+    let mut c = prepare(burgeon("debug"), &["sketch", "--quiet", "--threads", threads]);
+    c.args(drawings).arg("-o").arg(to.join(threads)).arg("--report").arg(&report);
+    finish(c)?;
+    let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
+    let json: serde_json::Value =
+        serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
+    let items = json["items"].as_array().into_iter().flatten();
+    let digests = items.map(|item| (item["name"].to_string(), item["digest"].to_string()));
+    Ok((report, digests.collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fourth_is_asked_for_on_one_thread_or_all() {
+        let all: Vec<u8> = (0..9).collect();
+        assert_eq!(sample(&all, Share::Some), [0, 4, 8]);
+        assert_eq!(sample(&all, Share::All), all);
     }
 }

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::shell::{Outcome, burgeon, finish, output, prepare, repository, say, target_dir};
 use crate::studio::browser;
 use crate::toolchain::shown;
 use crate::web::{Core, Tools, bindgen, build_core};
+use xtask::shell::{Outcome, burgeon, finish, output, prepare, repository, say, target_dir};
 
 /// What a page downloads of a core that makes trees alone: at most so many bytes, compressed (gzip -9).
 const GROWTH_BYTES: u64 = 900_000;

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::shell::{
+use crate::toolchain::{apt_install, is_root_on_debian, shown};
+use xtask::shell::{
     Outcome, burgeon, command, debug_burgeon, finish, output, prepare, repository, say, target_dir,
 };
-use crate::toolchain::{apt_install, is_root_on_debian, shown};
 
 /// What builds the wheel, and reads what is in Python.
 pub(crate) const BUILD: &[&str] = &["maturin>=1.8,<2", "ruff>=0.14,<1"];

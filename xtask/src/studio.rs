@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use crate::shell::{
-    Outcome, built_burgeon, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir,
-};
+use crate::Share;
 use crate::toolchain::{apt_install, is_root_on_debian};
 use crate::web::{Tools, bench_growth, bindgen, build_wasm};
+use xtask::shell::{
+    Outcome, burgeon, debug_burgeon, finish, output, prepare, quick_burgeon, repository, say, target_dir,
+};
 
 fn folder() -> PathBuf {
     repository().join("apps/studio-web")
@@ -71,7 +72,7 @@ pub(crate) fn headless() -> bool {
 /// Builds the Studio and serves it until Ctrl-C; `args` go to `burgeon studio`.
 pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     build(tools, true)?;
-    let mut c = prepare(built_burgeon()?, &["studio"]);
+    let mut c = prepare(quick_burgeon()?, &["studio"]);
     c.args(args);
     finish(c)
 }
@@ -84,8 +85,9 @@ pub(crate) fn check(tools: &Tools) -> Outcome {
     npm(&["run", "--silent", "test"])
 }
 
-/// The main journeys in a browser, once [`check()`] has built the page. `tested`: the tests of the workspace have just run.
-pub(crate) fn journeys(tested: bool) -> Outcome {
+/// The main journeys in a browser, once [`check()`] has built the page; of those in a headset one, or all of them.
+/// `tested`: the tests of the workspace have just run.
+pub(crate) fn journeys(tested: bool, share: Share) -> Outcome {
     let Some(browser) = browser() else {
         say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");
         return Ok(());
@@ -95,6 +97,9 @@ pub(crate) fn journeys(tested: bool) -> Outcome {
     say(&format!("$ node e2e/run.mjs ({})", browser.display()));
     let mut c = prepare("node", &["e2e/run.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
+    if share == Share::All {
+        c.env("HEADSETS", "all");
+    }
     finish(c)?;
     say("$ node e2e/morph.mjs");
     let mut c = prepare("node", &["e2e/morph.mjs"]);
@@ -102,12 +107,18 @@ pub(crate) fn journeys(tested: bool) -> Outcome {
     finish(c)
 }
 
+/// Pages that are killed in each run: eight rounds of four, one of them with the whole browser. All are 200.
+const SOME_KILLS: &str = "30";
+
 /// Kills pages at any moment and asks for their strokes, once [`check()`] has built the page.
-pub(crate) fn kills() -> Outcome {
+pub(crate) fn kills(share: Share) -> Outcome {
     let Some(browser) = browser() else { return Ok(()) };
     say("$ node e2e/kills.mjs");
     let mut c = prepare("node", &["e2e/kills.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug"));
+    if share == Share::Some && std::env::var_os("KILLS").is_none() {
+        c.env("KILLS", SOME_KILLS);
+    }
     finish(c)
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say};
+use xtask::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say};
 
 /// The target triple of the browser.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
@@ -30,7 +30,7 @@ impl WasmCargo {
                 c.env_remove("RUSTUP_TOOLCHAIN").env_remove("RUSTC").env_remove("CARGO");
                 c.arg(format!("+{DEBIAN}")).args(args);
                 // Its artefacts must not be mixed with those of the other compiler.
-                c.env("CARGO_TARGET_DIR", crate::shell::target_dir().join("debian"));
+                c.env("CARGO_TARGET_DIR", xtask::shell::target_dir().join("debian"));
                 c
             }
         }

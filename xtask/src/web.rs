@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell::{
+use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
+use crate::{Share, golden, native};
+use xtask::shell::{
     Outcome, burgeon, command, debug_burgeon, finish, installed, output, prepare, repository, say, target_dir,
 };
-use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
-use crate::{golden, native};
 
 /// Everything that the WASM tests need.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ fn wasm_bindgen() -> Outcome<PathBuf> {
 
 /// Builds the WASM package, runs it in Node beside the native program, and validates every GLB. `tested`: the tests of
 /// the workspace have just run.
-pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
+pub(crate) fn test(tools: &Tools, tested: bool, share: Share) -> Outcome {
     debug_burgeon(tested)?;
     let out = target_dir().join("xtask-test");
     let _ = std::fs::remove_dir_all(&out);
@@ -61,8 +61,8 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     let wasm = build_wasm(tools, false)?;
     bindgen(tools, &wasm, "nodejs", &out.join("wasm"))?;
     let drawings = native::drawings()?;
-    let native = native::models(&drawings, &out.join("native"))?;
-    let (organs, leaves) = native::organs(&out)?;
+    let native = native::models(&drawings, &out.join("native"), share)?;
+    let (organs, leaves) = native::organs(&out, share)?;
     golden::check(&native, &organs, &out)?;
     say(&format!("$ node digests.mjs ({} drawings)", drawings.len()));
     let mut c = prepare("node", &["xtask/node/digests.mjs"]);
@@ -112,12 +112,10 @@ pub(crate) fn bench_growth(tools: &Tools) -> Outcome {
     finish(c)
 }
 
-/// Compiles all cores that tests need: each is made into a package where it is tested.
+/// Compiles the cores that tests need: each is made into a package where it is tested. That of trees alone is compiled there,
+/// too, as it takes the place of the other one of npm.
 pub(crate) fn compile(tools: &Tools) -> Outcome {
-    for core in [Core::Checked, Core::Npm { makers: true }, Core::Npm { makers: false }] {
-        build_core(tools, core, false)?;
-    }
-    Ok(())
+    build_core(tools, Core::Checked, false).map(drop)
 }
 
 /// Builds the core for the browser and returns the file.
@@ -131,13 +129,19 @@ pub(crate) fn build_core(tools: &Tools, core: Core, release: bool) -> Outcome<Pa
         Core::Studio | Core::Checked => "burgeon-wasm",
         Core::Npm { .. } => "burgeon-npm",
     };
-    let mut args = vec!["build", "--package", package, "--target", TARGET];
-    args.extend(release.then_some("--profile=web"));
-    match core {
-        Core::Checked => args.push("--features=checks"),
-        Core::Npm { makers: false } => args.push("--no-default-features"),
-        Core::Studio | Core::Npm { makers: true } => {}
+    let mut args = vec!["build", "--target", TARGET];
+    if release {
+        args.extend(["--package", package, "--profile=web"]);
+    } else {
+        // Both packages, with the features of both: what they stand on is compiled once.
+        args.extend(["--package", "burgeon-wasm", "--package", "burgeon-npm"]);
     }
+    match core {
+        Core::Checked if release => args.push("--features=checks"),
+        Core::Npm { makers: false } => args.push("--no-default-features"),
+        Core::Studio | Core::Checked | Core::Npm { makers: true } => {}
+    }
+    args.extend((!release).then_some("--features=burgeon-wasm/checks"));
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);
     if release {

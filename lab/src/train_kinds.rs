@@ -14,7 +14,7 @@ use reading::{KIND_FEATURE_LIMIT, Kind, SEVERAL};
 
 use crate::made_drawings::varied;
 use crate::read_drawings::{Labelled, Origin, Part, labelled, sketches};
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// Variations of each drawing by people that are learnt from beside it, of the SPG set, of made ones; how much one counts.
 const VARIATIONS: u64 = 14;

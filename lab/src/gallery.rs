@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say, target_dir};
+use xtask::shell::{Outcome, built_burgeon, burgeon, command, repository, say, target_dir};
 
 /// Table 1 of He and Cheng (2021): strokes, leaves or petals, branches, triangles, milliseconds.
 const PAPER: [(&str, [u32; 5]); 8] = [

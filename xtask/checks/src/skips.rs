@@ -1,7 +1,7 @@
 //! `cargo xtask layers`: a test that is skipped says so where people see it.
 
 use crate::bare_numbers::{packages, sources};
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// What libtest captures of a test that passes, and so nobody reads.
 const UNSEEN: [&str; 2] = ["println!(\"skip", "eprintln!(\"skip"];

@@ -8,7 +8,7 @@ use ink::Drawing;
 use reading::Reading;
 
 use crate::pixels;
-use crate::shell::Outcome;
+use xtask::shell::Outcome;
 
 /// Side of one picture, pixels.
 const SIDE: usize = 240;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::shell::{Outcome, cargo_path, output, prepare, repository, say};
+use xtask::shell::{Outcome, cargo_path, output, prepare, repository, say};
 
 /// Words that only shells may use: everything below runs in a browser, on any thread count, with the same bits.
 const BANNED: &[(&str, &str)] = &[

@@ -6,7 +6,7 @@ use std::path::Path;
 use syn::{Item, ItemUse, UseTree, Visibility};
 
 use crate::bare_numbers::packages;
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// Names that several crates may have, which crates these are, and why.
 const ALLOWED: &[(&str, &[&str], &str)] = &[

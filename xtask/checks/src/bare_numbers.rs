@@ -10,7 +10,7 @@ use syn::{
     Attribute, BinOp, Expr, ExprBinary, ExprClosure, ExprMethodCall, ImplItemFn, ItemFn, ItemMod, Lit,
 };
 
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// The folder whose comparisons are looked at.
 const FOLDER: &str = "crates/reading/src";

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use crate::pixels::tiled;
-use crate::shell::{Outcome, repository, say};
 use crate::workshop::{Workshop, picture};
+use xtask::shell::{Outcome, repository, say};
 
 /// Species, days from bud to full bloom, and from there to wilted.
 const FLOWERS: [(&str, f64, f64); 15] = [

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde_json::Value;
 
 use crate::pixels::{Pixels, rgba, tiled, write_rgb};
-use crate::shell::{Outcome, built_burgeon, command, output, prepare, repository, say};
+use xtask::shell::{Outcome, built_burgeon, command, output, prepare, repository, say};
 
 /// Side of a picture, pixels.
 const SIDE: usize = 240;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use base::ops::{self, TAU};
 
 use crate::pixels::tiled;
-use crate::shell::{Outcome, repository};
 use crate::workshop::{Workshop, picture};
+use xtask::shell::{Outcome, repository};
 
 struct Scenes<'a>(&'a Workshop);
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, built_burgeon, command, repository};
+use xtask::shell::{Outcome, built_burgeon, command, repository};
 
 pub(crate) struct Workshop {
     burgeon: PathBuf,

@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use crate::ablation::fixtures_of;
 use crate::quickdraw::{drawings_of, json_lines, list, text_of};
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// Orders in which each drawing is drawn: as it was, and shuffled.
 const ORDERS: u64 = 4;

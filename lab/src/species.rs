@@ -9,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::pixels::{Pixels, length, rgba};
-use crate::shell::{Outcome, built_burgeon, command, repository, say};
+use xtask::shell::{Outcome, built_burgeon, command, repository, say};
 
 const FROM: &str = "<!-- species: written by cargo xtask species -->\n";
 const TO: &str = "<!-- end of species -->\n";

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 use syn::{Attribute, Item, ItemMod, ItemUse, UseTree};
 
-use crate::shell::{Outcome, repository, say};
+use xtask::shell::{Outcome, repository, say};
 
 /// For each module of a crate's root the others that it uses, each with one place where it does.
 type Uses = BTreeMap<String, BTreeMap<String, String>>;

@@ -1,0 +1,3 @@
+//! What the programs of this repository's chores share.
+
+pub mod shell;
