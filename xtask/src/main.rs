@@ -148,8 +148,8 @@ Made from fixtures/sketches/sample.svg:
   out/sample.glb   the plant: open it in Blender, Godot, Unity or any glTF viewer
   out/sample.png   a picture of it
   out/sample.json  what each stroke was understood as, counts, times, fidelity
-Next: draw your own (docs/drawings.md) and give it to the same command, target/debug/burgeon. It was built in a hurry:
-`cargo build --release --package burgeon-cli` makes target/release/burgeon, which takes a fraction of the time.");
+Next: draw your own (docs/drawings.md) and give it to the same command, target/debug/burgeon. That is built quickly;
+`cargo build --release --package burgeon-cli` makes a quick one, target/release/burgeon.");
     if args.iter().any(|a| a == "--no-open") || studio::headless() {
         say(
             "The Studio is not opened here (--no-open, CI or no screen). `cargo xtask studio` builds and serves it.",

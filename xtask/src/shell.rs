@@ -46,7 +46,7 @@ pub fn debug_burgeon(tested: bool) -> Outcome {
     }
 }
 
-/// Builds the command line as `cargo build` does, in half the time of a build for release, and says where it is.
+/// Builds the command line as `cargo build` does, which takes less than a build for release, and says where it is.
 pub fn quick_burgeon() -> Outcome<PathBuf> {
     cargo(&["build", "--bin", "burgeon"])?;
     Ok(burgeon("debug"))

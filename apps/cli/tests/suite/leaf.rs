@@ -256,13 +256,24 @@ fn profiles_of_maize_become_leaves_of_their_length() {
     let Ok(text) = fs::read_to_string(&file) else {
         return missing::skipped(file.display());
     };
-    let dir = folder("leaf-profiles");
-    let leaves: Vec<Value> = serde_json::from_str(&text).unwrap();
+    // Every eighth, by the command line; all have the same reader.
+    profiles("leaf-profiles", &text, 8, 79);
+}
+
+#[test]
+fn our_own_profiles_become_leaves_of_their_length() {
+    let text = fs::read_to_string(fixture("nine-midribs.json")).unwrap();
+    profiles("leaf-own-profiles", &text, 3, 9);
+}
+
+/// Makes every `step`th of `count` leaves that were digitised from the side, in centimetres.
+fn profiles(name: &str, text: &str, step: usize, count: usize) {
+    let dir = folder(name);
+    let leaves: Vec<Value> = serde_json::from_str(text).unwrap();
     let numbers =
         |v: &Value| -> Vec<f64> { v.as_array().unwrap().iter().filter_map(Value::as_f64).collect() };
-    fs::write(dir.join("maize.json"), &text).unwrap();
-    // Every eighth, by the command line; all have the same reader.
-    for (k, leaf) in leaves.iter().enumerate().step_by(8) {
+    fs::write(dir.join("maize.json"), text).unwrap();
+    for (k, leaf) in leaves.iter().enumerate().step_by(step) {
         let (x, y) = (numbers(&leaf["x"]), numbers(&leaf["y"]));
         let steps = x
             .windows(2)
@@ -278,12 +289,14 @@ fn profiles_of_maize_become_leaves_of_their_length() {
         // 20 chords of the midrib are a little shorter than its own.
         assert!(got <= want * (1.0 + 1e-9) && got > 0.98 * want, "leaf {number}: {got} {want}");
     }
-    let told = bad(&dir, &["leaf", "maize.json", "--number", "80", "-o", "x.glb"]);
-    assert!(told.contains("holds 79 leaves"), "{told}");
+    let beyond = (count + 1).to_string();
+    let told = bad(&dir, &["leaf", "maize.json", "--number", &beyond, "-o", "x.glb"]);
+    assert!(told.contains(&format!("holds {count} leaves")), "{told}");
     // Without a unit 42 m is no leaf.
     let out = burgeon(&dir, &["leaf", "maize.json", "-o", "x.glb"]);
     let warned = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert!(warned.contains("taken for centimetres") && warned.contains("79 leaves"), "{warned}");
+    let several = format!("{count} leaves");
+    assert!(warned.contains("taken for centimetres") && warned.contains(&several), "{warned}");
 }
 
 #[test]

@@ -151,21 +151,35 @@ fn real_drawings_are_read() {
     for (row, sub) in ["quickdraw", "spg"].iter().enumerate() {
         let entries = std::fs::read_dir(format!("{folder}/{sub}")).expect("a folder");
         for path in entries.filter_map(Result::ok).map(|e| e.path()) {
-            if path.extension().is_none_or(|e| e != "ndjson") {
-                continue;
-            }
-            let file = std::io::BufReader::new(std::fs::File::open(&path).expect("opens"));
-            for read in read_drawings(file, DrawingFormat::Ndjson, "d") {
-                let read = read.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-                let info = DrawingSummary::of(&read.drawing, &read.warnings);
-                assert!(info.points > 1 && info.not_finite == 0, "{info:?}");
-                // Raw drawings have times; the labels in the third row of the others are none.
-                assert_eq!(info.times, row == 0, "{}: {}", path.display(), info.name);
-                counts[row] += 1;
+            if path.extension().is_some_and(|e| e == "ndjson") {
+                counts[row] += every_drawing(&path, row == 0);
             }
         }
     }
     assert_eq!(counts, [138, 1446], "every drawing");
+}
+
+#[test]
+fn drawings_of_our_own_are_read_with_their_times_and_with_labels() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/ndjson");
+    for (name, timed) in [("raw.ndjson", true), ("labelled.ndjson", false)] {
+        assert_eq!(every_drawing(&folder.join(name), timed), 6, "{name}");
+    }
+}
+
+/// How many drawings a file holds, each with more than a point, and with times or without.
+fn every_drawing(path: &std::path::Path, timed: bool) -> usize {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("opens"));
+    let mut count = 0;
+    for read in read_drawings(file, DrawingFormat::Ndjson, "d") {
+        let read = read.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let info = DrawingSummary::of(&read.drawing, &read.warnings);
+        assert!(info.points > 1 && info.not_finite == 0, "{info:?}");
+        // Raw drawings have times; the labels in the third row of the others are none.
+        assert_eq!(info.times, timed, "{}: {}", path.display(), info.name);
+        count += 1;
+    }
+    count
 }
 
 /// Gives one good line, then fails for ever.

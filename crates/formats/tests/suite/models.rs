@@ -470,6 +470,15 @@ fn a_real_scan_is_read() {
     assert!(m.bounds().size().min_element() > 0.0);
 }
 
+#[test]
+fn a_scan_of_our_own_is_read_as_a_model_of_points() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scans/leaf.ply");
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let m = read(&bytes, ModelFormat::Ply, &ExportSpec::default());
+    assert_eq!(m.vertex_count(), 2064);
+    assert!(m.bounds().size().min_element() > 0.0);
+}
+
 /// Found by fuzzing: the squares of these normals are beyond f32.
 #[test]
 fn tiny_and_huge_normals_become_units() {

@@ -24,3 +24,20 @@ fn the_real_scans_are_read() {
         assert_eq!(cloud.points.len(), want, "{name}");
     }
 }
+
+#[test]
+fn scans_of_our_own_are_read_whole_with_their_colours() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scans");
+    let mut clouds = Vec::new();
+    for (name, format) in [("leaf.txt", CloudFormat::Xyz), ("leaf.ply", CloudFormat::Ply)] {
+        let bytes = std::fs::read(folder.join(name)).unwrap();
+        let cloud = read_cloud(&bytes[..], format, &ExportSpec::default(), &mut Report::default()).unwrap();
+        assert_eq!((cloud.points.len(), cloud.colors.len()), (2064, 2064), "{name}");
+        clouds.push(cloud);
+    }
+    // Both hold the same leaf, to the digits that each gives and the float of one of them.
+    for (a, b) in clouds[0].points.iter().zip(&clouds[1].points) {
+        assert!(a.distance(*b) < 1e-4, "{a} {b}");
+    }
+    assert_eq!(clouds[0].colors, clouds[1].colors);
+}

@@ -262,6 +262,23 @@ proptest! {
     }
 }
 
+/// A plant in the dialect of digitised plants: `^`, several entities on a line, ranges, scales that change on the way.
+#[test]
+fn the_reader_reads_a_digitised_plant_of_our_own() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/structure/digitised.mtg");
+    let g = read(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let at_scale = |scale: usize| g.vertices.iter().filter(move |v| v.scale == scale);
+    assert_eq!([1, 2, 3].map(|s| at_scale(s).count()), [1, 4, 19]);
+    assert_eq!(at_scale(3).filter(|v| v.parent.is_none()).count(), 1, "one foot");
+    let borne = at_scale(3).filter(|v| v.parent.is_some_and(|(_, edge)| edge == Edge::Bears));
+    // The two branches begin at an edge of the coarse scale, the leaves at their own.
+    assert_eq!(borne.count(), 4);
+    let placed = (0..g.vertices.len()).filter(|&v| g.number(v, "XX").is_some());
+    assert_eq!(placed.clone().count(), 8);
+    let heights: Vec<f64> = placed.filter_map(|v| g.number(v, "ZZ")).collect();
+    assert_eq!(heights, [0.0, 240.0, 310.0, 395.0, 470.0, 520.0, 610.0, 655.0]);
+}
+
 /// Real digitised plants: what reads them reads the dialect of the field's own programs.
 #[test]
 fn the_reader_reads_real_plants() {

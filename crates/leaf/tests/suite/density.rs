@@ -1,4 +1,4 @@
-//! Scans of single leaves made by other people, whole and thinned out.
+//! Scans of single leaves, made by other people and by us, whole and thinned out.
 
 #![expect(clippy::expect_used, reason = "tests")]
 
@@ -39,22 +39,33 @@ fn half_and_a_quarter_of_the_points_are_the_same_leaf() {
     files.retain(|f| f.extension().is_some_and(|e| e == "txt"));
     files.sort();
     for file in files {
-        let all = read(&file);
-        let fit = |points: &[DVec3]| {
-            fit_scan(points, &ScanSpec::default(), &Run::plain(), &mut Report::default()).expect("a leaf")
-        };
-        let whole = fit(&all);
-        let (length, wide) = (geom::polyline_length3(&whole.midrib()), area(&whole));
-        println!("{}: {:.1} mm, {:.0} mm2", file.display(), 1e3 * length, 1e6 * wide);
-        for (step, may) in [(2, 0.06), (4, 0.12)] {
-            let mut stream = Seed::new(step).stream(Draw::Test);
-            let some: Vec<DVec3> =
-                all.iter().copied().filter(|_| stream.uniform() * (step as f64) < 1.0).collect();
-            let part = fit(&some);
-            let off = [geom::polyline_length3(&part.midrib()) / length - 1.0, area(&part) / wide - 1.0];
-            println!("  1/{step}: {} points, {:+.3} {:+.3}", some.len(), off[0], off[1]);
-            assert!(off.iter().all(|o| o.abs() < may), "{} 1/{step}: {off:?}", file.display());
-            assert_eq!(part.stalk.is_some(), whole.stalk.is_some(), "{} 1/{step}", file.display());
-        }
+        thinned(&file);
+    }
+}
+
+#[test]
+fn half_and_a_quarter_of_our_own_scan_are_the_same_leaf() {
+    thinned(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scans/leaf.txt"));
+}
+
+/// A leaf of all points, and of a part of them.
+#[expect(clippy::print_stdout, reason = "figures for whoever looks for them")]
+fn thinned(file: &Path) {
+    let all = read(file);
+    let fit = |points: &[DVec3]| {
+        fit_scan(points, &ScanSpec::default(), &Run::plain(), &mut Report::default()).expect("a leaf")
+    };
+    let whole = fit(&all);
+    let (length, wide) = (geom::polyline_length3(&whole.midrib()), area(&whole));
+    println!("{}: {:.1} mm, {:.0} mm2", file.display(), 1e3 * length, 1e6 * wide);
+    for (step, may) in [(2, 0.06), (4, 0.12)] {
+        let mut stream = Seed::new(step).stream(Draw::Test);
+        let some: Vec<DVec3> =
+            all.iter().copied().filter(|_| stream.uniform() * (step as f64) < 1.0).collect();
+        let part = fit(&some);
+        let off = [geom::polyline_length3(&part.midrib()) / length - 1.0, area(&part) / wide - 1.0];
+        println!("  1/{step}: {} points, {:+.3} {:+.3}", some.len(), off[0], off[1]);
+        assert!(off.iter().all(|o| o.abs() < may), "{} 1/{step}: {off:?}", file.display());
+        assert_eq!(part.stalk.is_some(), whole.stalk.is_some(), "{} 1/{step}", file.display());
     }
 }

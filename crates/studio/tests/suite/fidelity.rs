@@ -356,6 +356,16 @@ fn fixtures_are_as_true_as_the_report_says() {
 }
 
 #[test]
+fn drawings_with_times_are_as_true_as_the_report_says() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/ndjson/raw.ndjson");
+    let drawings = drawings(&path, DrawingFormat::Ndjson);
+    assert_eq!(drawings.len(), 6);
+    let wrong: Vec<usize> =
+        (0..6).filter(|&i| !agrees(&format!("raw {i}"), &case(&drawings[i]), SAME_BY_HAND)).collect();
+    assert!(wrong.is_empty(), "said and seen differ: {wrong:?}");
+}
+
+#[test]
 fn drawings_of_people_are_as_true_as_the_report_says() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sketches/quickdraw");
     let Ok(entries) = std::fs::read_dir(&folder) else {
