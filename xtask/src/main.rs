@@ -148,7 +148,7 @@ Made from fixtures/sketches/sample.svg:
   out/sample.glb   the plant: open it in Blender, Godot, Unity or any glTF viewer
   out/sample.png   a picture of it
   out/sample.json  what each stroke was understood as, counts, times, fidelity
-Next: draw your own (docs/drawings.md) and give it to the same command, target/debug/burgeon. That is built quickly;
+Next: draw your own (docs/drawings.md) and give it to the same command, target/quick/burgeon. That is built quickly;
 `cargo build --release --package burgeon-cli` makes a quick one, target/release/burgeon.");
     if args.iter().any(|a| a == "--no-open") || studio::headless() {
         say(
