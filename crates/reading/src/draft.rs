@@ -13,6 +13,7 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::kept::{Drawn, alike};
 use crate::steady::steady;
+use crate::structure::Hidden;
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
@@ -113,6 +114,8 @@ pub(crate) struct Draft<'a> {
     pub(crate) rings: Vec<(usize, Vec<usize>)>,
     /// Strokes that are a stem and leaves.
     pub(crate) one_go: LiteMap<usize, OneGo>,
+    /// Blades that go on behind others: their completed outlines.
+    pub(crate) hidden: LiteMap<usize, Hidden>,
 }
 
 impl<'a> Draft<'a> {
@@ -143,6 +146,7 @@ impl<'a> Draft<'a> {
             legs: LiteMap::new(),
             rings: Vec::new(),
             one_go: LiteMap::new(),
+            hidden: LiteMap::new(),
         }
     }
 
@@ -258,6 +262,13 @@ impl<'a> Draft<'a> {
                     |line: &Vec<DVec2>| Some(Sheetlet { root: Some(line[0]), ..Sheetlet::new(line, k)? });
                 self.blades.extend(parts.loops.iter().filter_map(leaf));
                 self.lines.push(Line { points: parts.stem.clone(), source: Some(s.index) });
+                self.organ[k] = OrganWord::Leaf;
+                continue;
+            }
+            if let Some(hidden) = self.hidden.get(&k)
+                && let Some(blade) = Sheetlet::new(&hidden.outline, k)
+            {
+                self.blades.push(Sheetlet { root: hidden.root, ..blade });
                 self.organ[k] = OrganWord::Leaf;
                 continue;
             }

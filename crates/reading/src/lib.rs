@@ -17,6 +17,7 @@
 //! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | [`glance`](mod@glance) | what a drawing looks like, whatever its strokes are | beyond |
+//! | `structure` | what strokes enclose, what covers them, what lies in them, what is repeated | beyond |
 //! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
 //! | `kept` | what single strokes gave, kept while they stay as they are | |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
@@ -52,6 +53,7 @@ mod sealed;
 mod several;
 mod silhouette;
 mod steady;
+mod structure;
 #[cfg(test)]
 mod tests;
 mod thresholds;

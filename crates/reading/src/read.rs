@@ -10,10 +10,11 @@ use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::silhouette::{Drawn, Shaping, Silhouette};
+use crate::structure::{Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, veins,
+    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, structure, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -82,7 +83,7 @@ fn without(off: &[&str], said: &Classified) -> Classified {
 /// reading.
 pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
     let asked = Asked { kind: None, off: &[], kept: &RefCell::default() };
-    let first = attempt(&asked, None, ink, classes, &mut Report::default());
+    let first = attempt(&asked, &Proposal::default(), ink, classes, &mut Report::default());
     kinds::kind_features(ink, classes, &first)
 }
 
@@ -120,7 +121,7 @@ struct First {
 impl First {
     fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
-        let reading = attempt(asked, None, ink, classes, &mut said);
+        let reading = attempt(asked, &Proposal::default(), ink, classes, &mut said);
         if ink.strokes.len() > MOST_JUDGED {
             // As it was read, and as nothing else.
             let kinds = vec![Scored { kind: Kind::of(&reading), score: 1.0 }];
@@ -269,11 +270,20 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     {
         (reading, said) = (tree, Report::default());
     }
+    let mut structure = None;
+    if asked.kind.is_none()
+        && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| group(&scores, k))
+    {
+        let (tried, again, says) = found;
+        kind = Kind::of(&tried);
+        (reading, said, taken, structure) = (tried, again, None, Some(says));
+    }
     if asked.kind.is_none()
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
         let mut again = Report::default();
-        let mut tried = attempt(asked, taken, ink, &shown, &mut again);
+        let proposal = Proposal { kind: taken, structure };
+        let mut tried = attempt(asked, &proposal, ink, &shown, &mut again);
         let was = Kind::of(&tried);
         let before = || {
             let rows = (0..ink.strokes.len().saturating_sub(1)).collect();
@@ -413,7 +423,8 @@ const fn bears_no_flower(kind: Kind) -> bool {
 /// One reading of one plant that is taken for a kind; of a tree that came apart by its silhouette, if no class was set by hand.
 fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -> (Reading, Report) {
     let mut report = Report::default();
-    let reading = attempt(asked, Some(kind), ink, classes, &mut report);
+    let proposal = Proposal { kind: Some(kind), structure: None };
+    let reading = attempt(asked, &proposal, ink, classes, &mut report);
     if kind.is_like(Kind::Tree)
         && asked.is_free(ink, classes)
         && let Some(tree) = by_silhouette(asked, ink, classes, &reading)
@@ -450,19 +461,61 @@ fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: 
     Some(draft.finish(bearers, vec![], vec![], fruits, vec![]))
 }
 
-/// One reading of one plant, taken for a kind or for whatever its strokes say.
+/// A plant by the structure of its strokes, where that explains the drawing clearly better than another reading does.
+/// `likely`: the share of a kind.
+fn by_structure(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    reading: &Reading,
+    likely: impl Fn(Kind) -> f64,
+) -> Option<(Reading, Report, Structure)> {
+    let count = ink.strokes.len();
+    if !(structure::LIMITS.fewest_strokes..=MOST_STROKES).contains(&count) || asked.off.contains(&READ_AS) {
+        return None;
+    }
+    let sheet = Sheet::new(ink);
+    if !sheet.is_careful() {
+        return None;
+    }
+    let says = Structure::new(&sheet, classes);
+    if !says.differs(classes) {
+        return None;
+    }
+    let mut report = Report::default();
+    let proposal = Proposal { kind: None, structure: Some(says.clone()) };
+    let tried = attempt(asked, &proposal, ink, classes, &mut report);
+    let score = |r: &Reading| {
+        structure::score(ink, &sheet, r) + structure::LIMITS.weight_of_kind * likely(Kind::of(r))
+    };
+    // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
+    let by_user = classes.iter().any(|c| c.source == Source::User);
+    let margin = if by_user { 0.0 } else { structure::LIMITS.clearly_better };
+    (score(&tried) >= score(reading) + margin).then_some((tried, report, says))
+}
+
+/// How one reading of a plant is to come about: taken for a kind, or by structure, or by whatever its strokes say.
+#[derive(Clone, Debug, Default)]
+struct Proposal {
+    kind: Option<Kind>,
+    structure: Option<Structure>,
+}
+
+/// One reading of one plant.
 fn attempt(
     asked: &Asked<'_>,
-    kind: Option<Kind>,
+    proposal: &Proposal,
     ink: &Ink,
     classes: &[Classified],
     report: &mut Report,
 ) -> Reading {
     let off = asked.off;
     let mut draft = Draft::new(ink, classes, asked.kept);
-    if let Some(kind) = kind {
+    if let Some(kind) = proposal.kind {
         draft.kind = Some(kind);
         rules::take_for(&mut draft, kind);
+    }
+    if let Some(structure) = &proposal.structure {
+        structure.settle(&mut draft);
     }
     rules::apply(&mut draft, off);
     draft.contours();

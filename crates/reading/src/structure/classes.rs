@@ -1,0 +1,153 @@
+//! What strokes are by their structure.
+
+use base::LiteMap;
+use glam::DVec2;
+use ink::{Classified, Source, StrokeClass};
+
+use super::LIMITS;
+use super::hidden::hidden_root;
+use super::sheet::{Facts, Form, Outline, Sheet};
+use crate::draft::Draft;
+
+/// The rule that what a stroke is follows from what it encloses, what covers it and what it lies in.
+const STRUCTURE: &str = "structure";
+
+/// An outline that goes on behind others.
+#[derive(Clone, Debug)]
+pub(crate) struct Hidden {
+    pub(crate) outline: Vec<DVec2>,
+    /// Where it is attached: in the hidden part.
+    pub(crate) root: Option<DVec2>,
+}
+
+/// What a drawing says by its structure.
+#[derive(Clone, Debug)]
+pub(crate) struct Structure {
+    /// The class of each stroke of which the structure says one.
+    classes: Vec<Option<StrokeClass>>,
+    /// Completed outlines, by rows.
+    hidden: LiteMap<usize, Hidden>,
+}
+
+impl Structure {
+    /// What the facts say; `classes`: what the user or the classifier says. The user's stand, and the classifier's where no fact
+    /// contradicts them.
+    pub(crate) fn new(sheet: &Sheet, classes: &[Classified]) -> Self {
+        let said = |k: usize| classes.get(k).copied().unwrap_or_default();
+        let by_user = |k: usize| said(k).source == Source::User;
+        let found = |k: usize| if by_user(k) { None } else { class_of(sheet, k, said) };
+        let classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
+        let mut hidden = LiteMap::new();
+        for (k, facts) in sheet.facts.iter().enumerate() {
+            if facts.form == Form::Bay
+                && classes[k].unwrap_or(said(k).class) == StrokeClass::Blade
+                && let Some(Outline { points, .. }) = &facts.outline
+            {
+                hidden.insert(k, Hidden { outline: points.clone(), root: hidden_root(points) });
+            }
+        }
+        Self { classes, hidden }
+    }
+
+    /// The class of each stroke of which the structure says one.
+    #[cfg(test)]
+    pub(crate) fn classes(&self) -> &[Option<StrokeClass>] {
+        &self.classes
+    }
+
+    /// Whether it says anything that the classifier does not.
+    pub(crate) fn differs(&self, classes: &[Classified]) -> bool {
+        !self.hidden.is_empty()
+            || self.classes.iter().zip(classes).any(|(own, said)| own.is_some_and(|own| own != said.class))
+    }
+
+    /// Puts it into a draft: no later rule changes what it says.
+    pub(crate) fn settle(&self, draft: &mut Draft<'_>) {
+        for (k, class) in self.classes.iter().enumerate() {
+            if let Some(class) = *class {
+                if draft.class[k] != class {
+                    draft.rule[k] = Some(STRUCTURE);
+                }
+                draft.class[k] = class;
+                draft.settled[k] = true;
+            }
+        }
+        draft.hidden = self.hidden.clone();
+    }
+}
+
+/// What one stroke is, if its structure says so.
+fn class_of(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Option<StrokeClass> {
+    let facts = &sheet.facts[k];
+    match (facts.form, facts.holder) {
+        (Form::Ring | Form::Bay, _) => class_of_outline(sheet, k, said),
+        (Form::Line, Some(holder)) => Some(mark_in(&sheet.facts[holder])),
+        (Form::Line, None) => class_of_line(said(k)),
+    }
+}
+
+/// A mark in an outline: one of many is texture, one of few a vein.
+fn mark_in(holder: &Facts) -> StrokeClass {
+    if holder.marks > LIMITS.texture { StrokeClass::Scribble } else { StrokeClass::Vein }
+}
+
+/// A line that lies in nothing is no blade, disc or fruit, and a pot, trunk or crown only if the classifier is sure.
+fn class_of_line(said: Classified) -> Option<StrokeClass> {
+    let is_line = match said.class {
+        StrokeClass::Axis | StrokeClass::Ground => true,
+        StrokeClass::TrunkOutline | StrokeClass::Crown | StrokeClass::Pot => {
+            said.confidence > LIMITS.believed
+        }
+        _ => false,
+    };
+    (!is_line).then_some(StrokeClass::Axis)
+}
+
+fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Option<StrokeClass> {
+    let facts = &sheet.facts[k];
+    let alike = sheet.alike(k);
+    if let Some(holder) = facts.holder {
+        let beside = alike.iter().filter(|&&j| sheet.facts[j].holder == Some(holder)).count();
+        if beside > LIMITS.repeated && sheet.facts[holder].marks >= LIMITS.texture {
+            return Some(StrokeClass::Scribble);
+        }
+    }
+    let crowns = alike.iter().filter(|&&j| said(j).class == StrokeClass::Crown).count();
+    if 2 * crowns > alike.len() {
+        return None;
+    }
+    if alike.len() >= LIMITS.repeated {
+        return Some(class_of_repeated(sheet, &alike));
+    }
+    let is_body = matches!(
+        said(k).class,
+        StrokeClass::Crown
+            | StrokeClass::Pot
+            | StrokeClass::Disc
+            | StrokeClass::Fruit
+            | StrokeClass::Corolla
+            | StrokeClass::TrunkOutline
+    );
+    if is_body && facts.form == Form::Ring && said(k).confidence > LIMITS.believed {
+        return None;
+    }
+    let round = facts.outline.as_ref().is_some_and(|o| o.roundness > LIMITS.round);
+    let textured = facts.marks >= LIMITS.texture && round;
+    Some(if textured { StrokeClass::Fruit } else { StrokeClass::Blade })
+}
+
+/// What outlines alike are: small round ones are fruits or florets, others blades.
+fn class_of_repeated(sheet: &Sheet, alike: &[usize]) -> StrokeClass {
+    let outlines = || alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref());
+    let is_round = median(outlines().map(|o| o.roundness)) > LIMITS.round
+        && median(outlines().map(|o| o.slenderness)) > LIMITS.plump
+        && median(outlines().map(|o| o.area)) < LIMITS.small_area;
+    if is_round { StrokeClass::Fruit } else { StrokeClass::Blade }
+}
+
+/// The middle one of some numbers, the upper of two; 0 of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    base::sort_by(&mut values, f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,88 @@
+//! What a drawing says by its structure, whatever kind of plant it shows: which strokes enclose something, which of these
+//! go on behind others, what lies inside what, and what is repeated.
+//!
+//! `Ink -> Sheet -> classes of strokes, completed outlines`, and a score of any reading of the same ink.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `sheet` | the facts of each stroke, found once and never changed |
+//! | `hidden` | outlines completed behind what covers them |
+//! | `classes` | what strokes are by these facts |
+//! | `score` | how well a reading explains the drawing |
+
+mod classes;
+mod hidden;
+mod score;
+mod sheet;
+
+pub(crate) use classes::{Hidden, Structure};
+pub(crate) use score::score;
+pub(crate) use sheet::Sheet;
+
+/// What separates the forms of strokes, and when structure decides. Lengths are in ink units (the drawing's diagonal is 1).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StructureLimits {
+    /// A drawing of fewer strokes has too little structure to go by; the kinds of whole drawings were learnt from such.
+    pub(crate) fewest_strokes: usize,
+    /// Structure decides only where more than this share of the ends of open strokes lies on other strokes: elsewhere lines
+    /// stop short of one another, and where one ends means nothing. Of 16 botanical illustrations the share is 0.67 to 1,
+    /// of 49 doodles with as many strokes 0 to 0.42, but for one (0.67).
+    pub(crate) careful: f64,
+    /// An end nearer than this to another stroke lies on it: one and a half steps of the pen.
+    pub(crate) junction: f64,
+    /// Ends nearer than this share of the stroke's length close it.
+    pub(crate) closed: f64,
+    /// An open stroke between two junctions encloses something if it leaves its chord by more than this share of the chord.
+    pub(crate) bulge: f64,
+    /// It bulges to one side: to the other side by less than this share of that.
+    pub(crate) one_sided: f64,
+    /// A stroke lies in an outline with more than this share of its points.
+    pub(crate) inside: f64,
+    /// An outline lies in another one only if its area is below this share of the other's.
+    pub(crate) smaller: f64,
+    /// Outlines are alike if neither has more than this many times the area of the other.
+    pub(crate) alike_area: f64,
+    /// Outlines are alike if their slenderness (width over length, 0 to 1) differs by less than this.
+    pub(crate) alike_slenderness: f64,
+    /// So many outlines alike are organs of one kind.
+    pub(crate) repeated: usize,
+    /// So many marks in one outline are its texture (scales, seeds), not its veins.
+    pub(crate) texture: usize,
+    /// Repeated outlines are fruits or florets, not blades, if they are rounder than this: 4 pi area / perimeter^2, 1 of a circle.
+    pub(crate) round: f64,
+    /// Repeated outlines are fruits only if they are plumper than this (slenderness).
+    pub(crate) plump: f64,
+    /// Repeated round outlines larger than this share of the squared diagonal are petals or leaves.
+    pub(crate) small_area: f64,
+    /// A class of the stroke classifier that structure does not contradict stands if its share is above this.
+    pub(crate) believed: f64,
+    /// What the share of the kind of plant (0 to 1) adds to the score of a reading of that kind.
+    pub(crate) weight_of_kind: f64,
+    /// The structural reading replaces another one only if its score is better by more than this.
+    pub(crate) clearly_better: f64,
+}
+
+/// Chosen on 16 illustrations and on doodles of the part to choose by; see `docs/strokes.md`.
+pub(crate) const LIMITS: StructureLimits = StructureLimits {
+    fewest_strokes: 8,
+    careful: 0.6,
+    junction: 0.0075,
+    closed: 0.08,
+    bulge: 0.3,
+    one_sided: 0.35,
+    inside: 0.85,
+    smaller: 0.5,
+    alike_area: 2.5,
+    alike_slenderness: 0.2,
+    repeated: 4,
+    texture: 6,
+    round: 0.85,
+    plump: 0.72,
+    small_area: 0.0015,
+    believed: 0.5,
+    weight_of_kind: 0.02,
+    clearly_better: 0.02,
+};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,182 @@
+//! The facts of each stroke: form, outline, what holds it, what it holds.
+
+use geom::{bounds, contains, distance_to_polyline, polyline_length, signed_area};
+use glam::DVec2;
+use ink::{Ink, InkStroke, StrokeMode};
+
+use super::LIMITS;
+use super::hidden::complete;
+use crate::near::Near;
+
+/// Points of a stroke that are looked at, where its share in an outline counts.
+const PLACES: usize = 9;
+
+/// How a stroke lies on the sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// It closes by itself.
+    Ring,
+    /// Both ends stop on other strokes and it bulges between them: it goes on behind those.
+    Bay,
+    /// It encloses nothing.
+    Line,
+}
+
+/// An outline with its measures.
+#[derive(Clone, Debug)]
+pub(crate) struct Outline {
+    /// Its points; of a bay with the part that is hidden.
+    pub(crate) points: Vec<DVec2>,
+    low: DVec2,
+    high: DVec2,
+    /// Share of the squared diagonal of the drawing, at least 0.
+    pub(crate) area: f64,
+    /// 4 pi area / perimeter^2: 1 of a circle.
+    pub(crate) roundness: f64,
+    /// Width over length, by the second moments of its points: 0 to 1.
+    pub(crate) slenderness: f64,
+}
+
+impl Outline {
+    fn new(points: Vec<DVec2>) -> Option<Self> {
+        let (low, high) = bounds(&points)?;
+        let area = signed_area(&points).abs();
+        let closing = points.first()?.distance(*points.last()?);
+        let perimeter = polyline_length(&points) + closing;
+        let roundness = 4.0 * std::f64::consts::PI * area / (perimeter * perimeter).max(f64::MIN_POSITIVE);
+        let slenderness = slenderness(&points);
+        Some(Self { points, low, high, area, roundness, slenderness })
+    }
+
+    /// Two outlines are of one kind of organ, by size and form.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let ratio = self.area / other.area.max(f64::MIN_POSITIVE);
+        (1.0 / LIMITS.alike_area..LIMITS.alike_area).contains(&ratio)
+            && (self.slenderness - other.slenderness).abs() < LIMITS.alike_slenderness
+    }
+
+    /// A line lies inside, or on the margin.
+    fn holds(&self, line: &[DVec2]) -> bool {
+        let (low, high) = (self.low - LIMITS.junction, self.high + LIMITS.junction);
+        let is_in = |p: &DVec2| {
+            p.cmpge(low).all()
+                && p.cmple(high).all()
+                && (contains(&self.points, *p)
+                    || distance_to_polyline(&self.points, *p).is_some_and(|d| d < 0.5 * LIMITS.junction))
+        };
+        let places = line.iter().step_by((line.len() / PLACES).max(1));
+        let count = places.len();
+        let hits = places.filter(|p| is_in(p)).count();
+        hits as f64 > LIMITS.inside * count as f64
+    }
+}
+
+/// The facts of one stroke.
+#[derive(Clone, Debug)]
+pub(crate) struct Facts {
+    pub(crate) form: Form,
+    /// Of rings and bays.
+    pub(crate) outline: Option<Outline>,
+    /// The smallest outline in which it lies, by its stroke's row.
+    pub(crate) holder: Option<usize>,
+    /// How many of its two ends lie on other strokes.
+    joined: usize,
+    /// Strokes that lie in its outline and in no smaller one.
+    pub(crate) marks: usize,
+}
+
+/// The facts of all strokes of one plant, by their rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Sheet {
+    pub(crate) facts: Vec<Facts>,
+    /// The share of the ends of open strokes that lie on other strokes, 0 to 1; 1 where all are closed.
+    joined: f64,
+}
+
+impl Sheet {
+    /// Cost: strokes times outlines, a few looks each; asked for drawings of at most some hundred strokes.
+    pub(crate) fn new(ink: &Ink) -> Self {
+        let mut near = Near::new(LIMITS.junction);
+        ink.strokes.iter().enumerate().for_each(|(k, s)| near.add_line(k, &s.points));
+        let mut facts: Vec<Facts> = ink.strokes.iter().enumerate().map(|(k, s)| alone(&near, k, s)).collect();
+        let holders: Vec<Option<usize>> = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
+        for (k, holder) in holders.into_iter().enumerate() {
+            facts[k].holder = holder;
+            if let Some(holder) = holder {
+                facts[holder].marks += 1;
+            }
+        }
+        let open = facts.iter().filter(|f| f.form != Form::Ring).count();
+        let joined: usize = facts.iter().filter(|f| f.form != Form::Ring).map(|f| f.joined).sum();
+        let joined = if open > 0 { joined as f64 / (2 * open) as f64 } else { 1.0 };
+        Self { facts, joined }
+    }
+
+    /// It was drawn with care: most lines end on others.
+    pub(crate) fn is_careful(&self) -> bool {
+        self.joined > LIMITS.careful
+    }
+
+    /// Rows of the outlines that are like that of a stroke, itself among them; none of a line.
+    pub(crate) fn alike(&self, k: usize) -> Vec<usize> {
+        let Some(own) = &self.facts[k].outline else { return Vec::new() };
+        let like = |f: &Facts| f.outline.as_ref().is_some_and(|o| own.is_like(o));
+        (0..self.facts.len()).filter(|&j| like(&self.facts[j])).collect()
+    }
+}
+
+/// What a stroke is by itself and by what its ends lie on.
+fn alone(near: &Near, k: usize, stroke: &InkStroke) -> Facts {
+    let points = &stroke.points;
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let covered = |p: DVec2| near.nearest(p, LIMITS.junction, |owner| owner != k).is_some();
+    let ends = [start, end].map(covered);
+    let (form, outline) = if stroke.mode != StrokeMode::Parts {
+        (Form::Line, None)
+    } else if start.distance(end) < LIMITS.closed * stroke.length {
+        (Form::Ring, Outline::new(points.clone()))
+    } else if bulges(points) && ends == [true; 2] {
+        (Form::Bay, Outline::new(complete(points)))
+    } else {
+        (Form::Line, None)
+    };
+    let form = if outline.is_none() { Form::Line } else { form };
+    let joined = ends.into_iter().filter(|on| *on).count();
+    Facts { form, outline, holder: None, joined, marks: 0 }
+}
+
+/// Whether a line leaves its chord to one side, and far.
+fn bulges(points: &[DVec2]) -> bool {
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let chord = end - start;
+    let along = chord.normalize_or_zero();
+    let offs = points.iter().map(|p| along.perp_dot(*p - start));
+    let (low, high) = offs.fold((0.0_f64, 0.0_f64), |(low, high), off| (low.min(off), high.max(off)));
+    let (more, less) = (high.max(-low), high.min(-low));
+    more > LIMITS.bulge * chord.length() && less < LIMITS.one_sided * more
+}
+
+/// The smallest outline in which a stroke lies.
+fn holder(ink: &Ink, facts: &[Facts], k: usize) -> Option<usize> {
+    let own = facts[k].outline.as_ref().map(|o| o.area);
+    let holds = |(j, f): (usize, &Facts)| {
+        let outline = f.outline.as_ref().filter(|_| j != k)?;
+        let small = own.is_none_or(|own| own < LIMITS.smaller * outline.area);
+        (small && outline.holds(&ink.strokes[k].points)).then_some((outline.area, j))
+    };
+    facts.iter().enumerate().filter_map(holds).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j)| j)
+}
+
+/// Width over length of a set of points: the square root of the ratio of their second moments.
+fn slenderness(points: &[DVec2]) -> f64 {
+    let count = points.len().max(1) as f64;
+    let mean = points.iter().copied().sum::<DVec2>() / count;
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for p in points {
+        let d = *p - mean;
+        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
+    }
+    let half = 0.5 * (xx + yy);
+    let root = (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
+    if half + root > 0.0 { ((half - root).max(0.0) / (half + root)).sqrt() } else { 1.0 }
+}

@@ -1,0 +1,98 @@
+//! A rosette of petals that hide one another, a cone with scales, and a careless doodle.
+
+use base::{Report, ops};
+use glam::DVec2;
+use ink::{Classified, Drawing, StrokeClass, clean};
+
+use super::sheet::{Form, Sheet};
+use super::{LIMITS, Structure, score};
+use crate::{Kind, read};
+
+const TAU: f64 = std::f64::consts::TAU;
+
+fn at(angle: f64, radius: f64) -> DVec2 {
+    DVec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
+}
+
+/// A ring of arcs, each from the end of the one before to the start of the next, round what lies inside.
+fn arcs(count: u32, radius: f64, height: f64, phase: f64) -> Vec<Vec<DVec2>> {
+    let step = TAU / f64::from(count);
+    (0..count)
+        .map(|k| {
+            let from = phase + step * f64::from(k);
+            let bulge = |t: f64| radius + height * (4.0 * t * (1.0 - t)).sqrt();
+            (0..=24).map(|i| f64::from(i) / 24.0).map(|t| at(from + step * t, bulge(t))).collect()
+        })
+        .collect()
+}
+
+/// A disc in two rings of petals, hidden lines removed.
+fn rosette() -> Vec<Vec<DVec2>> {
+    let disc = (0..=60).map(|k| at(TAU * f64::from(k) / 60.0, 0.2)).collect();
+    let mut lines = vec![disc];
+    lines.extend(arcs(8, 0.2, 0.25, 0.0));
+    lines
+}
+
+#[test]
+fn petals_that_go_on_behind_a_disc_are_bays_with_hidden_roots() {
+    let ink = clean(&Drawing::from_polylines("rosette", &rosette()), &mut Report::default());
+    let sheet = Sheet::new(&ink);
+    let forms: Vec<Form> = sheet.facts.iter().map(|f| f.form).collect();
+    assert_eq!(forms[0], Form::Ring);
+    assert!(forms[1..].iter().all(|f| *f == Form::Bay), "{forms:?}");
+    assert!(sheet.is_careful());
+    assert_eq!(sheet.alike(1).len(), 8, "the petals are alike, and the disc is none of them");
+    let said = vec![Classified::by_shares([0.0; StrokeClass::ALL.len()]); ink.strokes.len()];
+    assert!(Structure::new(&sheet, &said).differs(&said));
+}
+
+#[test]
+fn petals_drawn_behind_a_disc_become_petals() {
+    let ink = clean(&Drawing::from_polylines("rosette", &rosette()), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let reading = read(&ink, &classes, &mut Report::default());
+    let organs = reading.flowers.iter().map(|f| f.petals.len()).sum::<usize>() + reading.leaves.len();
+    assert!(organs >= 8, "{organs} petals and leaves, {:?}", Kind::of(&reading));
+    assert_eq!(reading.validate().count(), 0);
+    let sheet = Sheet::new(&ink);
+    assert!(score(&ink, &sheet, &reading) > 0.9);
+}
+
+#[test]
+fn marks_in_an_outline_are_texture_if_there_are_many_and_veins_if_few() {
+    let body: Vec<DVec2> = (0..=60).map(|k| at(TAU * f64::from(k) / 60.0, 1.0)).collect();
+    let mark = |k: usize| {
+        let y = -0.6 + 0.15 * k as f64;
+        vec![DVec2::new(-0.2, y), DVec2::new(0.0, y + 0.02), DVec2::new(0.2, y)]
+    };
+    for (marks, want) in [(3, StrokeClass::Vein), (LIMITS.texture + 1, StrokeClass::Scribble)] {
+        let lines: Vec<Vec<DVec2>> = std::iter::once(body.clone()).chain((0..marks).map(mark)).collect();
+        let ink = clean(&Drawing::from_polylines("body", &lines), &mut Report::default());
+        let sheet = Sheet::new(&ink);
+        assert_eq!(sheet.facts[0].marks, marks);
+        assert!(sheet.facts[1..].iter().all(|f| f.holder == Some(0)));
+        let said = vec![Classified::default(); ink.strokes.len()];
+        let classes = Structure::new(&sheet, &said).classes().to_vec();
+        assert!(classes[1..].iter().all(|c| *c == Some(want)), "{marks}: {classes:?}");
+    }
+}
+
+#[test]
+fn lines_that_stop_short_of_one_another_are_no_structure() {
+    let lines: Vec<Vec<DVec2>> = arcs(8, 0.2, 0.25, 0.0)
+        .into_iter()
+        .enumerate()
+        .map(|(k, line)| line.into_iter().map(|p| p + at(k as f64, 0.05)).collect())
+        .collect();
+    let ink = clean(&Drawing::from_polylines("doodle", &lines), &mut Report::default());
+    assert!(!Sheet::new(&ink).is_careful());
+}
+
+#[test]
+fn classes_of_the_user_stay() {
+    let ink = clean(&Drawing::from_polylines("rosette", &rosette()), &mut Report::default());
+    let said = vec![Classified::by_user(StrokeClass::Axis); ink.strokes.len()];
+    let structure = Structure::new(&Sheet::new(&ink), &said);
+    assert!(!structure.differs(&said));
+}
