@@ -1,62 +1,216 @@
 //! Files that are being written: hidden, beside their target, under a name that nobody else has.
+//!
+//! Whoever writes into a folder has a lock file there as long as it has drafts. Where the lock is free, its holder is
+//! gone, whatever machine, container or user it was: the next command that writes there finishes or removes what is left.
 
-use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File, TryLockError};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, SystemTime};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Drafts of this process, for a program that is ended in the middle.
-static DRAFTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-/// Folders in which old drafts were looked for.
-static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+use crate::disk::{self, NewFile};
+use crate::sweep;
+
+/// What this process has on disks and would not leave behind, for a program that is ended in the middle.
+struct State {
+    drafts: BTreeSet<PathBuf>,
+    locks: BTreeSet<PathBuf>,
+    /// Folders that were made for outputs; they go if they are empty.
+    folders: Vec<PathBuf>,
+    leases: BTreeMap<PathBuf, Weak<Lease>>,
+    /// Folders in which it was looked for what others left.
+    swept: BTreeSet<PathBuf>,
+}
+
+static STATE: Mutex<State> = Mutex::new(State {
+    drafts: BTreeSet::new(),
+    locks: BTreeSet::new(),
+    folders: Vec::new(),
+    leases: BTreeMap::new(),
+    swept: BTreeSet::new(),
+});
+/// Numbers of drafts.
+static COUNT: AtomicU64 = AtomicU64::new(0);
+/// How often a name is tried: one that is taken is another's.
+const TRIES: usize = 64;
+
+fn state() -> MutexGuard<'static, State> {
+    STATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What a file is that a command has in a folder for a while. Its name is `.burgeon-RUN-NUMBER.part`, for example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// A file that is not complete, or not in place.
+    Part,
+    /// A list of the files of a set that are complete and are to be in place.
+    Set,
+    /// Says in which other folder that list is.
+    See,
+    /// Held by the process that has the others.
+    Lock,
+}
+
+impl Role {
+    const ALL: [Self; 4] = [Self::Part, Self::Set, Self::See, Self::Lock];
+
+    const fn extension(self) -> &'static str {
+        match self {
+            Self::Part => ".part",
+            Self::Set => ".set",
+            Self::See => ".see",
+            Self::Lock => ".lock",
+        }
+    }
+
+    /// The run and the role of a file that has one of our names.
+    pub(crate) fn of(name: &str) -> Option<(&str, Self)> {
+        let rest = name.strip_prefix(START)?;
+        let (role, rest) = Self::ALL.iter().find_map(|r| Some((*r, rest.strip_suffix(r.extension())?)))?;
+        let (run, number) = rest.split_once('-').map_or((rest, None), |(run, number)| (run, Some(number)));
+        let is_number = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
+        let is_run = run.len() == 16 && run.bytes().all(|b| b.is_ascii_hexdigit());
+        let is_ours = match (role, number) {
+            (Self::Lock, None) => is_run,
+            // Versions before had drafts of a random number alone, and of two numbers.
+            (Self::Part, None) => is_run,
+            (Self::Part, Some(number)) => is_number(number) && (is_run || is_number(run)),
+            (Self::Set | Self::See, Some(number)) => is_number(number) && is_run,
+            _ => false,
+        };
+        is_ours.then_some((run, role))
+    }
+}
 
 const START: &str = ".burgeon-";
-const END: &str = ".part";
-/// A draft that nobody wrote to for so long was left by a process that was killed.
-const STALE: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// The lock of this process in a folder, which goes with the last of its drafts there.
+#[derive(Debug)]
+pub(crate) struct Lease {
+    pub(crate) folder: PathBuf,
+    pub(crate) run: String,
+    /// Holds the lock; where a disk has none, only a file.
+    file: NewFile,
+}
+
+impl Lease {
+    /// That of a folder, in which is finished or removed first what others left.
+    pub(crate) fn of(folder: &Path) -> io::Result<Arc<Self>> {
+        let (lease, is_first) = {
+            let mut state = state();
+            let held = state.leases.get(folder).and_then(Weak::upgrade);
+            let lease = match held {
+                Some(lease) => lease,
+                None => Arc::new(Self::take(folder, &mut state)?),
+            };
+            state.leases.insert(folder.to_path_buf(), Arc::downgrade(&lease));
+            (lease, state.swept.insert(folder.to_path_buf()))
+        };
+        if is_first {
+            sweep::sweep(&lease);
+        }
+        Ok(lease)
+    }
+
+    fn take(folder: &Path, state: &mut State) -> io::Result<Self> {
+        let mut last = io::Error::from(io::ErrorKind::AlreadyExists);
+        for _ in 0..TRIES {
+            let run = format!("{:016x}", random());
+            let path = folder.join(format!("{START}{run}{}", Role::Lock.extension()));
+            let file = match NewFile::create(&path) {
+                Ok(file) => file,
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
+                    last = e;
+                    continue;
+                }
+                Err(e) => return Err(e),
+            };
+            // Somebody who sweeps at this moment may take it for one that was left.
+            let lost = matches!(file.file().try_lock(), Err(TryLockError::WouldBlock));
+            if lost || fs::symlink_metadata(&path).is_err() {
+                continue;
+            }
+            state.locks.insert(path);
+            return Ok(Self { folder: folder.to_path_buf(), run, file });
+        }
+        Err(last)
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.join(format!("{START}{}{}", self.run, Role::Lock.extension()))
+    }
+
+    /// A name that is this process's own.
+    pub(crate) fn name(&self, role: Role) -> PathBuf {
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        self.folder.join(format!("{START}{}-{number}{}", self.run, role.extension()))
+    }
+
+    /// Whether a file has the same owner as those of this process.
+    pub(crate) fn owns(&self, metadata: &fs::Metadata) -> bool {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt as _;
+            self.file.file().metadata().is_ok_and(|own| own.uid() == metadata.uid())
+        }
+        #[cfg(not(unix))]
+        {
+            let _ = metadata;
+            true
+        }
+    }
+}
+
+impl Drop for Lease {
+    fn drop(&mut self) {
+        let path = self.path();
+        let mut state = state();
+        // Another may have come meanwhile.
+        if state.leases.get(&self.folder).is_some_and(|l| l.strong_count() == 0) {
+            state.leases.remove(&self.folder);
+        }
+        if state.locks.remove(&path) {
+            let _ = disk::remove(&path);
+        }
+    }
+}
 
 /// A temporary file in the folder of its target; removed unless it is put in place.
 #[derive(Debug)]
 pub(crate) struct Draft {
     path: PathBuf,
+    lease: Arc<Lease>,
 }
 
 impl Draft {
-    /// A new, empty file in a folder, in which drafts that were left behind are removed first.
-    pub(crate) fn create(folder: &Path) -> io::Result<(Self, File)> {
-        sweep_once(folder);
-        let create = |path: &Path| File::options().write(true).create_new(true).open(path);
-        Self::fresh(folder, create)
+    /// A new, empty file in a folder.
+    pub(crate) fn create(folder: &Path) -> io::Result<(Self, NewFile)> {
+        Self::fresh(&Lease::of(folder)?, NewFile::create)
     }
 
     /// A second name of a file that this draft is to replace, by which it can be put back. Not on every file system, and
     /// only of files of the same owner: in a folder such as /tmp another's name could not be removed again.
     pub(crate) fn keeping(&self, file: &Path) -> io::Result<Self> {
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::MetadataExt as _;
-            if fs::symlink_metadata(file)?.uid() != fs::symlink_metadata(&self.path)?.uid() {
-                return Err(io::ErrorKind::PermissionDenied.into());
-            }
+        if !self.lease.owns(&fs::symlink_metadata(file)?) {
+            return Err(io::ErrorKind::PermissionDenied.into());
         }
-        let folder = file.parent().unwrap_or(Path::new("."));
-        Self::fresh(folder, |path| fs::hard_link(file, path)).map(|(draft, ())| draft)
+        Self::fresh(&self.lease, |path| disk::link(file, path)).map(|(draft, ())| draft)
     }
 
     // A name that is taken is another's: it is left alone and the next one is tried.
-    fn fresh<T>(folder: &Path, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(Self, T)> {
+    fn fresh<T>(lease: &Arc<Lease>, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(Self, T)> {
         let mut last = io::Error::from(io::ErrorKind::AlreadyExists);
-        for _ in 0..64 {
-            let path = folder.join(format!("{START}{:016x}{END}", random()));
+        for _ in 0..TRIES {
+            let path = lease.name(Role::Part);
             // Under the lock: what is made is known, so that it is removed when the program is ended.
-            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut state = state();
             match make(&path) {
                 Ok(made) => {
-                    drafts.insert(path.clone());
-                    return Ok((Self { path }, made));
+                    state.drafts.insert(path.clone());
+                    return Ok((Self { path, lease: Arc::clone(lease) }, made));
                 }
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => last = e,
                 Err(e) => return Err(e),
@@ -65,35 +219,60 @@ impl Draft {
         Err(last)
     }
 
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(crate) const fn lease(&self) -> &Arc<Lease> {
+        &self.lease
+    }
+
     /// Gives the file its name; what had that name is replaced.
-    pub(crate) fn put(&mut self, place: &Path) -> io::Result<()> {
-        fs::rename(&self.path, place)?;
-        DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.path);
-        self.path = PathBuf::new();
+    pub(crate) fn put(&self, place: &Path) -> io::Result<()> {
+        disk::rename(&self.path, place)?;
+        state().drafts.remove(&self.path);
+        Ok(())
+    }
+
+    /// The opposite of [`put`](Self::put).
+    pub(crate) fn take_back(&self, place: &Path) -> io::Result<()> {
+        disk::rename(place, &self.path)?;
+        state().drafts.insert(self.path.clone());
         Ok(())
     }
 }
 
 impl Drop for Draft {
     fn drop(&mut self) {
-        if DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.path) {
-            let _ = fs::remove_file(&self.path);
+        if state().drafts.remove(&self.path) {
+            let _ = disk::remove(&self.path);
         }
     }
 }
 
-/// Removes what is half-written; for the end of the program.
+/// A folder that is made for outputs: it goes when the program is ended, if nothing lies in it.
+pub(crate) fn is_made(folder: &Path) {
+    state().folders.push(folder.to_path_buf());
+}
+
+/// Removes what is half-written, at the end of the program: nothing more can be made afterwards.
 pub(crate) fn remove_all() {
-    let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
-    drafts.iter().for_each(|path| drop(fs::remove_file(path)));
-    drafts.clear();
+    let state = state();
+    remove(&state);
+    std::mem::forget(state);
 }
 
 /// [`remove_all`] where nothing may be waited for: the caller may hold what it takes.
 pub(crate) fn abandon_all() {
-    if let Ok(drafts) = DRAFTS.try_lock() {
-        drafts.iter().for_each(|path| drop(fs::remove_file(path)));
+    if let Ok(state) = STATE.try_lock() {
+        remove(&state);
+        std::mem::forget(state);
     }
+}
+
+fn remove(state: &State) {
+    state.drafts.iter().chain(&state.locks).for_each(|path| drop(fs::remove_file(path)));
+    state.folders.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
 // Keys of hash maps are random numbers of the system, which is all that is wanted here: other processes, and others in
@@ -102,35 +281,27 @@ fn random() -> u64 {
     RandomState::new().build_hasher().finish()
 }
 
-/// Whether a name is one of [`Draft`]'s, or of those of versions 0.1 (numbers with a dash).
-fn is_ours(name: &str) -> bool {
-    let Some(middle) = name.strip_prefix(START).and_then(|n| n.strip_suffix(END)) else { return false };
-    let number = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-    match middle.split_once('-') {
-        Some((process, count)) => number(process) && number(count),
-        None => middle.len() == 16 && middle.bytes().all(|b| b.is_ascii_hexdigit()),
-    }
+/// Whether nobody holds the lock of a run any more.
+#[derive(Debug)]
+pub(crate) enum Holder {
+    /// Its process is gone; the lock is ours now.
+    Gone(File),
+    Alive,
+    /// The lock is not there, or the disk has none.
+    Unknown,
 }
 
-fn sweep_once(folder: &Path) {
-    if SWEPT.lock().is_ok_and(|mut swept| swept.insert(folder.to_path_buf())) {
-        sweep(folder, SystemTime::now());
-    }
-}
-
-// Errors do not matter: somebody else may sweep at the same time.
-fn sweep(folder: &Path, now: SystemTime) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if !entry.file_name().to_str().is_some_and(is_ours) {
-            continue;
+impl Holder {
+    pub(crate) fn of(folder: &Path, run: &str) -> Self {
+        let path = folder.join(format!("{START}{run}{}", Role::Lock.extension()));
+        if !fs::symlink_metadata(&path).is_ok_and(|m| m.is_file()) {
+            return Self::Unknown;
         }
-        let stale = |m: &fs::Metadata| {
-            let age = m.modified().ok().and_then(|t| now.duration_since(t).ok());
-            m.is_file() && age.is_some_and(|age| age > STALE)
-        };
-        // Of the entry itself, not of what a link points to.
-        if entry.metadata().is_ok_and(|m| stale(&m)) {
-            let _ = fs::remove_file(entry.path());
+        let Ok(file) = File::options().read(true).write(true).open(&path) else { return Self::Unknown };
+        match file.try_lock() {
+            Ok(()) => Self::Gone(file),
+            Err(TryLockError::WouldBlock) => Self::Alive,
+            Err(TryLockError::Error(_)) => Self::Unknown,
         }
     }
 }
@@ -141,8 +312,15 @@ mod tests {
 
     #[test]
     fn only_names_of_drafts_are_ours() {
-        for name in [".burgeon-0123456789abcdef.part", ".burgeon-17-3.part"] {
-            assert!(is_ours(name), "{name}");
+        for (name, run, role) in [
+            (".burgeon-0123456789abcdef.part", "0123456789abcdef", Role::Part),
+            (".burgeon-0123456789abcdef-12.part", "0123456789abcdef", Role::Part),
+            (".burgeon-0123456789abcdef-3.set", "0123456789abcdef", Role::Set),
+            (".burgeon-0123456789abcdef-3.see", "0123456789abcdef", Role::See),
+            (".burgeon-0123456789abcdef.lock", "0123456789abcdef", Role::Lock),
+            (".burgeon-17-3.part", "17", Role::Part),
+        ] {
+            assert_eq!(Role::of(name), Some((run, role)), "{name}");
         }
         for name in [
             ".burgeon-.part",
@@ -150,8 +328,12 @@ mod tests {
             "burgeon-1-1.part",
             ".burgeon-1-1.partly",
             ".burgeon--.part",
+            ".burgeon-17-3.set",
+            ".burgeon-0123456789abcdef.set",
+            ".burgeon-0123456789abcdef-1.lock",
+            ".burgeon-0123456789abcdef-bee.part",
         ] {
-            assert!(!is_ours(name), "{name}");
+            assert_eq!(Role::of(name), None, "{name}");
         }
     }
 
@@ -159,20 +341,37 @@ mod tests {
     fn a_name_that_is_taken_is_left_alone() {
         let folder = std::env::temp_dir().join(format!("burgeon-draft-{:x}", random()));
         fs::create_dir(&folder).expect("a folder");
+        let lease = Lease::of(&folder).expect("a lock");
         let mut tries = std::cell::Cell::new(0);
         let taken = folder.join("taken");
         fs::write(&taken, "another's").expect("writes");
-        let made = Draft::fresh(&folder, |path| {
+        let made = Draft::fresh(&lease, |path| {
             tries.set(tries.get() + 1);
-            let path = if tries.get() < 4 { &taken } else { path };
-            File::options().write(true).create_new(true).open(path)
+            NewFile::create(if tries.get() < 4 { &taken } else { path })
         });
         drop(made.expect("the fourth name is free"));
         assert_eq!(*tries.get_mut(), 4);
-        let failed = Draft::fresh(&folder, |_| File::options().write(true).create_new(true).open(&taken));
+        let failed = Draft::fresh(&lease, |_| NewFile::create(&taken));
         assert_eq!(failed.err().map(|e| e.kind()), Some(io::ErrorKind::AlreadyExists));
         assert_eq!(fs::read_to_string(&taken).expect("still there"), "another's");
+        drop(lease);
         assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
         fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
+    fn a_lock_is_held_as_long_as_there_are_drafts() {
+        let folder = std::env::temp_dir().join(format!("burgeon-lease-{:x}", random()));
+        fs::create_dir(&folder).expect("a folder");
+        let (draft, _) = Draft::create(&folder).expect("a draft");
+        let (other, _) = Draft::create(&folder).expect("a draft");
+        let run = draft.lease().run.clone();
+        assert_eq!(run, other.lease().run);
+        drop(draft);
+        assert!(matches!(Holder::of(&folder, &run), Holder::Alive));
+        drop(other);
+        assert!(matches!(Holder::of(&folder, &run), Holder::Unknown));
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 0);
+        fs::remove_dir(&folder).expect("removed");
     }
 }

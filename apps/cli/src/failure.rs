@@ -4,6 +4,8 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::signals;
+
 /// One clear line for the user: what, where, what to do.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -71,10 +73,8 @@ impl Failure {
             }
             Self::Reported => ExitCode::from(2),
             Self::Cancelled => {
-                crate::say::error(
-                    "stopped; files that were written are whole, nothing half-written was left",
-                );
-                ExitCode::from(130)
+                signals::tell();
+                ExitCode::from(signals::STATUS)
             }
             Self::Bug(line) => {
                 crate::say::error(&format!("internal error, a bug in burgeon: {line}"));

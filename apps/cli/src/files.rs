@@ -18,6 +18,7 @@ use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 use crate::output::{self, Outputs};
+use crate::signals::Stoppable;
 
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,13 +108,13 @@ pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
             let line = "is asked for twice, but can be read only once; give one of the two as a file";
             return Err(Failure::at(path, line));
         }
-        return Ok(Box::new(BufReader::new(std::io::stdin())));
+        return Ok(Box::new(BufReader::new(Stoppable(std::io::stdin()))));
     }
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file in it"));
     }
     let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    Ok(Box::new(BufReader::new(file)))
+    Ok(Box::new(BufReader::new(Stoppable(file))))
 }
 
 /// A PLY whose header announces faces, or an OBJ with an `f` line.

@@ -1,7 +1,7 @@
-//! Threads, time, Ctrl-C and the progress line: what the core leaves to its shell.
+//! Threads, time and the progress line: what the core leaves to its shell.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Condvar, Mutex, OnceLock};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex};
 use std::time::{Duration, Instant};
 
 use burgeon::{Budget, CancelToken, Clock, Executor, Run};
@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::args::CommonArgs;
+use crate::signals;
 
 /// Independent jobs on a number of threads.
 #[derive(Debug)]
@@ -58,25 +59,6 @@ impl Clock for WallClock {
     }
 }
 
-/// A token that Ctrl-C and requests to end (SIGTERM, SIGHUP) cancel. A second one ends the program at once.
-pub(crate) fn cancel_on_ctrl_c() -> &'static CancelToken {
-    static TOKEN: OnceLock<CancelToken> = OnceLock::new();
-    TOKEN.get_or_init(|| {
-        let token = CancelToken::new();
-        let shared = token.clone();
-        let pressed = AtomicBool::new(false);
-        // Without a handler Ctrl-C still ends the program; outputs are complete or absent either way.
-        let _ = ctrlc::set_handler(move || {
-            if pressed.swap(true, Ordering::Relaxed) {
-                crate::output::remove_drafts();
-                std::process::exit(130);
-            }
-            shared.cancel();
-        });
-        token
-    })
-}
-
 /// Everything that a command computes with.
 #[derive(Debug)]
 pub(crate) struct Machine {
@@ -96,7 +78,7 @@ impl Machine {
         let budget = Budget { times: args.budget, raise: Some("--budget") };
         crate::memory::limit(&budget);
         let quiet = args.quiet || args.json;
-        Self { threads: Threads::new(args.threads), clock, cancel: cancel_on_ctrl_c(), budget, quiet }
+        Self { threads: Threads::new(args.threads), clock, cancel: signals::token(), budget, quiet }
     }
 
     /// A run on all threads.

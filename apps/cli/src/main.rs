@@ -6,6 +6,7 @@ mod classes;
 mod compare;
 mod convert;
 mod curve;
+mod disk;
 mod draft;
 mod edits;
 mod failure;
@@ -26,6 +27,7 @@ mod origin;
 mod output;
 mod petals;
 mod picture;
+mod placing;
 mod poses;
 mod presets;
 mod project;
@@ -35,18 +37,24 @@ mod say;
 mod scan;
 mod scene;
 mod shape;
+mod signals;
 mod sketch;
 mod stages;
 mod studio;
+mod sweep;
 
+use std::io::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser as _;
 use clap::error::{ContextValue, ErrorKind};
 
 use args::{Cli, Command};
+use failure::Failure;
 
 fn main() -> ExitCode {
+    signals::listen();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(e) => return usage(&e),
@@ -77,7 +85,14 @@ fn main() -> ExitCode {
         Command::Man(args) => manual::man(&args),
     });
     match outcome {
-        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Ok(())) => match say::lost() {
+            None => ExitCode::SUCCESS,
+            Some(e) => Failure::io(Path::new("standard output"), "written", &e).tell(),
+        },
+        // Work that is stopped in the middle may give other reasons.
+        Ok(Err(Failure::Bad(_) | Failure::Reported)) if signals::token().check().is_err() => {
+            Failure::Cancelled.tell()
+        }
         Ok(Err(failure)) => failure.tell(),
         Err(_) => ExitCode::from(1),
     }
@@ -91,8 +106,13 @@ fn usage(e: &clap::Error) -> ExitCode {
             | ErrorKind::DisplayVersion
             | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     ) {
-        let _ = e.print();
-        return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
+        let printed = e.print().and_then(|()| std::io::stdout().flush());
+        return match printed {
+            Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+                Failure::io(Path::new("standard output"), "written", &e).tell()
+            }
+            _ => ExitCode::from(if e.use_stderr() { 2 } else { 0 }),
+        };
     }
     let mut text = e.to_string();
     for (_, value) in e.context() {

@@ -127,7 +127,7 @@ fn end(by_budget: bool) {
              programs"
         )
     };
-    crate::output::abandon_drafts();
+    crate::placing::abandon();
     std::process::exit(2);
 }
 

@@ -6,20 +6,13 @@ use std::path::{Path, PathBuf};
 
 use burgeon::formats::WriteError;
 
+use crate::disk;
 use crate::draft::{self, Draft};
 use crate::failure::{Failure, Outcome};
 use crate::inputs::{self, FileId};
 use crate::names::folded;
-
-/// Removes what is half-written; for the end of the program.
-pub(crate) fn remove_drafts() {
-    draft::remove_all();
-}
-
-/// [`remove_drafts`] where nothing may be waited for: the caller may hold what it takes.
-pub(crate) fn abandon_drafts() {
-    draft::abandon_all();
-}
+use crate::placing::{Move, Refused, put_all};
+use crate::signals::Stoppable;
 
 /// The outputs of a command, or of one drawing of many.
 ///
@@ -105,14 +98,6 @@ enum Written {
     Bytes(Vec<u8>),
 }
 
-/// What stood in the place of a file that was renamed into it.
-enum Before {
-    Nothing,
-    Kept(Draft),
-    /// On a disk without hard links, or another's.
-    Lost,
-}
-
 impl Outputs {
     /// Outputs by the option that names each, before anything is computed. `inputs` are those that options name; what
     /// these name in turn is known when it is read.
@@ -160,6 +145,7 @@ impl Outputs {
         }
         let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
         let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
+        missing.iter().rev().for_each(|folder| draft::is_made(folder));
         self.made.extend(missing.into_iter().rev());
         fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "created", &e))?;
         Draft::create(folder).map(drop).map_err(|e| Failure::io(folder, "written", &e))
@@ -210,20 +196,17 @@ impl Outputs {
             let write = || File::options().write(true).open(target)?.write_all(bytes);
             write().map_err(|e| Failure::io(target, "written", &e))?;
         }
-        let several = files.len() > 1;
-        let mut done: Vec<(PathBuf, Before)> = Vec::with_capacity(files.len());
+        let (mut moves, mut targets) = (Vec::with_capacity(files.len()), Vec::with_capacity(files.len()));
         for Ready { target, place, what } in files {
-            let Written::File(mut draft) = what else { continue };
-            let before = match several && fs::symlink_metadata(&place).is_ok() {
-                true => draft.keeping(&place).map_or(Before::Lost, Before::Kept),
-                false => Before::Nothing,
-            };
-            if let Err(e) = draft.put(&place) {
-                done.into_iter().rev().for_each(|(place, before)| before.restore(&place));
-                return Err(Failure::io(&target, "written", &e));
-            }
-            done.push((place, before));
+            let Written::File(draft) = what else { continue };
+            moves.push(Move { draft, place });
+            targets.push(target);
         }
+        let refused = |Refused { file, error }| Failure::io(&targets[file], "written", &error);
+        put_all(&moves).map_err(refused)?;
+        // The folders themselves must last as what lies in them.
+        let outside = self.made.iter().map(|folder| folder_of(folder));
+        outside.for_each(|folder| drop(disk::sync_folder(folder)));
         Ok(())
     }
 }
@@ -233,17 +216,6 @@ impl Drop for Outputs {
         // Only those that are empty go.
         self.ready.clear();
         self.made.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
-    }
-}
-
-impl Before {
-    fn restore(self, place: &Path) {
-        // Nobody is left to be told of an error but the one that led here.
-        let _ = match self {
-            Self::Nothing => fs::remove_file(place),
-            Self::Kept(mut draft) => draft.put(place),
-            Self::Lost => Ok(()),
-        };
     }
 }
 
@@ -279,16 +251,16 @@ fn draft_of(
 ) -> Outcome<Draft> {
     let failed = |e: &io::Error| Failure::io(target, "written", e);
     let (draft, file) = Draft::create(folder_of(place)).map_err(|e| failed(&e))?;
-    if let (Ok(old), Ok(new)) = (fs::metadata(place), file.metadata())
+    if let (Ok(old), Ok(new)) = (fs::metadata(place), file.file().metadata())
         && old.permissions() != new.permissions()
     {
-        file.set_permissions(old.permissions()).map_err(|e| failed(&e))?;
+        file.file().set_permissions(old.permissions()).map_err(|e| failed(&e))?;
     }
-    let mut out = BufWriter::new(file);
+    let mut out = BufWriter::new(Stoppable(file));
     write(&mut out).map_err(|e| write_failed(target, e))?;
-    let file = out.into_inner().map_err(|e| failed(e.error()))?;
+    let Stoppable(file) = out.into_inner().map_err(|e| failed(e.error()))?;
     // So that a crash of the machine does not leave an empty file under the target's name.
-    file.sync_data().map_err(|e| failed(&e))?;
+    file.sync().map_err(|e| failed(&e))?;
     Ok(draft)
 }
 
@@ -347,7 +319,10 @@ mod tests {
                 outputs.write("-o", path, |out| Ok(out.write_all(b"new")?)).expect("a draft");
             }
             // Somebody takes the second draft away.
-            let draft = fs::read_dir(&folder).expect("a folder").flatten().find(|e| e.path().is_file());
+            let draft = fs::read_dir(&folder)
+                .expect("a folder")
+                .flatten()
+                .find(|e| e.path().extension() == Some("part".as_ref()));
             fs::remove_file(draft.expect("the draft").path()).expect("removed");
             let failure = outputs.place().expect_err("one is missing");
             assert!(matches!(failure, Failure::Bad(line) if line.contains("cannot be written")));

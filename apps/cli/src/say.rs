@@ -2,13 +2,28 @@
 
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write, stderr, stdout};
+use std::sync::{Mutex, PoisonError};
 
 pub(crate) use burgeon::grouped;
 
 /// A line on stdout for people; what stands in names of files and drawings cannot steer the terminal.
 pub(crate) fn line(text: &str) {
-    let _ = writeln!(stdout(), "{}", printable(text));
+    let mut out = stdout().lock();
+    match writeln!(out, "{}", printable(text)).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+            LOST.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(e);
+        }
+        _ => {}
+    }
 }
+
+/// Why a [`line`] did not arrive, if one did not, but for a reader that went away.
+pub(crate) fn lost() -> Option<io::Error> {
+    LOST.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// The first error of [`line`].
+static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
 /// Text for other programs on stdout: that it did not arrive is an error, but for a reader that went away.
 pub(crate) fn data(text: &str) -> io::Result<()> {

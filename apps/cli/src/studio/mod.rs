@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 use crate::args::StudioArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
-use crate::say;
+use crate::{say, signals};
 use gate::Gate;
 use site::{Files, Network, Page, Site};
 
@@ -27,6 +27,7 @@ const PORT: u16 = 7734;
 const NEXT: u16 = 8;
 
 pub(crate) fn studio(args: &StudioArgs) -> Outcome {
+    signals::end_at_once();
     let page = page(args.folder.as_deref(), PAGE)?;
     let opened = args.file.as_deref().map(checked).transpose()?;
     let address = args.lan.as_deref().map(lan::address).transpose()?;

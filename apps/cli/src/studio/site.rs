@@ -18,6 +18,7 @@ use super::gate::{Entry, Gate, Invitation, Pace, Peers};
 use super::request::{Addresses, Asked, COOKIE, Method, NO_FILE, Target, asked};
 use crate::draft::Draft;
 use crate::failure::{Failure, Outcome};
+use crate::placing::{Move, put_all};
 
 /// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
 pub(crate) const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; \
@@ -240,11 +241,11 @@ impl Site {
             return answer;
         }
         let folder = path.parent().unwrap_or(Path::new("."));
-        let written = Draft::create(folder).and_then(|(mut draft, mut file)| {
+        let written = Draft::create(folder).and_then(|(draft, mut file)| {
             file.write_all(body)?;
-            file.sync_all()?;
+            file.sync()?;
             drop(file);
-            draft.put(path)
+            put_all(&[Move { draft, place: path.to_path_buf() }]).map_err(|refused| refused.error)
         });
         match written {
             Ok(()) => {

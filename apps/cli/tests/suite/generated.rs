@@ -545,8 +545,8 @@ fn run(dir: &Path, args: &[OsString], input: Option<&[u8]>) -> Ran {
 /// What is wrong with a run, if anything.
 fn judge(dir: &Path, before: &BTreeMap<PathBuf, Option<Vec<u8>>>, ran: &Ran) -> Result<(), String> {
     let after = tree(dir);
-    if after.keys().any(|p| p.extension().is_some_and(|e| e == "part")) {
-        return Err(format!("left a .part: {:?}", after.keys()));
+    if after.keys().any(|p| p.to_string_lossy().contains(".burgeon-")) {
+        return Err(format!("left a draft: {:?}", after.keys()));
     }
     if before.iter().any(|(path, bytes)| after.get(path) != Some(bytes)) {
         return Err("changed a file that was there".into());

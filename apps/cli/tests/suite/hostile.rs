@@ -292,7 +292,7 @@ fn odd_names_of_files_are_no_trouble() {
         assert!(materials.iter().any(|m| m["texture"].is_array()), "{name}: textures are found: {info:#}");
         assert_eq!(info["model"]["warnings"], serde_json::json!([]), "{name}");
     }
-    assert!(names(&dir).iter().all(|n| !n.ends_with(".part")), "{:?}", names(&dir));
+    assert!(names(&dir).iter().all(|n| !n.starts_with(".burgeon-")), "{:?}", names(&dir));
     let esc = r#"{"word":"a\u001b[2Jb","key_id":"1","drawing":[[[0],[0]]]}"#;
     fs::write(dir.join("esc.ndjson"), esc).unwrap();
     let out = burgeon(&dir, &["sketch", "esc.ndjson", "-o", "esc/"]);

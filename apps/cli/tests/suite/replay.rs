@@ -8,7 +8,7 @@ use std::fs;
 use tools::{bad, folder, good, json};
 
 /// A project and a hand that moves before its plant for so many steps, a fifth of a second apart.
-fn record(steps: u32) -> String {
+pub(crate) fn record(steps: u32) -> String {
     let project = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-6.burgeon");
     let mut text = format!(
         r#"{{"schema":"burgeon.gestures/1","project":"{}","steps":[{{"did":"seen"}}"#,
