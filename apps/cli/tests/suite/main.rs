@@ -18,3 +18,4 @@ mod shape;
 mod times;
 mod tools;
 mod truth;
+mod words;
