@@ -193,6 +193,7 @@ fn found_kind(found: &str) -> (&'static str, &str) {
 fn wanted_kind(wanted: &str) -> &'static str {
     match wanted {
         "a boolean" => "true or false",
+        "enum" => "a word",
         "f32" | "f64" => "a number",
         "a string" | "string" | "a character" => "a text",
         _ if wanted.starts_with(['i', 'u']) && wanted[1..].parse::<u8>().is_ok() => "a whole number",
@@ -318,6 +319,11 @@ mod tests {
                 "spec-missing",
                 vec![("name", "degrees"), ("path", "edits[2].turn")],
             ),
+            (
+                "invalid type: map, expected enum",
+                "spec-kind",
+                vec![("found", "a table"), ("path", ""), ("value", ""), ("wanted", "a word")],
+            ),
             ("expected value", "not-json", vec![]),
             ("EOF while parsing an object", "json-ends", vec![]),
             ("a law needs a day", "slip", vec![("why", "a law needs a day")]),
@@ -329,7 +335,9 @@ mod tests {
             let why = placed.to_string();
             assert_eq!(why, plainly(message).trim_start_matches("edits[2].turn: "));
             assert!(
-                !["u32", "u8", "f64", "struct", "string", "integer", "array"].iter().any(|t| why.contains(t))
+                !["u32", "u8", "f64", "struct", "enum", "string", "integer", "array"]
+                    .iter()
+                    .any(|t| why.contains(t))
             );
             let at = [("column", "5"), ("line", "12"), ("what", why.as_str())];
             assert_eq!((told.code, fields(&told)), ("slip-at", at.to_vec()));
