@@ -57,6 +57,8 @@ def test_every_field_of_a_maker_has_a_row(maker):
     for row in fields.rows(maker):
         assert row.name in group.bl_rna.properties, row.name
         assert not row.switched or row.switch in group.bl_rna.properties
+        tooltip = group.bl_rna.properties[row.name].description
+        assert not any(mark in tooltip for mark in ("::", "](", "[`", "```")), tooltip
 
 
 def plants_group(maker):

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use burgeon::ItemReport;
 use burgeon::document::PlantEdit;
 use burgeon::shape::{Destination, EDITS_SCHEMA, EditsFile, HandEdit};
+use burgeon::{ItemReport, plainly};
 
 use crate::failure::{Failure, Outcome};
 use crate::files;
@@ -13,7 +13,13 @@ use crate::files;
 pub(crate) fn read(path: &Path) -> Outcome<Vec<PlantEdit>> {
     let text = files::read_text(path)?;
     let file: EditsFile = serde_json::from_str(&text).map_err(|e| {
-        Failure::at(path, format_args!("is not an edits file: {e}; `burgeon shape --template` prints one"))
+        Failure::at(
+            path,
+            format_args!(
+                "is not an edits file: {}; `burgeon shape --template` prints one",
+                plainly(&e.to_string())
+            ),
+        )
     })?;
     if file.schema != EDITS_SCHEMA {
         let what = format_args!("is of schema \"{}\"; this version reads \"{EDITS_SCHEMA}\"", file.schema);

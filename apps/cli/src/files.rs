@@ -6,12 +6,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, Packing, PngCache,
-    ReadDrawing, StructureFormat, obj_files, usd_files, warn_of_wind, write_glb_packed, write_glb_with,
+    CloudFormat, DrawingFormat, ExportSpec, FileStems, Foreign, MAX_MODEL_BYTES, ModelFormat, Packing,
+    PngCache, ReadDrawing, StructureFormat, obj_files, usd_files, warn_of_wind, write_glb_packed,
+    write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{DrawnLine, Report, Spec, Warning};
+use burgeon::{DrawnLine, Report, Spec, Warning, plainly};
 use serde::Deserialize;
 
 use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
@@ -62,6 +63,9 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
 /// What a file is whose name does not say it, or what it may be instead.
 pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
     sniff(start).ok_or_else(|| {
+        if let Some(foreign) = Foreign::sniff(start) {
+            return Failure::at(path, foreign);
+        }
         Failure::at(
             path,
             "is neither a drawing (.svg, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
@@ -73,7 +77,9 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
 /// What the first bytes say, if anything.
 pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
     let drawing = DrawingFormat::sniff(start).map(Kind::Drawing);
-    let project = document::is_project(start).then_some(Kind::Project);
+    // Other programs keep archives, too.
+    let other = Foreign::sniff(start).is_some_and(|f| !matches!(f, Foreign::Project | Foreign::Zip));
+    let project = (document::is_project(start) && !other).then_some(Kind::Project);
     drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or(project)
 }
 
@@ -145,6 +151,9 @@ pub(crate) fn open_cloud(path: &Path) -> Outcome<(Input, CloudFormat)> {
         return Ok((open_bytes(path)?, format));
     }
     let (input, start) = peek(path)?;
+    if let Some(foreign) = Foreign::sniff_no_drawing(&start) {
+        return Err(Failure::at(path, foreign));
+    }
     let format = CloudFormat::sniff(&start).ok_or_else(|| {
         let line = "is no scan that is read; end the name with .ply, .xyz, .txt, .pcd, .las or .obj";
         Failure::at(path, line)
@@ -179,6 +188,9 @@ pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
             "is larger than 16 MiB, too large for such a file; is it the right one?",
         ));
     }
+    if let Some(foreign) = Foreign::sniff_no_drawing(&bytes) {
+        return Err(Failure::at(path, foreign));
+    }
     String::from_utf8(bytes).map_err(|e| {
         let after = e.utf8_error().valid_up_to();
         Failure::at(path, format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"))
@@ -192,8 +204,8 @@ pub(crate) fn read_spec<T: Spec>(path: &Path) -> Outcome<T> {
     if !json {
         return burgeon::spec::from_toml(&text).map_err(|e| Failure::at(path, e));
     }
-    let value =
-        serde_json::from_str(&text).map_err(|e| Failure::at(path, format_args!("is not JSON: {e}")))?;
+    let value = serde_json::from_str(&text)
+        .map_err(|e| Failure::at(path, format_args!("is not JSON: {}", plainly(&e.to_string()))))?;
     let spec = burgeon::spec::from_json(&value).map_err(|e| Failure::at(path, e))?;
     burgeon::spec::check(&spec).map_err(|fault| Failure::at(path, fault))?;
     Ok(spec)
@@ -204,6 +216,11 @@ pub(crate) fn read_project(path: &Path, input: Input) -> Outcome<Document> {
     let mut bytes = Vec::new();
     let bounded = input.take(MAX_PROJECT_BYTES as u64 + 1).read_to_end(&mut bytes);
     bounded.map_err(|e| Failure::io(path, "read", &e))?;
+    // A project is an archive; others may be named so.
+    let foreign = Foreign::sniff(&bytes).filter(|f| !matches!(f, Foreign::Project | Foreign::Zip));
+    if let Some(foreign) = foreign {
+        return Err(Failure::at(path, foreign));
+    }
     document::read_project(&bytes).map_err(|e| Failure::at(path, e))
 }
 
@@ -254,9 +271,14 @@ pub(crate) fn read_opened_model(
     kind: Kind,
     axes: &ExportSpec,
 ) -> Outcome<(Model, ModelFormat, Vec<Warning>)> {
+    let mut input = input;
     let format = match kind {
         Kind::Model(format) => format,
         Kind::Drawing(format) => {
+            let start = input.fill_buf().map_err(|e| Failure::io(path, "read", &e))?;
+            if let Some(foreign) = Foreign::sniff(start) {
+                return Err(Failure::at(path, foreign));
+            }
             return Err(Failure::at(
                 path,
                 format_args!(

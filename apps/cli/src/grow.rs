@@ -183,6 +183,9 @@ fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {
             let name = path.display().to_string();
             at(&GrowthError::Obstacle { obstacle, name, fault })
         }
+        TreeError::Growth(e @ GrowthError::Nothing { .. }) if args.points.attractors.is_some() => {
+            at(&e.to_string().replace("(kill_m)", "(--kill)").replace("(attraction_m)", "(--influence)"))
+        }
         other => match args.what.as_deref().filter(|what| what.is_file()).map(files::read_text) {
             Some(Ok(text)) => at(&other.in_text(&text)),
             _ => at(&other),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use burgeon::formats::{ExportSpec, ModelFormat, StructureFormat};
 use burgeon::glam::DVec3;
-use burgeon::scan::{FoundTree, TreeScanSpec};
+use burgeon::scan::{FoundTree, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
 use serde::Serialize;
@@ -102,12 +102,13 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
     let made = machine
         .with_progress("scan", |_| make_tree_from_scan(&name, &points, &options, seed, &machine.run()));
-    let (mut made, found) = made.map_err(|e| failure(&args.input, e))?;
+    let offset = origin.offset_m.unwrap_or_default();
+    let (mut made, found) = made.map_err(|e| failure(&args.input, e.in_scan(&axes, offset)))?;
     drop(points);
     let lods = if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 };
     let lods = (1..=lods).map(|level| made.at_level(level, &machine.run()));
     let lods: Vec<_> = lods.collect::<Result<_, _>>().map_err(|e| failure(&args.input, e.into()))?;
-    let stood = origin.offset_m.unwrap_or_default() + found.foot;
+    let stood = offset + found.foot;
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
@@ -190,6 +191,13 @@ fn summary(whole: &ScanRun, png: Option<&Path>) -> String {
 fn failure(path: &Path, error: ScannedTreeError) -> Failure {
     match error {
         ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
+        ScannedTreeError::Scan(e @ ScanTreeError::TooLarge(_)) => {
+            Failure::at(path, format_args!("{e}; --unit mm or --unit cm says the unit"))
+        }
+        ScannedTreeError::Scan(e @ ScanTreeError::NoStem) => Failure::at(
+            path,
+            format_args!("{e}; --up says which axis points up, --unit the unit, --at where the stem stands"),
+        ),
         other => Failure::at(path, other),
     }
 }

@@ -105,6 +105,8 @@ function common(options: Common & SkinFields & { readonly fields?: object }, mor
   const all = [...COMMON, ...more];
   const strange = Object.keys(options).find((name) => !all.includes(name));
   if (strange !== undefined) throw unknown(strange, all);
+  if (options.textures === false && options.texture_size !== undefined)
+    throw wrong('texture_size', options.texture_size, 'left out where textures are');
   const skin: Record<string, Json> = {};
   for (const name of SKIN) if (options[name] !== undefined) skin[name] = options[name] as Json;
   return {
@@ -189,6 +191,8 @@ export function makers(engine: Engine): Makers {
             : drawing instanceof Uint8Array
               ? drawing
               : undefined;
+      if (bytes && options.yUp !== undefined)
+        throw wrong('yUp', options.yUp, 'left out: a file says itself where up is');
       if (bytes && bytes.length === 0) throw wrong('drawing', '0 bytes', 'a file, or strokes');
       const asked: SketchAsked = {
         common: common(options, [...SKIN, 'texture_size', 'name', 'yUp', 'classes', 'day']),

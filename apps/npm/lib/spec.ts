@@ -432,7 +432,7 @@ export type Envelope =
     flat?: number;
     /** Share of the crown's height in which the trunk is still one, 0 to 1, default 1: a spruce has 1, an oak a half. */
     leader?: number;
-    /** Limbs of a tree, 1 to 400; [`variation.limbs`](crate::VariationSpec::limbs) says how far trees differ. */
+    /** Limbs of a tree, 1 to 400; `variation.limbs` says how far trees differ. */
     limbs: number;
     /** Radius of a mass of foliage, above 0. */
     mass_m: number;
@@ -580,7 +580,7 @@ export type FoliageSpec = {
   arrangement?: Arrangement;
   /** How far blades hang, -1 to 1 (all down), default 0.15. */
   droop?: number;
-  /** How far leaves are gathered towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip are `1 - gather` times as far from each other as [`spacing_m`](Self::spacing_m), those at its foot `1 + gather` times. */
+  /** How far leaves are gathered towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip are `1 - gather` times as far from each other as `spacing_m`, those at its foot `1 + gather` times. */
   gather?: number;
   /** Share of the leaves kept, the best lit ones, 0 to 1; default 1. */
   leaf_keep?: number;
@@ -606,7 +606,7 @@ export type FoliageSpec = {
   spacing_m?: number;
   /** Side of a voxel, metres; default two blade lengths. */
   voxel_m?: number | null;
-  /** Width over length of the blade that [`blade`](Self::blade) makes, 0.01 to 3, default 0.5. */
+  /** Width over length of the blade that `blade` makes, 0.01 to 3, default 0.5. */
   width?: number;
 };
 
@@ -646,7 +646,7 @@ export type Guide = {
   width?: number;
 };
 
-/** Numbers of [`GuidedSpec`] that change while a tree grows; what is left out stays as it was. */
+/** Numbers of `GuidedSpec` that change while a tree grows; what is left out stays as it was. */
 export type GuidedChange = {
   /** Vigour per unit of free space, above 0 and at most 100. */
   alpha?: number | null;
@@ -1284,7 +1284,7 @@ export type ThicknessRule =
 export type TreeSpec = {
   /** One line about it. */
   about?: string;
-  /** The trees as they were at this age, in years of [`years`](Self::years); where that is not given, after so many rounds, years (self-organising) or rewriting steps (L-systems). */
+  /** The trees as they were at this age, in years of `years`; where that is not given, after so many rounds, years (self-organising) or rewriting steps (L-systems). */
   age?: number | null;
   /** No leaves at all: a dead or winter tree. */
   bare?: boolean;
@@ -1451,6 +1451,6 @@ export type WoodSpec = {
   thin_out?: number;
   /** Radius of a tip, metres, above 0, default 0.004. */
   tip_radius_m?: number;
-  /** Radius at the foot of the thickest trunk when the tree is whole, metres: all radii, those of the tips and [`FoliageSpec::max_radius_m`](crate::FoliageSpec::max_radius_m) too, are scaled to it, so that the pipe model holds. */
+  /** Radius at the foot of the thickest trunk when the tree is whole, metres: all radii, those of the tips and `max_radius_m` too, are scaled to it, so that the pipe model holds. */
   trunk_radius_m?: number | null;
 };

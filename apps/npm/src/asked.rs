@@ -49,7 +49,8 @@ pub(crate) fn refused(error: &(impl Coded + Display)) -> Refused {
 pub(crate) fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
     burgeon::spec::through_json::from_text(text).map_err(|e| {
         let message = e.to_string();
-        Refused(Refusal { message: message.clone(), ..Refusal::of(&Slip::of(&message)) }.into_json())
+        let refusal = Refusal { message: burgeon::plainly(&message), ..Refusal::of(&Slip::of(&message)) };
+        Refused(refusal.into_json())
     })
 }
 

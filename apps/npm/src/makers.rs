@@ -7,7 +7,7 @@ use burgeon::document::{
     CommandError, Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, NewPlant,
     PlantCommand, PlantId, SceneCommand, Settings, SketchCommand,
 };
-use burgeon::formats::DrawingFormat;
+use burgeon::formats::{DrawingFormat, Foreign};
 use burgeon::glam::DVec2;
 use burgeon::ink::{Drawing, StrokeClass};
 use burgeon::leaf::LeafSpec;
@@ -76,7 +76,10 @@ pub fn sketch(asked: &str, file: &[u8], points: &[f64], counts: &[u32], seed: u6
         let (stem, extension) = asked.name.rsplit_once('.').unwrap_or((&asked.name, ""));
         let format = DrawingFormat::from_extension(extension).or_else(|| DrawingFormat::sniff(file));
         let unread = |why: String| Refused::plain("drawing", format!("{}: {why}", asked.name));
-        let format = format.ok_or_else(|| unread("is no drawing (.svg, .inkml, .ndjson, .json)".into()))?;
+        let format = format.ok_or_else(|| match Foreign::sniff(file) {
+            Some(foreign) => refused(&foreign),
+            None => unread("is no drawing (.svg, .inkml, .ndjson, .json)".into()),
+        })?;
         let mut read = burgeon::formats::read_drawings(file, format, stem);
         let first = read.next().ok_or_else(|| unread("holds no drawing".into()))?;
         let drawing = first.map_err(|e| refused(&e))?.drawing;

@@ -408,6 +408,44 @@ test('in this thread it makes the same plants', async () => {
   }
 });
 
+test('no option is ignored: it changes what comes out, or is refused by its name', async () => {
+  const stem = Array.from({ length: 40 }, (_, i) => [0.2 * Math.sin(i / 9), i]);
+  const file = new TextEncoder().encode(
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 40"><path d="M4 39C5 20 3 12 4 1" stroke="#000"/></svg>',
+  );
+  const common = { wind: false, lods: 1, files: ['glb'], measures: true };
+  const skin = { detail: 0.3, sides: 5, textures: false, texture_size: 64 };
+  const uses = [
+    [(o) => grow('hazel', { fields: { age: 3 }, ...o }), { ...common, ...skin, height_m: 1 }],
+    [(o) => grow('hazel', { fields: { age: 3 }, textures: false, ...o }), { texture_size: 64 }],
+    [(o) => sketch([stem], o), { ...common, detail: 0.3, name: 'mine', yUp: false }],
+    [(o) => sketch(file, o), { ...common, detail: 0.3, name: 'mine', yUp: true, classes: { 0: 'blade' } }],
+    [(o) => leaf('', o), { ...common, name: 'mine' }],
+    [(o) => bloom('lily', o), { ...common, day: 1 }],
+  ];
+  const look = (plant) =>
+    JSON.stringify([
+      plant.name,
+      plant.digest,
+      { ...plant.report, timings_ms: 0 },
+      plant.levels,
+      plant.textures.map((t) => [t.width, t.height]),
+      Object.keys(plant.files),
+      plant.measures,
+      plant.meshes().map((m) => [m.name, m.wind.length, m.positions.length, m.material.texture]),
+    ]);
+  for (const [make, options] of uses) {
+    const usual = look(await make({}));
+    for (const [name, value] of Object.entries(options))
+      await make({ [name]: value }).then(
+        (plant) => assert.notEqual(look(plant), usual, name),
+        (e) => assert.match(e.message, new RegExp(`\\b${name}\\b`)),
+      );
+  }
+  await assert.rejects(grow('oak', { fields: { age: 5000 } }), /age must be 1 to 40, not 5000/);
+  await assert.rejects(sketch(Uint8Array.of(0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a)), /a picture \(PNG\)/);
+});
+
 test('schemas say what there is', async () => {
   const tree = await schema('tree');
   assert.equal(tree.properties.age.description.length > 5, true);

@@ -4,6 +4,7 @@ from typing import Any, Dict, List, Optional, Tuple
 VERSION: str
 PARTS: List[str]
 
+def foreign(start: bytes) -> Optional[str]: ...
 def meant(word: str, known: List[str]) -> str: ...
 
 class Column:

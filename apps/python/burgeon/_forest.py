@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 
 from . import _burgeon
 from ._files import write_whole
+from ._given import axes as check_axes
 from ._given import beyond, keys, number, table, whole, wrong
 from .makers import SpecText, grow
 from .model import Model, cloud_bytes, look, save_cloud, seen, shown
@@ -195,6 +196,7 @@ class Forest:
     def to_bytes(self, extension: str, unit: str = "m", up: "str | None" = None) -> bytes:
         """The file of a format of models; in ``glb`` copies share their meshes."""
         extension = extension.lower().lstrip(".")
+        check_axes(extension, unit, up)
         if extension == "glb":
             return bytes(self._raw.glb(self.name))
         return self.model.to_bytes(extension, unit, up or "y")
@@ -203,7 +205,7 @@ class Forest:
         """Writes a model, whole or not at all; in ``.glb`` copies share their meshes."""
         folder, name = os.path.split(os.fspath(path))
         if name.lower().endswith(".glb"):
-            write_whole(folder, [(name, self.to_bytes("glb"))])
+            write_whole(folder, [(name, self.to_bytes("glb", unit, up))])
         else:
             self.model.save(path, unit, up or "y")
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
 
 ENDLESS = float("inf")
+FIXED = ("glb", "burgeon")
+"""Formats that have a unit and axes of their own."""
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:
@@ -108,6 +110,19 @@ def coloured(scan: Any, name: str = "scan") -> "Tuple[np.ndarray, bytes]":
         row = int(np.argmin(((colors >= 0) & (colors <= 255)).all(axis=1)))
         raise wrong(f"{name}[{row}]: a colour is red, green and blue", f"{name}[{row}]", colors[row].tolist(), "each 0 to 255")
     return points(array[:, :3], name), np.ascontiguousarray(np.rint(colors), np.uint8).tobytes()
+
+
+def unused(name: str, value: Any, needs: str) -> SpecError:
+    """An argument that would change nothing; `needs` says of what it is."""
+    return wrong(f"{name} {needs}", name, value, "left out")
+
+
+def axes(extension: str, unit: str, up: "str | None") -> None:
+    """Fails on a unit or an axis where the format has its own."""
+    if extension in FIXED:
+        for name, value, own in (("unit", unit, "m"), ("up", up or "y", "y")):
+            if word(name, value) != own:
+                raise unused(name, value, f"is of files that do not fix it: .{extension} is in metres, +Y up")
 
 
 def path(name: str, value: Any) -> str:

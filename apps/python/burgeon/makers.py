@@ -7,10 +7,11 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union, cast
 
 from . import _burgeon
-from ._given import beyond, number, whole, word, wrong
+from ._given import beyond, number, unused, whole, word, wrong
 from ._given import coloured as _coloured
 from ._given import path as path_of
 from ._given import points as _points
+from .errors import SpecError
 from .law import Law, scans_of
 from .plant import Plant
 
@@ -49,8 +50,12 @@ def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
 def _text(path: str) -> str:
     import builtins
 
-    with builtins.open(path, encoding="utf-8") as file:
-        return file.read()
+    with builtins.open(path, "rb") as file:
+        data = file.read()
+    foreign = _burgeon.foreign(data[:4096])
+    if foreign is not None:
+        raise SpecError(f"{path}: {foreign}")
+    return data.decode("utf-8").replace("\r\n", "\n")
 
 
 def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
@@ -93,9 +98,19 @@ def grow(
     base, own = _base(spec)
     skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
     asked = _asked(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
+    if textures is False and texture_size is not None:
+        raise unused("texture_size", texture_size, "is of textures, which textures=False leaves out")
+    if textures is False and foliage not in (None, "outlines"):
+        raise unused("foliage", foliage, "is cut out of pictures of leaves, which textures=False leaves out")
     if not isinstance(leaf, (Plant, type(None))):
         raise TypeError(f"leaf must be a plant of leaf(), not {leaf!r}")
-    return Plant(_burgeon.grow(base, asked, None if leaf is None else leaf._raw))
+    plant = Plant(_burgeon.grow(base, asked, None if leaf is None else leaf._raw))
+    for name, value in (("leaf", leaf), ("foliage", foliage)):
+        if value is not None and plant.spec.get("bare"):
+            raise unused(name, value, "is of trees with leaves, and this one is bare")
+    if leaf is not None and foliage is not None:
+        raise unused("foliage", foliage, "is of leaves of the species: `leaf` gives another")
+    return plant
 
 
 def bloom(
@@ -124,6 +139,8 @@ def bloom(
     if not isinstance(law, (Law, type(None))):
         raise TypeError(f"law must be a Law, not {law!r}")
     if isinstance(spec, Mapping) and spec and not any(isinstance(key, str) for key in spec):
+        if wind is not None:
+            raise unused("wind", wind, "is of flowers: a plant of scans has no columns for wind")
         texture = _scan_texture(fields, "flowers; a plant of scans has no fields but texture")
         days = scans_of("scan", cast("Mapping[float, Any]", spec), unit, up, single, seed, budget, texture)
         when = max(map(float, spec)) if day is None else number("day", day, -1e4, 1e4, "d")
@@ -165,7 +182,10 @@ def leaf(
     ``fields``: ``schema("leaf")``, docs/leaves.md; of a leaf of numbers ``form={"length_m": 0.08, "lobes": 0.4}``.
     """
     file, toml, own = None, None, {}
+    others = {"venation": venation, "veins": veins, "length": length, "depth": depth, "side_veins": side_veins, "wind": wind}
     if hasattr(spec, "ndim") or isinstance(spec, list):
+        _only_of_files(unit, "an array is in metres")
+        _not_of_scans(others)
         return _scanned("scan", None, spec, budget, fields)
     numbers = {
         "veins": None if veins is None else whole("veins", veins, 3, 31),
@@ -173,9 +193,14 @@ def leaf(
         "depth": None if depth is None else number("depth", depth, 0, 0.9),
         "side_veins": None if side_veins is None else whole("side_veins", side_veins, 0, 12),
     }
+    is_cloud = isinstance(spec, (str, os.PathLike)) and os.path.splitext(os.fspath(spec))[1].lower() in CLOUDS
+    if not is_cloud:
+        _only_of_files(unit, "none is given")
     if venation is not None:
         if spec is not None and not isinstance(spec, Mapping):
             raise wrong("venation makes a leaf of numbers: leave the file out", "spec", spec, "left out, or a dict")
+        if venation == "parallel" and side_veins is not None:
+            raise unused("side_veins", side_veins, "is of palmate leaves: parallel veins have none between them")
         asked = _asked(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
         return Plant(_burgeon.leaf_of_veins({"venation": word("venation", venation), "file": None, **numbers}, asked))
     given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
@@ -183,6 +208,8 @@ def leaf(
         option = given[0].replace("_m", "")
         line = f"{option} is of leaves with venation='palmate' or 'parallel'"
         raise wrong(line, option, numbers[given[0]], "left out")
+    if is_cloud:
+        _not_of_scans(others)
     if isinstance(spec, Mapping):
         own = dict(spec)
     elif isinstance(spec, SpecText):
@@ -191,7 +218,7 @@ def leaf(
         path = path_of("spec", spec)
         if path.endswith(".toml"):
             toml = _text(path)
-        elif os.path.splitext(path)[1].lower() in CLOUDS:
+        elif is_cloud:
             import builtins
 
             name, extension = os.path.splitext(os.path.basename(path))
@@ -202,7 +229,22 @@ def leaf(
             if side_veins is not None and _burgeon.is_rays(file[1]):
                 asked = _asked(seed, budget, fields, {"wind": wind})
                 return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
+    if side_veins is not None:
+        raise unused("side_veins", side_veins, "is of leaves of chief veins: with venation, or of a file of them")
     return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))
+
+
+def _only_of_files(unit: str, why: str) -> None:
+    """Fails on a unit where no file of points is read."""
+    if word("unit", unit) != "m":
+        raise unused("unit", unit, f"is of a file of points ({', '.join(CLOUDS)}); {why}")
+
+
+def _not_of_scans(given: "Mapping[str, Any]") -> None:
+    """Fails on what a leaf of a scan does not have."""
+    for name, value in given.items():
+        if value is not None:
+            raise unused(name, value, "is of other leaves: that of a scan is as it was scanned")
 
 
 def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[str, Any]") -> Plant:
@@ -237,7 +279,7 @@ def scan(
     unit: str = "m",
     up: str = "z",
     seed: int = 1,
-    name: str = "scan",
+    name: "Optional[str]" = None,
     detail: "Optional[float]" = None,
     sides: "Optional[int]" = None,
     textures: "Optional[bool]" = None,
@@ -263,11 +305,13 @@ def scan(
         import builtins
 
         path = os.fspath(cloud)
-        name, extension = os.path.splitext(os.path.basename(path))
+        own_name, extension = os.path.splitext(os.path.basename(path))
+        name = own_name if name is None else name
         with builtins.open(path, "rb") as file:
             how["file"] = (file.read(), extension[1:].lower())
     else:
         how["points"] = _points(cloud).tobytes()
+        name = "scan" if name is None else name
     base, own = (None, {}) if leaves is None else _base(leaves)
     skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
     return Plant(_burgeon.tree_of_scan(word("name", name), how, base, _asked(seed, budget, own, skin)))
@@ -277,7 +321,7 @@ def sketch(
     strokes: "Strokes",
     *,
     seed: int = 1,
-    name: str = "drawing",
+    name: "Optional[str]" = None,
     y_up: bool = True,
     classes: "Optional[Mapping[int, str]]" = None,
     day: "Optional[float]" = None,
@@ -306,12 +350,16 @@ def sketch(
     if isinstance(strokes, (str, os.PathLike)):
         import builtins
 
+        if not y_up:
+            raise unused("y_up", y_up, "is of arrays: a file says itself where up is")
         path = os.fspath(strokes)
-        name, extension = os.path.splitext(os.path.basename(path))
+        own_name, extension = os.path.splitext(os.path.basename(path))
+        name = own_name if name is None else name
         with builtins.open(path, "rb") as file:
             ink: "Dict[str, Any]" = {"file": (file.read(), extension[1:]), "lines": []}
     else:
         ink = {"file": None, "lines": _lines(strokes, y_up)}
+        name = "drawing" if name is None else name
     told = [(whole("classes: a stroke", row, 0, 10**6), word(f"classes[{row}]", kind)) for row, kind in (classes or {}).items()]
     day = None if day is None else number("day", day, 0, 100, "d")
     return Plant(_burgeon.sketch(word("name", name), ink, asked, told, day))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequenc
 
 from . import _burgeon
 from ._files import write_whole
-from ._given import flag, keys, number, whole, word, wrong
+from ._given import axes as check_axes
+from ._given import flag, keys, number, unused, whole, word, wrong
 
 if TYPE_CHECKING:
     import numpy as np
@@ -203,6 +204,9 @@ Look = Dict[str, Any]
 def look(size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Look:
     """How a picture is taken."""
     keys("a picture", how, ("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
+    for angle in ("azimuth", "elevation"):
+        if how.get("view") != "orbit" and angle in how:
+            raise unused(angle, how[angle], "is of view='orbit', which is not asked for")  # type: ignore[literal-required]
     return _look(size, **how)
 
 
@@ -368,11 +372,14 @@ class Model:
         """
         folder, name = os.path.split(os.fspath(path))
         stem, extension = os.path.splitext(name)
+        check_axes(extension[1:].lower(), unit, up)
         write_whole(folder, self._raw.files(extension[1:].lower(), stem, unit, up))
 
     def to_bytes(self, extension: str = "glb", unit: str = "m", up: str = "y") -> bytes:
         """The file of a format, without files beside it."""
-        return bytes(self._raw.files(extension.lower().lstrip("."), "model", unit, up)[0][1])
+        extension = extension.lower().lstrip(".")
+        check_axes(extension, unit, up)
+        return bytes(self._raw.files(extension, "model", unit, up)[0][1])
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.

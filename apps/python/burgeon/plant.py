@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
+from ._given import axes as check_axes
 from ._given import flag, number, whole, word, wrong
 from .model import Cloud, Masks, Model, array, look, seen, shown
 
@@ -413,6 +414,7 @@ class Plant:
         extension = extension.lower().lstrip(".")
         if extension in STRUCTURES:
             return bytes(self._raw.structure(extension, unit, up or "z"))
+        check_axes(extension, unit, up)
         if extension == "burgeon":
             return bytes(self._raw.project())
         return self.model.to_bytes(extension, unit, up or "y")
@@ -456,6 +458,7 @@ class Plant:
                 raise wrong(f"{asked[0]} is of models, not of .{extension} files", asked[0], "given", "left out")
             write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
         else:
+            check_axes(extension, unit, up)
             files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
             write_whole(folder, [(name, files[0][1]), *files[1:]])
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 
+use burgeon::formats::Foreign;
 use burgeon::{Coded, Slip, Told};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -66,13 +67,31 @@ pub(crate) fn misread(py: Python<'_>, field: &str, error: &serde_json::Error) ->
     let slip = Slip::of(&text);
     let Told { code, fields, .. } = slip.told();
     let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
-    exception(py, "SpecError", &(text.clone() + &slip.hint()), code, fields)
+    exception(py, "SpecError", &(burgeon::plainly(&text) + &slip.hint()), code, fields)
 }
 
 /// Which of the words that are known is meant, as the end of a message; empty if none is near.
 #[pyfunction]
 pub(crate) fn meant(word: &str, known: Vec<String>) -> String {
     burgeon::meant(word, known.iter().map(String::as_str))
+}
+
+/// What a file of another program is and what to do with it, by its first bytes; None of all that may be read.
+#[pyfunction]
+pub(crate) fn foreign(start: &[u8]) -> Option<String> {
+    Foreign::sniff_no_drawing(start).map(|foreign| foreign.to_string())
+}
+
+/// What a file is that is none of those that are wanted: of which program, or `otherwise`.
+pub(crate) fn unlike(py: Python<'_>, name: &str, bytes: &[u8], otherwise: &str) -> PyErr {
+    match Foreign::sniff(bytes) {
+        Some(foreign) => {
+            let Told { code, fields, .. } = foreign.told();
+            let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
+            exception(py, "SpecError", &format!("{name}: {foreign}"), code, fields)
+        }
+        None => unusable(py, &format!("{name}: {otherwise}")),
+    }
 }
 
 /// What is wrong, in words alone.

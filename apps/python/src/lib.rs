@@ -42,7 +42,7 @@ mod _burgeon {
     #[pymodule_export]
     use crate::days::RawDays;
     #[pymodule_export]
-    use crate::fault::meant;
+    use crate::fault::{foreign, meant};
     #[pymodule_export]
     use crate::forest::{RawForest, places};
     #[pymodule_export]

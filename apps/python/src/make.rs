@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 
 use crate::asked::Asked;
 use crate::compute::{aside, compute};
-use crate::fault::{beyond, choice, refused, unusable, wrong};
+use crate::fault::{beyond, choice, refused, unlike, unusable, wrong};
 use crate::held::{Held, run};
 use crate::model::{axes, colours};
 use crate::plant::RawPlant;
@@ -318,9 +318,8 @@ pub(crate) fn sketch(
     let drawing = match ink.file {
         Some((bytes, extension)) => {
             let format = DrawingFormat::from_extension(&extension).or_else(|| DrawingFormat::sniff(&bytes));
-            let format = format.ok_or_else(|| {
-                unusable(py, &format!("{name}: is no drawing (.svg, .inkml, .ndjson, .json)"))
-            })?;
+            let format = format
+                .ok_or_else(|| unlike(py, name, &bytes, "is no drawing (.svg, .inkml, .ndjson, .json)"))?;
             let own = name.to_owned();
             let (first, several) = aside(py, move || {
                 let mut read = burgeon::formats::read_drawings(&*bytes, format, &own);
@@ -428,8 +427,8 @@ impl RawLaw {
     /// A law of a file of `burgeon bloom fit`.
     #[staticmethod]
     fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
-        let law: GrowthLaw =
-            serde_json::from_str(text).map_err(|e| unusable(py, &format!("is no growth law: {e}")))?;
+        let law: GrowthLaw = serde_json::from_str(text)
+            .map_err(|e| unusable(py, &format!("is no growth law: {}", burgeon::plainly(&e.to_string()))))?;
         let fault = law.validate().next();
         fault.map_or(Ok(Self(law)), |fault| Err(unusable(py, &format!("cannot be used: {fault}"))))
     }

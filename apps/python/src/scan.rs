@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use crate::asked::Asked;
 use crate::compute::{aside, compute};
-use crate::fault::{beyond, refused, unusable};
+use crate::fault::{beyond, refused, unlike, unusable};
 use crate::held::{Found, Held};
 use crate::make::Base;
 use crate::model::axes;
@@ -56,9 +56,8 @@ impl Sought {
             return Ok(self.points.chunks_exact(24).map(|r| axes.inward(row(r))).collect());
         };
         let format = CloudFormat::from_extension(&extension).or_else(|| CloudFormat::sniff(&bytes));
-        let format = format.ok_or_else(|| {
-            unusable(py, &format!("{name}: is no cloud (.laz, .las, .ply, .xyz, .pcd, .obj)"))
-        })?;
+        let format = format
+            .ok_or_else(|| unlike(py, name, &bytes, "is no cloud (.laz, .las, .ply, .xyz, .pcd, .obj)"))?;
         let (read, told) = aside(py, move || {
             let mut told = Report::default();
             (burgeon::formats::read_cloud(&*bytes, format, &axes, &mut told), told)
@@ -104,7 +103,7 @@ pub(crate) fn tree_of_scan(
     let made = compute(py, budget, |run| make_tree_from_scan(name, &points, &options, seed, run))?;
     let (mut made, found) = made.map_err(|e| match e {
         ScannedTreeError::Stopped(stopped) => refused(py, &burgeon::SceneError::from(stopped)),
-        other => unusable(py, &format!("{name}: {other}")),
+        other => unusable(py, &format!("{name}: {}", other.in_scan(&spec, offset))),
     })?;
     made.item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     let foot = found.foot + offset;

@@ -1,5 +1,7 @@
 /** Frames of a film into a file: WebM or MP4 by the browser's own encoder, or one picture of all of them. */
 
+import { t } from './text';
+
 export type FilmFormat = 'webm' | 'mp4' | 'sheet';
 export interface FilmSpec {
   readonly format: FilmFormat;
@@ -38,7 +40,7 @@ const WAITING = 6;
 const KEY_S = 1;
 
 async function configOf({ format, width, height, fps }: FilmSpec): Promise<[VideoEncoderConfig, string]> {
-  if (format === 'sheet' || typeof VideoEncoder === 'undefined') throw new Error('no encoder');
+  if (format === 'sheet' || typeof VideoEncoder === 'undefined') throw new Error(t('fault.film'));
   for (const [codec, name] of CODECS[format]) {
     const config: VideoEncoderConfig = {
       codec,
@@ -51,7 +53,7 @@ async function configOf({ format, width, height, fps }: FilmSpec): Promise<[Vide
     const { supported } = await VideoEncoder.isConfigSupported(config).catch(() => ({ supported: false }));
     if (supported) return [config, name];
   }
-  throw new Error('no encoder');
+  throw new Error(t('fault.film'));
 }
 
 /** Whether this browser writes such films. */
@@ -152,7 +154,7 @@ function sheet({ width, height, frames }: FilmSpec): Recorder {
 
 function png(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) => {
-    canvas.toBlob((b) => (b ? resolve(b) : reject(new Error('no picture'))), 'image/png');
+    canvas.toBlob((b) => (b ? resolve(b) : reject(new Error(t('fault.picture')))), 'image/png');
   });
 }
 

@@ -264,7 +264,8 @@ export class MakerPanel {
   ): HTMLElement[] {
     const { spec } = tree;
     const age = typeof spec['age'] === 'number' ? spec['age'] : null;
-    const most = Math.max(2, age ?? 0, this.grown.get(plant.id) ?? 40);
+    const years = typeof spec['years'] === 'number' ? spec['years'] : this.grown.get(plant.id);
+    const most = Math.max(2, age ?? 0, years ?? 40);
     const keep = Number((spec['leaves'] as Fields | undefined)?.['leaf_keep'] ?? 1);
     const lenders = state.plants.filter((p) => p.lends && p.id !== plant.id);
     const leafOf = el(

@@ -14,7 +14,8 @@ export function isPhoto(file: File): boolean {
 
 /** Any picture that the browser reads, as PNG of a bounded size. PNG is decoded alike everywhere. */
 export async function asPng(file: Blob, side = MAX_SIDE): Promise<{ png: Uint8Array; aspect: number }> {
-  const image = await createImageBitmap(file);
+  // What the browser says of it is in a language of its own.
+  const image = await createImageBitmap(file).catch(() => Promise.reject(new Error(t('fault.image'))));
   const scale = Math.min(1, side / Math.max(image.width, image.height));
   const canvas = document.createElement('canvas');
   canvas.width = Math.max(1, Math.round(image.width * scale));
@@ -22,7 +23,7 @@ export async function asPng(file: Blob, side = MAX_SIDE): Promise<{ png: Uint8Ar
   canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
   image.close();
   const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, 'image/png'));
-  if (!blob) throw new Error('PNG');
+  if (!blob) throw new Error(t('fault.picture'));
   return { png: new Uint8Array(await blob.arrayBuffer()), aspect: canvas.height / canvas.width };
 }
 

@@ -5,6 +5,7 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 
 /** Every code of a `Refusal`, with its fields. */
 export const CODES = {
+  "age-beyond": ["name", "end", "age"],
   "archive": ["why"],
   "ball-none": ["row", "mark", "rows"],
   "cancelled": [],
@@ -21,6 +22,17 @@ export const CODES = {
   "file-too-much": ["what", "limit"],
   "file-truncated": ["inside"],
   "file-unsupported": ["what"],
+  "foreign-e57": [],
+  "foreign-excalidraw": [],
+  "foreign-gzip": [],
+  "foreign-krita": [],
+  "foreign-pdf": [],
+  "foreign-photoshop": [],
+  "foreign-picture": ["kind"],
+  "foreign-procreate": [],
+  "foreign-project": [],
+  "foreign-tldraw": [],
+  "foreign-zip": [],
   "full": ["what"],
   "gesture": [],
   "graph-edge": ["edge", "node", "last"],

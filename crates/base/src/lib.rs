@@ -9,7 +9,7 @@
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
 //! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
-//! | `slip` | [`Slip`]: what readers say of a text, as codes |
+//! | `slip` | [`Slip`]: what readers say of a text, as codes; [`plainly`] for people |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
 //! | `nearest` | [`nearest()`], [`meant`]: which of the known words was meant |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats; [`escaped_xml`] |
@@ -43,9 +43,9 @@ pub use digest::{Digest, Digestible};
 pub use litemap::LiteMap;
 pub use nearest::{meant, nearest};
 pub use quote::{brief, escaped_xml, quoted};
-pub use report::{Report, Stage, Warning};
+pub use report::{Report, Stage, Warning, gathered};
 pub use seed::{Draw, Seed, Stream};
-pub use slip::Slip;
+pub use slip::{Slip, plainly};
 pub use sort::{Set, first_of, map_of, median, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
 pub use srgb::{byte_of_light, light_of_byte, linear_of_srgb, srgb_of_linear};
 pub use task::{

@@ -21,6 +21,76 @@ impl Display for Warning {
     }
 }
 
+/// So many warnings that differ in numbers and names alone are told one by one; more become one with a count.
+const MOST_ALIKE: usize = 4;
+
+/// The field that says for how many others a warning stands.
+const MORE: &str = "more";
+
+impl Warning {
+    /// How many warnings it stands for.
+    fn count(&self) -> usize {
+        let more = self.fields.iter().find(|(name, _)| *name == MORE);
+        1 + more.and_then(|(_, count)| count.parse().ok()).unwrap_or(0)
+    }
+
+    /// Whether both say the same of other numbers and names.
+    fn is_like(&self, other: &Self) -> bool {
+        self.code == other.code && frame(self.own_message()) == frame(other.own_message())
+    }
+
+    /// The message without the others.
+    fn own_message(&self) -> &str {
+        if self.count() == 1 {
+            return &self.message;
+        }
+        self.message.rsplit_once(" (and ").map_or(&*self.message, |(own, _)| own)
+    }
+
+    /// Makes it stand for `count` warnings.
+    fn stand_for(&mut self, count: usize) {
+        let more = count - 1;
+        self.message = format!("{} (and {more} more like it)", self.own_message());
+        self.fields.retain(|(name, _)| *name != MORE);
+        self.fields.push((MORE, more.to_string()));
+    }
+}
+
+/// A message without its numbers and what it quotes.
+fn frame(message: &str) -> String {
+    let unquoted = message.split(['`', '"']).step_by(2).collect::<Vec<_>>().join("\"");
+    unquoted.chars().filter(|c| !c.is_ascii_digit() && *c != '.').collect()
+}
+
+/// The warnings, of which those that differ in numbers and names alone are one with a count if they are more than four.
+///
+/// ```
+/// let strokes = (1..=20).map(|k| format!("stroke {k} has one point and was left out"));
+/// let mut report = base::Report::default();
+/// strokes.for_each(|message| report.warn("stroke-skipped", message));
+/// let [one] = &report.warnings[..] else { panic!("{:?}", report.warnings) };
+/// assert_eq!(one.message, "stroke 1 has one point and was left out (and 19 more like it)");
+/// assert_eq!(base::gathered(report.warnings.clone()), report.warnings);
+/// ```
+pub fn gathered(warnings: impl IntoIterator<Item = Warning>) -> Vec<Warning> {
+    let mut all = Vec::new();
+    warnings.into_iter().for_each(|warning| gather(&mut all, warning));
+    all
+}
+
+/// Adds a warning, or counts it at one that is like it.
+fn gather(all: &mut Vec<Warning>, new: Warning) {
+    let alike: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_like(&new)).collect();
+    let count = alike.iter().map(|&i| all[i].count()).sum::<usize>() + new.count();
+    match alike.split_first() {
+        Some((&first, others)) if count > MOST_ALIKE => {
+            all[first].stand_for(count);
+            others.iter().rev().for_each(|&i| drop(all.remove(i)));
+        }
+        _ => all.push(new),
+    }
+}
+
 /// The time one stage took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
@@ -81,7 +151,7 @@ impl Report {
         message: impl Into<String>,
     ) {
         let fields = fields.iter().map(|(name, value)| (*name, value.to_string())).collect();
-        self.warnings.push(Warning { code, message: crate::brief(&message.into()), fields });
+        gather(&mut self.warnings, Warning { code, message: crate::brief(&message.into()), fields });
     }
 
     /// Runs `f` and books its time under `name`.

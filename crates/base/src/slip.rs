@@ -39,12 +39,12 @@ impl Slip {
         });
         let (path, why) = in_field.unwrap_or(("", why));
         let why = crate::nearest::without_hint(why);
-        Self { path: path.to_owned(), place, why: crate::brief(why) }
+        Self { path: path.to_owned(), place, why: crate::brief(why_of(why)) }
     }
 
     /// Of a message about what names and rows lead to, in a text of which the line (from 1) may be known.
     pub fn in_field(path: &str, line: Option<usize>, why: &str) -> Self {
-        Self { path: path.to_owned(), place: line.map(|line| (line, None)), why: crate::brief(why) }
+        Self { path: path.to_owned(), place: line.map(|line| (line, None)), why: crate::brief(why_of(why)) }
     }
 
     /// Of a field or a word that is not known, which of those that are known is meant; empty if none is near.
@@ -57,6 +57,19 @@ impl Slip {
         let unknown = ["unknown field", "unknown variant"].iter().any(|start| self.why.starts_with(start));
         let mut quoted = self.why.split('`').skip(1).step_by(2);
         quoted.next().filter(|_| unknown).map(|word| crate::meant(word, quoted)).unwrap_or_default()
+    }
+
+    /// What is wrong, without a word of the language that this is written in.
+    fn plain(&self) -> Option<String> {
+        for start in ["invalid type: ", "invalid value: "] {
+            if let Some((found, wanted)) =
+                self.why.strip_prefix(start).and_then(|w| w.split_once(", expected "))
+            {
+                return Some(format!("{start}{}, expected {}", found_words(found), wanted_words(wanted)));
+            }
+        }
+        let (count, wanted) = self.why.strip_prefix("invalid length ")?.split_once(", expected ")?;
+        Some(format!("invalid length {count}, expected {}", wanted_words(wanted)))
     }
 
     fn said(&self) -> Said<'_> {
@@ -88,6 +101,57 @@ impl Slip {
         } else {
             Said::InField { path, why }
         }
+    }
+}
+
+/// A message of a reader of JSON or TOML for people: kinds of values by their words, not by the names of types. Other
+/// messages stay as they are.
+///
+/// ```
+/// let told = "points: invalid type: string \"many\", expected u32 at line 2 column 9";
+/// let plain = "points: invalid type: the text \"many\", expected a whole number from 0 to 4294967295 at line 2 column 9";
+/// assert_eq!(base::plainly(told), plain);
+/// assert_eq!(base::plainly("a law needs a day"), "a law needs a day");
+/// ```
+pub fn plainly(message: &str) -> String {
+    let slip = Slip::of(message);
+    let Some(plain) = slip.plain() else { return why_of(message).to_owned() };
+    let lead = if slip.path.is_empty() { String::new() } else { format!("{}: ", slip.path) };
+    let place = match slip.place {
+        Some((line, Some(column))) => format!(" at line {line} column {column}"),
+        _ => String::new(),
+    };
+    format!("{lead}{plain}{place}")
+}
+
+/// What a reader says, but for the names of types that fit no field of ours.
+fn why_of(why: &str) -> &str {
+    if why.starts_with("data did not match any variant of untagged enum") {
+        return "it has none of the forms that are known";
+    }
+    why
+}
+
+/// What serde found, in words.
+fn found_words(found: &str) -> String {
+    match found_kind(found) {
+        ("a text", text) => format!("the text \"{text}\""),
+        (kind, "") => kind.to_owned(),
+        (_, value) => value.to_owned(),
+    }
+}
+
+/// What serde wanted, in words. Words of our own readers stay as they are.
+fn wanted_words(wanted: &str) -> String {
+    let count = wanted.split(' ').find_map(|word| word.parse::<u32>().ok());
+    match (wanted_kind(wanted), wanted, count) {
+        ("a whole number", "u8", _) => format!("a whole number from 0 to {}", u8::MAX),
+        ("a whole number", "u16", _) => format!("a whole number from 0 to {}", u16::MAX),
+        ("a whole number", "u32", _) => format!("a whole number from 0 to {}", u32::MAX),
+        ("a whole number", "u64" | "usize", _) => "a whole number from 0".to_owned(),
+        ("a list", _, Some(count)) => format!("a list of {count}"),
+        ("another kind of value", own, _) => own.to_owned(),
+        (kind, ..) => kind.to_owned(),
     }
 }
 
@@ -129,6 +193,7 @@ fn found_kind(found: &str) -> (&'static str, &str) {
 fn wanted_kind(wanted: &str) -> &'static str {
     match wanted {
         "a boolean" => "true or false",
+        "enum" => "a word",
         "f32" | "f64" => "a number",
         "a string" | "string" | "a character" => "a text",
         _ if wanted.starts_with(['i', 'u']) && wanted[1..].parse::<u8>().is_ok() => "a whole number",
@@ -136,7 +201,9 @@ fn wanted_kind(wanted: &str) -> &'static str {
         _ if wanted.starts_with("a sequence") => "a list",
         _ if wanted.starts_with("a tuple") || wanted.starts_with("an array") => "a list",
         _ if wanted.starts_with("tuple ") => "a list",
+        _ if wanted.starts_with("fewer elements") || wanted.starts_with("more elements") => "a list",
         _ if wanted.starts_with("struct ") || wanted.starts_with("a map") => "a table",
+        _ if wanted.contains("tagged enum ") => "a table",
         _ if wanted.starts_with("variant ") || wanted.starts_with("enum ") => "a word",
         _ if wanted.starts_with("a word") => "a word",
         _ => "another kind of value",
@@ -145,7 +212,7 @@ fn wanted_kind(wanted: &str) -> &'static str {
 
 impl fmt::Display for Slip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.why)
+        f.write_str(self.plain().as_deref().unwrap_or(&self.why))
     }
 }
 
@@ -252,6 +319,11 @@ mod tests {
                 "spec-missing",
                 vec![("name", "degrees"), ("path", "edits[2].turn")],
             ),
+            (
+                "invalid type: map, expected enum",
+                "spec-kind",
+                vec![("found", "a table"), ("path", ""), ("value", ""), ("wanted", "a word")],
+            ),
             ("expected value", "not-json", vec![]),
             ("EOF while parsing an object", "json-ends", vec![]),
             ("a law needs a day", "slip", vec![("why", "a law needs a day")]),
@@ -261,7 +333,12 @@ mod tests {
             let placed = Slip::of(&format!("{message} at line 12 column 5"));
             let told = placed.told();
             let why = placed.to_string();
-            assert!(message.ends_with(&why));
+            assert_eq!(why, plainly(message).trim_start_matches("edits[2].turn: "));
+            assert!(
+                !["u32", "u8", "f64", "struct", "enum", "string", "integer", "array"]
+                    .iter()
+                    .any(|t| why.contains(t))
+            );
             let at = [("column", "5"), ("line", "12"), ("what", why.as_str())];
             assert_eq!((told.code, fields(&told)), ("slip-at", at.to_vec()));
             assert_eq!((told.causes["what"].code, fields(&told.causes["what"])), (code, want));

@@ -65,7 +65,7 @@ pub enum ProjectError {
         found: String,
     },
     /// An entry is no JSON, or not of the version.
-    #[error("project file, {entry}: {}", base::brief(&source.to_string()))]
+    #[error("project file, {entry}: {}", base::brief(&base::plainly(&source.to_string())))]
     Json {
         /// Which entry.
         entry: &'static str,

@@ -5,6 +5,7 @@ use std::io;
 
 use base::{Report, Slip};
 
+use crate::foreign::Foreign;
 use crate::kind::{CloudFormat, DrawingFormat, ModelFormat};
 
 /// Where in a file something is.
@@ -61,7 +62,7 @@ pub enum FileFault {
     #[error("the file is empty; was it saved completely?")]
     Empty,
     /// The text or the bytes break the format's grammar.
-    #[error("{what}; {advice}")]
+    #[error("{}; {advice}", base::plainly(what))]
     Malformed {
         /// What was found.
         what: String,
@@ -104,12 +105,20 @@ pub enum FileFault {
         /// Good bytes before.
         after: u64,
     },
+    /// It is a file of another program.
+    #[error("{0}")]
+    Foreign(Foreign),
     /// Reading failed.
     #[error("it could not be read: {0}")]
     Io(#[from] io::Error),
 }
 
 impl FileFault {
+    /// [`Self::Foreign`] if the bytes are those of a file that is read nowhere.
+    pub(crate) fn if_foreign(foreign: Option<Foreign>) -> Result<(), Self> {
+        foreign.map_or(Ok(()), |foreign| Err(Self::Foreign(foreign)))
+    }
+
     /// [`Self::NoStrokes`] for the reasons that its reader gave.
     pub(crate) fn no_strokes(report: &Report) -> Self {
         let reasons: Vec<&str> = report.warnings.iter().take(3).map(|w| w.message.as_str()).collect();
@@ -244,6 +253,8 @@ base::coded!(FileFault {
     Self::NoStrokes { .. } => "file-no-strokes" {},
     Self::NotUtf8 { after } => "file-not-utf8" { after },
     Self::Io(why) => "file-io" { why },
+} wraps {
+    Self::Foreign(foreign) => foreign, Foreign;
 });
 base::coded!(WriteError { why => "write" { why } });
 base::coded!(DrawingError {} wraps { Self { place, fault, .. } => &Placed { place, fault }, Placed<'_> });

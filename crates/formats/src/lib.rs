@@ -11,6 +11,7 @@
 mod cloud;
 mod drawing;
 mod error;
+mod foreign;
 mod kind;
 mod leaves;
 mod model;
@@ -20,6 +21,7 @@ mod summary;
 pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
+pub use foreign::Foreign;
 pub use kind::{CloudFormat, DrawingFormat, ModelFormat, StructureFormat};
 pub use leaves::{
     GrowthEntry, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadGrowth, ReadMarks,

@@ -36,6 +36,16 @@ pub enum GrowthError {
         /// The value given.
         value: f64,
     },
+    /// The age lies beyond the life that is grown, where it would change nothing.
+    #[error("age must be 1 to {end}, not {age}: the life of {name} that is grown ends there")]
+    BeyondLife {
+        /// The species, or how the tree is called.
+        name: String,
+        /// The last age, in what the spec counts ages in.
+        end: u32,
+        /// The age given.
+        age: u32,
+    },
     /// There is no root to grow from.
     #[error("nothing to grow from: no roots were given")]
     NoRoots,
@@ -324,6 +334,7 @@ pub(crate) fn usable(p: glam::DVec3) -> bool {
 base::coded!(GrowthError {
     Self::StepTooLong { step_m, space_m } => "step-too-long" { step_m, space_m },
     Self::Field { field, range, value } => "field-range" { field, range, value },
+    Self::BeyondLife { name, end, age } => "age-beyond" { name, end, age },
     Self::NoRoots => "no-roots" {},
     Self::Root { root } => "root-far" { root = root + 1 },
     Self::RootInObstacle { root, obstacle, name } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1, name },

@@ -159,13 +159,36 @@ impl TreeSpec {
             && (years, variation) == (&other.years, &other.variation)
     }
 
-    /// Fails if a number is out of its range, or if meshes, point clouds and roots are more than the budget allows.
+    /// The last age at which the tree still changes, where it is known before it grows: its years.
+    pub fn end_of_life(&self) -> Option<u32> {
+        match &self.method {
+            Method::SelfOrganizing(s) => Some(s.years),
+            _ => self.years,
+        }
+    }
+
+    /// Fails if an age is asked for beyond `end`.
+    ///
+    /// # Errors
+    /// [`GrowthError::BeyondLife`].
+    pub(crate) fn check_age(&self, end: u32) -> Result<(), GrowthError> {
+        match self.age.filter(|&age| age > end.max(1)) {
+            None => Ok(()),
+            Some(age) => {
+                let name = if self.species.is_empty() { &self.name } else { &self.species };
+                Err(GrowthError::BeyondLife { name: base::quoted(name), end: end.max(1), age })
+            }
+        }
+    }
+
+    /// Fails if a number is out of its range, if the age lies beyond the years of the tree, or if meshes, point clouds and roots are more than the budget allows.
     /// [`crate::grow`] asks first; ask yourself before you prepare parts of it.
     ///
     /// # Errors
-    /// [`GrowthError::Range`], [`GrowthError::OverBudget`].
+    /// [`GrowthError::Range`], [`GrowthError::BeyondLife`], [`GrowthError::OverBudget`].
     pub fn check(&self, budget: &Budget) -> Result<(), GrowthError> {
         spec::check(self)?;
+        self.end_of_life().map_or(Ok(()), |end| self.check_age(end))?;
         budget.check(Counted::Roots, self.roots.len() as u64, "give fewer roots")?;
         let of_obstacles = self.obstacles.iter().map(|o| match o {
             Obstacle::Mesh { triangles, .. } => triangles.len(),

@@ -113,6 +113,10 @@ pub fn grow(
     let mut thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
     let life = spec.age.zip(spec.years).map_or(1.0, |(age, years)| f64::from(age) / f64::from(years));
     take_limbs(&spec.variation, &wood_spec, life, seed, &mut bones);
+    if spec.end_of_life().is_none() && !matches!(spec.method, Method::Lsystem { .. }) {
+        // Rounds, which are known only now.
+        spec.check_age(bones.skeleton.age())?;
+    }
     let slim = age(spec, &wood_spec, &mut bones);
     // One number for all, or one for each.
     thick.resize(thick.len().max(slim.len()), thick.first().copied().unwrap_or(1.0));
@@ -354,8 +358,7 @@ fn why_nothing(spec: &TreeSpec, tally: &GrowthTally) -> String {
             "obstacles leave no room at the roots for a twig; move them or the roots".into()
         }
         _ if tally.consumed > 0 => {
-            "every attraction point lies within the kill distance (--kill, kill_m) of a root; make it smaller"
-                .into()
+            "every attraction point lies within the kill distance (kill_m) of a root; make it smaller".into()
         }
         _ => "no root came near an attraction point".into(),
     }
@@ -378,7 +381,7 @@ fn reached_some(
     let why = if away.is_finite() {
         format!(
             "none of {} attraction points was reached: the nearest is {away:.4} m from a root; with an attraction \
-             distance (--influence, attraction_m) of {away:.4} m or more instead of {} the root perceives it",
+             distance (attraction_m) of {away:.4} m or more instead of {} the root perceives it",
             points.len(),
             steps.attraction_m
         )
@@ -507,6 +510,9 @@ fn bones(
             let lived = |(age, years): (u32, u32)| f64::from(age) / f64::from(years.max(1));
             let life = spec.age.zip(spec.years).map_or(1.0, lived);
             let mut system = Lsystem::parse_at(rules, life)?;
+            if spec.years.is_none() {
+                spec.check_age(system.steps)?;
+            }
             // Of a tree with years, all steps make the whole, which is younger later on, unless the rules follow growth.
             let last = match (spec.age, spec.years) {
                 (Some(age), Some(years)) if system.ages == Ages::Steps => {

@@ -10,24 +10,30 @@ pub enum ScanTreeError {
     #[error("the cloud has {0} usable points; a tree needs at least {1}: scan it more densely")]
     TooFew(usize, usize),
     /// The cloud is as large as no tree is.
-    #[error(
-        "the cloud is {0:.0} m high: no tree is. Say its unit with --unit mm or --unit cm, or cut the tree out of it"
-    )]
+    #[error("the cloud is {0:.0} m high: no tree is. Say its unit (mm or cm), or cut the tree out of it")]
     TooLarge(f64),
     /// Nothing that stands on the ground goes up as a stem does.
     #[error(
-        "nothing in the cloud stands on the ground and goes up as a stem does; check --up and --unit, or say where the \
-         stem stands with --at"
+        "nothing in the cloud stands on the ground and goes up as a stem does; check which axis points up and \
+         the unit, or say where the stem stands"
     )]
     NoStem,
     /// No stem where the user says.
     #[error(
-        "no stem stands within {1:.1} m of {0:?}; the nearest thing that stands on the ground is at {2:?}"
+        "no stem stands within {:.1} m of {}; the nearest thing that stands on the ground is at {}",
+        .1,
+        pair(.0),
+        pair(.2)
     )]
     NotThere([f64; 2], f64, [f64; 2]),
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// A place on the ground, to a centimetre.
+fn pair([x, y]: &[f64; 2]) -> String {
+    format!("{x:.2},{y:.2}")
 }
 
 base::coded!(ScanTreeError {

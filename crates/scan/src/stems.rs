@@ -171,8 +171,8 @@ impl Stems {
                 report,
                 "scan-others",
                 { count = large, points = others },
-                "{large} other things stand on the ground (trees, people, walls; {others} points): they were left out; --at \
-                 X,Z says which stem is meant"
+                "{large} other things stand on the ground (trees, people, walls; {others} points): they were left out; \
+                 say where the stem stands that is meant"
             );
         }
     }

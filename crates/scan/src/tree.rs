@@ -177,7 +177,7 @@ fn warn_of_ground(all: &[DVec3], ground: Option<&Ground>, report: &mut Report) {
                 "scan-lies-down",
                 { up = name },
                 "no ground lies across the up axis, but one does across {name} (with +Y up): the scan may lie down or be \
-                 upside down; check --up"
+                 upside down; check which axis points up"
             );
             return;
         }

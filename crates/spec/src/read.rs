@@ -10,7 +10,7 @@ use crate::{Node, RangeFault, Spec, TextFault, check};
 #[non_exhaustive]
 pub enum SpecFault {
     /// It is no such spec: not TOML, a field that is not known or missing, or a value of another kind.
-    #[error("{}{}{message}{}", on(*line), lead(path), Slip::in_field(path, None, message).hint())]
+    #[error("{}{}{}{}", on(*line), lead(path), base::plainly(message), Slip::in_field(path, None, message).hint())]
     Text {
         /// From 1; none where there is no text.
         line: Option<usize>,

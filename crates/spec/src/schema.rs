@@ -73,5 +73,55 @@ pub fn kept_schema(text: &str) -> Value {
 
 /// The schema of a type, made anew.
 pub fn made_schema<T: JsonSchema>() -> Value {
-    schemars::SchemaGenerator::default().into_root_schema_for::<T>().to_value()
+    let mut schema = schemars::SchemaGenerator::default().into_root_schema_for::<T>().to_value();
+    unlink(&mut schema);
+    schema
+}
+
+/// Takes the links out of all descriptions: people read them who do not have these docs.
+fn unlink(schema: &mut Value) {
+    match schema {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                match value {
+                    Value::String(text) if name == "description" => *text = without_links(text),
+                    other => unlink(other),
+                }
+            }
+        }
+        Value::Array(rows) => rows.iter_mut().for_each(unlink),
+        _ => {}
+    }
+}
+
+/// The text up to its example, with each link of rustdoc replaced by the last name of what it shows: ``[`Look::ribs`]``
+/// by `` `ribs` ``, ``[`years`](Self::years)`` by `` `years` ``.
+fn without_links(text: &str) -> String {
+    let text = text.split_once("\n\n```").map_or(text, |(text, _)| text);
+    let (mut out, mut rest) = (String::with_capacity(text.len()), text);
+    while let Some((before, link)) = rest.split_once("[`") {
+        let Some((shown, after)) = link.split_once("`]") else { break };
+        let name = shown.rsplit("::").next().unwrap_or(shown);
+        out = out + before + "`" + name + "`";
+        let target = after.strip_prefix('(').and_then(|to| to.split_once(')'));
+        rest = target.map_or(after, |(_, after)| after);
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_links;
+
+    #[test]
+    fn descriptions_have_no_links_of_the_docs() {
+        for (text, want) in [
+            ("in years of [`years`](Self::years); none", "in years of `years`; none"),
+            ("see [`Look::ribs`].", "see `ribs`."),
+            ("A tree.\n\n```\nlet tree = 1;\n```", "A tree."),
+            ("[0, 1] or `[a]`, [`b`", "[0, 1] or `[a]`, [`b`"),
+        ] {
+            assert_eq!(without_links(text), want);
+        }
+    }
 }

@@ -48,7 +48,7 @@ pub enum LeafError {
     /// A scan of more than one leaf.
     #[error(
         "the cloud shows {0} blades that part on necks of their own: it is a plant or a leaf of leaflets, not one blade. Cut \
-         one out of it, or make all of it with `burgeon bloom run SCAN --plant`"
+         one out of it, or make all of it as a plant of scans (docs/bloom.md)"
     )]
     Several(usize),
     /// Nothing to put on a plant.

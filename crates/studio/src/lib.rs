@@ -47,8 +47,8 @@ pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
     NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,
-    brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, quoted, set_of, sort_by_key,
-    srgb_of_linear,
+    brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly, quoted, set_of,
+    sort_by_key, srgb_of_linear,
 };
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};

@@ -112,6 +112,7 @@ pub struct ItemReport {
 impl ItemReport {
     /// With these warnings.
     pub(crate) fn warning(self, told: Vec<Warning>) -> Self {
+        let told = base::gathered(told);
         Self { warnings: told.iter().map(ToString::to_string).collect(), told, ..self }
     }
 }

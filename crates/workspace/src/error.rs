@@ -1,7 +1,7 @@
 //! Why something was not done.
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
-use burgeon::formats::{DrawingError, ModelError, WriteError};
+use burgeon::formats::{DrawingError, Foreign, ModelError, WriteError};
 use burgeon::{SceneError, Slip, SplitError, Stopped, TreeError};
 
 /// Why a workspace refused; it is as it was.
@@ -35,6 +35,9 @@ pub enum WorkspaceError {
          of a leaf (.csv), a tree or flower (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
     )]
     UnknownFile,
+    /// It is a file of another program.
+    #[error("{0}")]
+    Foreign(Foreign),
     /// The bytes are not UTF-8.
     #[error(transparent)]
     NotText(#[from] core::str::Utf8Error),
@@ -72,10 +75,10 @@ pub enum WorkspaceError {
     #[error(transparent)]
     Tree(#[from] TreeError),
     /// The growth law cannot be read.
-    #[error("the growth law: {0}")]
+    #[error("the growth law: {}", burgeon::plainly(&.0.to_string()))]
     Law(#[source] serde_json::Error),
     /// The record of gestures cannot be read.
-    #[error("the record of gestures: {0}")]
+    #[error("the record of gestures: {}", burgeon::plainly(&.0.to_string()))]
     Record(#[source] serde_json::Error),
     /// The record of gestures is of another form.
     #[error("the record of gestures is of another form: {0:?}")]
@@ -117,7 +120,7 @@ pub enum WorkspaceError {
     #[error("cancelled")]
     Cancelled,
     /// A command that cannot be read: a bug of the shell.
-    #[error("the message cannot be read: {0}")]
+    #[error("the message cannot be read: {}", burgeon::plainly(.0))]
     Message(String),
     /// Our bug.
     #[error("internal: {0}")]
@@ -162,6 +165,7 @@ burgeon::coded!(WorkspaceError {
 } wraps {
     Self::Command(e) => e, CommandError;
     Self::Project(e) => e, ProjectError;
+    Self::Foreign(e) => e, Foreign;
     Self::Drawing(e) => e, DrawingError;
     Self::Model(e) => e, ModelError;
     Self::Tree(e) => e, TreeError;

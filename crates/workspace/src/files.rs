@@ -7,7 +7,9 @@ use burgeon::document::{
     self, CommandError, Document, DocumentPlant, Editor, FlowerCommand, FlowerMaker, LeafData, LeafMaker,
     Maker, SceneCommand, TreeCommand,
 };
-use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
+use burgeon::formats::{
+    DrawingFormat, ExportSpec, Foreign, ModelFormat, no_files, read_drawings, read_model,
+};
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
 use burgeon::leaf::LeafSpec;
@@ -79,6 +81,11 @@ impl Workspace {
         let model = ModelFormat::from_extension(extension);
         let model = model.or_else(|| ModelFormat::sniff(bytes)).filter(|_| drawing.is_none());
         let holds = |word: &[u8]| bytes.windows(word.len()).take(4096).any(|w| w == word);
+        // Projects are archives; compressed drawings may be read.
+        let ours = |foreign: &Foreign| matches!(foreign, Foreign::Project | Foreign::Zip | Foreign::Gzip);
+        if let Some(foreign) = Foreign::sniff(bytes).filter(|foreign| !is("burgeon") && !ours(foreign)) {
+            return Err(WorkspaceError::Foreign(foreign));
+        }
         if is("burgeon") || document::is_project(bytes) {
             let document = document::read_project(bytes)?;
             let opened = Opened::new(FileKind::Project, document.name());
@@ -114,7 +121,7 @@ impl Workspace {
             self.replace(document, fresh)?;
             Ok(opened)
         } else {
-            Err(WorkspaceError::UnknownFile)
+            Err(Foreign::sniff(bytes).map_or(WorkspaceError::UnknownFile, WorkspaceError::Foreign))
         }
     }
 
@@ -188,7 +195,9 @@ impl Workspace {
     pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), WorkspaceError> {
         let (stem, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
         let format = ModelFormat::from_extension(extension).or_else(|| ModelFormat::sniff(bytes));
-        let format = format.ok_or(WorkspaceError::ObstacleFile)?;
+        let unknown =
+            || Foreign::sniff_no_drawing(bytes).map_or(WorkspaceError::ObstacleFile, WorkspaceError::Foreign);
+        let format = format.ok_or_else(unknown)?;
         let model =
             read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut Report::default());
         let (vertices, triangles) = model?.triangles();

@@ -31,7 +31,13 @@ pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
 fn read_law(path: &Path) -> Outcome<GrowthLaw> {
     let text = files::read_text(path)?;
     let law: GrowthLaw = serde_json::from_str(&text).map_err(|e| {
-        Failure::at(path, format_args!("is no growth law: {e}; make one with `burgeon bloom fit`"))
+        Failure::at(
+            path,
+            format_args!(
+                "is no growth law: {}; make one with `burgeon bloom fit`",
+                burgeon::plainly(&e.to_string())
+            ),
+        )
     })?;
     let fault = law.validate().next();
     match fault {

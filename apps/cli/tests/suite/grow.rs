@@ -63,10 +63,10 @@ fn wall(folder: &Path, name: &str, faces: usize) {
 fn one_preset_of_each_method_grows_and_is_drawn() {
     let at = folder("grow-methods");
     for (preset, method, age) in [
-        ("terminalia", "competition", "400"),
+        ("terminalia", "competition", "12"),
         ("oak-colonization", "colonization", "30"),
         ("alder", "self-organizing", "10"),
-        ("palm", "lsystem", "60"),
+        ("palm", "lsystem", "25"),
     ] {
         let (model, png) = (format!("{preset}.glb"), format!("{preset}.png"));
         let args =

@@ -20,3 +20,4 @@ mod signals;
 mod times;
 mod tools;
 mod truth;
+mod words;

@@ -18,11 +18,13 @@ const RUNNING: [&str; 9] =
 /// A value that is not the default, for each option that takes one.
 const VALUES: &[(&str, &str)] = &[
     ("age", "1"),
+    ("at", "2,0"),
     ("attractors", "points.xyz"),
     ("azimuth", "90"),
     ("background", "white"),
     ("ball", "2,3,0,0,0.02"),
     ("branch-depth", "paper"),
+    ("cell", "0.2"),
     ("classes", "classes.csv"),
     ("compare", "end.xyz"),
     ("curl", "0.4"),
@@ -41,6 +43,7 @@ const VALUES: &[(&str, &str)] = &[
     ("frame", "plant"),
     ("foliage", "cards"),
     ("frames", "3"),
+    ("gap", "0"),
     ("graph", "palmate"),
     ("gravity", "0.9"),
     ("height", "3"),
@@ -62,6 +65,7 @@ const VALUES: &[(&str, &str)] = &[
     ("marks", "found.csv"),
     ("materials", "materials.toml"),
     ("method", "guided"),
+    ("mtg", "structure.mtg"),
     ("number", "2"),
     ("obstacle", "box.obj"),
     ("parameters", "own"),
@@ -142,6 +146,12 @@ const USES: &[&[&str]] = &[
     &["convert", "points.xyz", "-o", "o.ply"],
     &["convert", "box.obj", "-o", "o.glb"],
     &["render", "box.obj", "-o", "o.png", "--size", "40x30", "--view", "turntable"],
+    &["render", "box.glb", "-o", "o.png", "--size", "40x30", "--view", "front"],
+    &["scan", "stem.xyz", "-o", "o.glb", "--no-textures"],
+    &["scan", "stem.xyz", "--qsm", "o.csv"],
+    &["info", "box.obj"],
+    &["info", "box.glb"],
+    &["info", "rose.svg"],
 ];
 
 /// Options that work on such input, but find nothing in this one that they could change: no contour to fill, no branch
@@ -150,6 +160,8 @@ const NOTHING_TO_STEER: &[(&str, &[&str])] = &[
     ("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"]),
     // The scan is of a bare stem.
     ("--plant", &["materials"]),
+    // A stem is bare and has no gap, and a trunk its sides by its girth.
+    ("stem.xyz", &["gap", "sides", "materials"]),
 ];
 
 const SMALL: &str = r#"
@@ -184,6 +196,9 @@ fn inputs(dir: &Path) {
         "name = \"light\"\n[method]\nkind = \"self-organizing\"\nyears = 3\n[look]\nautumn_color = \"#d9a437\"\n",
     );
     write("box.obj", BOX);
+    good(dir, &["convert", "box.obj", "-o", "box.glb", "--quiet"]);
+    // Two stems of which the second is not as tall, with the ground under them.
+    write("stem.xyz", &crate::words::stems(&[(0.0, 3.0), (2.0, 2.4)]));
     let points: Vec<String> = (0..200)
         .map(|i| {
             // Even steps of a number that is no fraction fill a square.
@@ -318,11 +333,13 @@ fn ignored(dir: &Path, scratch: &Path, use_: &[&str]) -> Vec<String> {
         {
             continue;
         }
+        let species = use_[0] == "scan" && option == "leaves";
         let value = VALUES.iter().find(|(name, _)| *name == option).map(|(_, value)| *value);
-        // The files of the field have +Z up already.
-        let field =
-            use_.iter().any(|word| word.ends_with(".mtg") || word.ends_with(".opf") || *word == "--qsm");
+        // The files of the field have +Z up already, and scans of trees.
+        let field = use_[0] == "scan"
+            || use_.iter().any(|word| word.ends_with(".mtg") || word.ends_with(".opf") || *word == "--qsm");
         let value = if field && option == "up" { Some("y") } else { value };
+        let value = if species { Some("hazel") } else { value };
         assert!(!takes_value || value.is_some(), "{use_:?}: no value for {long}");
         let mut args = use_.to_vec();
         args.push(&long);

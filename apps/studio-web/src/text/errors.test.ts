@@ -24,6 +24,18 @@ describe('refusals', () => {
     await setLanguage('en');
   });
 
+  it('that are one for many say how many, in one language', async () => {
+    const told = {
+      code: 'stroke-skipped',
+      fields: { stroke: '3', more: '19' },
+      message: 'English (and 19 more like it)',
+    };
+    await setLanguage('zh');
+    expect(warning(told)).toBe('第 3 笔无法使用，已略去（另有 19 条类似的）');
+    await setLanguage('en');
+    expect(warning(told)).toBe(told.message);
+  });
+
   it('of edits say in words which edit and why', async () => {
     const told = { code: 'edit-not-done', fields: { edit: '0', word: 'prune', why: 'branch-gone' } };
     await setLanguage('zh');

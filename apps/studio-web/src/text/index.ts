@@ -49,7 +49,10 @@ export function warning({ code, fields, message }: WarningView): string {
     const group = { word: 'edit', why: 'why' }[name];
     return texts?.zhWords[value] ?? (group ? tOf(group, value) : value);
   };
-  return texts?.zhWarnings[code]?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
+  const own = texts?.zhWarnings[code]?.replace(/\{(\w+)\}/g, (_, name: string) => told(name));
+  if (own === undefined) return message;
+  const more = fields['more'];
+  return more === undefined ? own : own + t('warning.more', { count: more });
 }
 
 /** Whether a key made of parts has a text. */

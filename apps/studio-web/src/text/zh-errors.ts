@@ -57,6 +57,19 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'project-setting': '项目文件的设置超出范围：{why}',
   'project-scene': '项目文件的场景有问题：{why}',
   'project-too-much': '项目文件里的{what}超过 {limit}，请拆分',
+  'age-beyond': '树龄应为 1 到 {end}，不能是 {age}：{name}的生长过程到此为止',
+  'foreign-picture': '这是一张图片（{kind}），里面没有线条：请把它放在绘图板下描一遍，或在绘图软件里描成 SVG',
+  'foreign-krita': '这是 Krita 文档：请把其中的矢量图层导出为 SVG，或导出图片后在绘图板上描一遍',
+  'foreign-procreate':
+    '这是 Procreate 文档，里面只有像素而没有线条：请分享为 PNG 后在绘图板上描一遍，或在绘图软件里描成 SVG',
+  'foreign-photoshop': '这是 Photoshop 文档：请导出为 PNG 后在绘图板上描一遍，或导出为 SVG',
+  'foreign-pdf': '这是 PDF 文档：请在绘制它的软件里存为 SVG，或用能打开 PDF 的软件（如 Inkscape）存为 SVG',
+  'foreign-e57': '这是 E57 格式的激光扫描，无法读取：请存为 LAS、PLY 或 XYZ（如用 CloudCompare）',
+  'foreign-project': '这是 Burgeon 项目（.burgeon），而这里需要另一种文件：请在工作室里打开它',
+  'foreign-excalidraw': '这是 Excalidraw 绘图，而这里需要另一种文件：请在需要绘图的地方打开它',
+  'foreign-tldraw': '这是 tldraw 绘图，而这里需要另一种文件：请在需要绘图的地方打开它',
+  'foreign-zip': '这是 ZIP 压缩包：请解压后打开其中的文件',
+  'foreign-gzip': '这是用 gzip 压缩的文件：请解压后打开其中的文件',
   'file-empty': '文件是空的，保存完整了吗？',
   'file-malformed': '文件有误：{what}',
   'file-line': '第 {line} 行：{why}',
@@ -213,6 +226,21 @@ export const zhWords: Record<string, string> = {
   nothing: '空值',
   fewer: '更少',
   'another kind of value': '另一种值',
+  'the plant maker is not there': '植物生成器没有启动',
+  'the tree is asked for at the age of 0; ask for 1 or more': '树龄是 0，请改为 1 或以上',
+  'years is 0; make it 1 or more': 'years 是 0，请改为 1 或以上',
+  'rounds is 0; make it 1 or more': 'rounds 是 0，请改为 1 或以上',
+  'the axiom draws no step `F`, and steps is 0; make it 1 or more':
+    '公理里没有一步 `F`，steps 又是 0，请改为 1 或以上',
+  'neither the axiom nor what is made of it draws a step `F` of any length':
+    '公理和由它生成的内容都没有画出有长度的一步 `F`',
+  'obstacles leave no room at the roots for a twig; move them or the roots':
+    '障碍物在根处没有给枝条留出空间，请移动障碍物或根',
+  'every attraction point lies within the kill distance (kill_m) of a root; make it smaller':
+    '所有吸引点离根都在消除距离（kill_m）以内，请减小它',
+  'no root came near an attraction point': '没有一个根靠近吸引点',
+  'obstacles stand around every root; move them, or lower internode_m':
+    '每个根都被障碍物围住，请移动障碍物或减小 internode_m',
   'hidden layer': '隐藏的图层',
   hidden: '隐藏的内容',
   'use of something that is not in the file': '引用了文件中没有的内容',

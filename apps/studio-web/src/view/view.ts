@@ -6,6 +6,7 @@ import type { CarriedPose, Carry, Mirror, PlantState, SceneView, ShapePointer, S
 import type { HeldRows } from './carry';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
+import { t } from '../text';
 import { onScreen, pointerOf, reachOf } from './aim';
 import { bonesOf } from './bones';
 import { Rig, type Side } from './camera';
@@ -721,7 +722,7 @@ export class PlantView {
     if (aided) this.redraw();
     const canvas = this.renderer.domElement;
     return new Promise((resolve, reject) => {
-      canvas.toBlob((b) => (b ? resolve(b) : reject(new Error('no picture'))), 'image/png');
+      canvas.toBlob((b) => (b ? resolve(b) : reject(new Error(t('fault.picture')))), 'image/png');
     });
   }
 

@@ -13,6 +13,7 @@ use mesh::PointCloud;
 
 use crate::ExportSpec;
 use crate::error::{CloudError, FileFault, Place, WriteError};
+use crate::foreign::Foreign;
 use crate::kind::CloudFormat;
 
 impl CloudFormat {
@@ -79,6 +80,7 @@ pub fn read_cloud(
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(file(FileFault::Empty));
     }
+    FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
     let mut sink = Sink { cloud: PointCloud::default(), dropped: 0 };
     match format {
         CloudFormat::Ply => ply::read(&bytes, &mut sink, report)?,

@@ -13,6 +13,7 @@ use base::Warning;
 use ink::Drawing;
 
 use crate::error::{DrawingError, FileFault, Place};
+use crate::foreign::Foreign;
 use crate::kind::DrawingFormat;
 pub use json::write_drawing;
 pub use svg::write_svg;
@@ -119,6 +120,7 @@ fn says_latin1(bytes: &[u8]) -> bool {
 
 /// Text from UTF-8 (a byte order mark is dropped), UTF-16 with a byte order mark, or Latin-1 where XML says so.
 pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
+    FileFault::if_foreign(Foreign::sniff(&bytes))?;
     let utf16 = |big: bool| {
         let units = bytes[2..].chunks_exact(2).map(|b| {
             let pair = [b[0], b[1]];

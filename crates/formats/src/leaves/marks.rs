@@ -133,11 +133,12 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
         out.warnings.push(Warning {
             code: "leaf-size",
             message: format!(
-                "the leaf is {length:.4} m long: is the unit right? Say `# unit: mm` in the file or --unit mm"
+                "the leaf is {length:.4} m long: is the unit right? Say it in the file (`# unit: mm`), or when you read it"
             ),
             fields: Vec::new(),
         });
     }
+    out.warnings = base::gathered(out.warnings);
     Ok(out)
 }
 
@@ -197,7 +198,7 @@ fn header(fields: &[&str]) -> Result<Columns, FileFault> {
     match needed.iter().find(|n| n.1.is_none()) {
         Some((name, _)) => Err(FileFault::malformed(
             format!("the first line has no column `{name}`"),
-            "start with the line row,mark,x,y,z,thickness,midrib (see burgeon leaf --template)",
+            "start with the line row,mark,x,y,z,thickness,midrib (docs/leaves.md has an example)",
         )),
         None => Ok(columns),
     }

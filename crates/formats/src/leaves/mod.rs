@@ -11,6 +11,7 @@ use std::io::Read;
 
 use crate::drawing::text_of;
 use crate::error::{FileFault, Place, Placed};
+use crate::foreign::Foreign;
 
 pub use graph::{ReadGraph, read_vein_graph};
 pub use growth::{GrowthEntry, ReadGrowth, read_growth};
@@ -85,6 +86,7 @@ fn text(input: impl Read) -> Result<String, LeafFileError> {
             advice: "a file holds what was measured on a leaf",
         }));
     }
+    FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
     text_of(bytes).map_err(file)
 }
 

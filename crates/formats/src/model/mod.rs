@@ -38,6 +38,7 @@ pub use stl::write_stl;
 pub use usd_write::{UsdFiles, usd_files};
 
 use crate::error::{FileFault, ModelError, Place, WriteError};
+use crate::foreign::Foreign;
 use crate::kind::ModelFormat;
 
 /// Largest model file that is read: 1 GiB.
@@ -83,6 +84,7 @@ pub fn read_model(
     if bytes.is_empty() {
         return Err(file(FileFault::Empty));
     }
+    FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
     let mut model = match format {
         ModelFormat::Glb | ModelFormat::Gltf => {
             if !spec.is_default() {

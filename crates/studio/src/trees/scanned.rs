@@ -1,6 +1,7 @@
 //! Laser scans of trees -> trees.
 
-use base::{Cancelled, Report, Run, Seed, Stopped};
+use base::{Cancelled, Report, Run, Seed, Stopped, UpAxis};
+use formats::ExportSpec;
 use glam::DVec3;
 use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
 use plant::BladeForm;
@@ -36,6 +37,23 @@ pub enum ScannedTreeError {
     /// The user asked to stop, or it would have been too much.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+}
+
+impl ScannedTreeError {
+    /// The same with places in the coordinates of the scan: with its axes, in its unit, with what was taken off it, metres.
+    #[must_use]
+    pub fn in_scan(self, axes: &ExportSpec, offset_m: DVec3) -> Self {
+        let given = |[x, z]: [f64; 2]| {
+            let [a, b, c] = axes.place(DVec3::new(x, 0.0, z) + offset_m);
+            if axes.up == UpAxis::Y { [a, c] } else { [a, b] }
+        };
+        match self {
+            Self::Scan(ScanTreeError::NotThere(at, within_m, nearest)) => {
+                Self::Scan(ScanTreeError::NotThere(given(at), within_m, given(nearest)))
+            }
+            other => other,
+        }
+    }
 }
 
 impl From<ScanTreeError> for ScannedTreeError {
