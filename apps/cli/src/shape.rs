@@ -117,7 +117,8 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
 /// Fails on options that nothing uses.
 fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
-    let plants = ["what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json"];
+    let plants =
+        ["what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json"];
     let users = "plants that are shaped";
     if args.template {
         given.refuse(&plants, users, "--template prints an example of edits")?;

@@ -27,13 +27,15 @@ pub struct PlausibilityLimits {
     pub blade_most_m: f64,
     /// The length of a leaf that is measured, metres: less than a millimetre is a unit that is wrong.
     pub blade_least_m: f64,
-    /// The height of a stem over that at which it would buckle under its own weight (McMahon 1973): see [`BUCKLING`].
+    /// The height of a stem over that at which a column of wood as thick as its foot would buckle under its own weight
+    /// (McMahon 1973; trees have a quarter of it). Culms are hollow: reeds of 4 m with 1 cm have 1.1.
     pub slender_most: f64,
-    /// The volume of the shoot over the cube of the plant's longest side: a baobab of 22 m and 10 m across has 0.08, a
-    /// cactus that is a ball 0.52.
+    /// The volume of the shoot over the cube of the plant's longest side: a cactus that is a ball has 0.52.
     pub volume_most: f64,
-    /// The same of a tree that was grown or scanned.
+    /// The same of a plant of more than [`Self::tall_m`]: a baobab of 22 m and 10 m across has 0.08.
     pub wood_most: f64,
+    /// What is no ball any more, metres: the largest barrel cacti have 2.5 m (Anderson 2001).
+    pub tall_m: f64,
     /// One side of all leaves over the square of the plant's longest side: leaf area indices above 12 are rare, above 18
     /// unknown (Asner, Scurlock and Hicke 2003), and no crown is wider than the longest side.
     pub leaf_area_most: f64,
@@ -70,9 +72,10 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
     leaf_most_m: 25.0,
     blade_most_m: 5.0,
     blade_least_m: 0.001,
-    slender_most: 1.0,
+    slender_most: 1.5,
     volume_most: 0.8,
     wood_most: 0.1,
+    tall_m: 3.0,
     leaf_area_most: 20.0,
     unused_most: 0.6,
     extent_least: 0.5,
@@ -93,7 +96,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
 const BUCKLING: f64 = 80.5;
 
 /// The names of all checks, which are the codes of their warnings.
-pub const CHECKS: [&str; 21] = [
+pub const CHECKS: [&str; 23] = [
     "nothing-made",
     "size-large",
     "size-small",
@@ -106,9 +109,11 @@ pub const CHECKS: [&str; 21] = [
     "extent-large",
     "reading-unsure",
     "growth-unused",
-    "leaf-short",
+    "blade-long",
+    "blade-short",
     "margin-crossed",
     "marks-unexplained",
+    "tree-small",
     "scan-unused",
     "scan-radii-unseen",
     "pipe-exponent-on-bound",
@@ -169,7 +174,7 @@ impl Test {
 }
 
 /// Checks of any plant. Cost: linear in nodes and organs.
-pub(crate) fn check_plant(plant: &Plant, is_tree: bool, report: &mut Report) {
+pub(crate) fn check_plant(plant: &Plant, report: &mut Report) {
     Test {
         name: "nothing-made",
         value: (plant.axes.len() + plant.organs.len()) as f64,
@@ -186,7 +191,7 @@ pub(crate) fn check_plant(plant: &Plant, is_tree: bool, report: &mut Report) {
     }
     check_size(size, report);
     check_leaves(plant, size, report);
-    check_wood(plant, size, is_tree, report);
+    check_wood(plant, size, report);
 }
 
 fn check_size(size: f64, report: &mut Report) {
@@ -240,7 +245,7 @@ fn check_leaves(plant: &Plant, size: f64, report: &mut Report) {
     .tell(report);
 }
 
-fn check_wood(plant: &Plant, size: f64, is_tree: bool, report: &mut Report) {
+fn check_wood(plant: &Plant, size: f64, report: &mut Report) {
     let (mut volume, mut thickest, mut top) = (0.0, 0.0_f64, 0.0_f64);
     for axis in plant.axes.iter().filter(|a| a.kind.is_shoot()) {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
@@ -260,7 +265,11 @@ fn check_wood(plant: &Plant, size: f64, is_tree: bool, report: &mut Report) {
     Test {
         name: "volume-large",
         value: volume / (size * size * size),
-        bound: Bound::AtMost(if is_tree { PLAUSIBLE.wood_most } else { PLAUSIBLE.volume_most }),
+        bound: Bound::AtMost(if size > PLAUSIBLE.tall_m {
+            PLAUSIBLE.wood_most
+        } else {
+            PLAUSIBLE.volume_most
+        }),
         figure: Figure::Number,
         message: "the stems have {value} times the volume of a cube as wide as the plant",
         advice: "they are too thick for its height: check the unit and the radii, or set the height",
@@ -291,12 +300,11 @@ pub(crate) struct Sketched<'a> {
 
 /// Checks of a plant of a drawing.
 pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
-    let ignored = base::set_of(
-        made.reading.strokes.iter().filter(|s| s.organ == OrganWord::Ignored).map(|s| s.index),
-    );
+    let ignored =
+        base::set_of(made.reading.strokes.iter().filter(|s| s.organ == OrganWord::Ignored).map(|s| s.index));
     let sum = |all: bool| -> f64 {
         let counted = made.ink.strokes.iter().filter(|s| all || ignored.contains_key(&s.index));
-        counted.map(|s| s.length).sum()
+        counted.fold(0.0, |sum, s| sum + s.length)
     };
     let whole = sum(true);
     if whole > 0.0 {
@@ -378,7 +386,7 @@ pub(crate) fn check_tree(spec: &TreeSpec, plant: &Plant, growth: &GrowthReport, 
 pub(crate) fn check_leaf(leaf: &LeafReport, crossings: Option<usize>, report: &mut Report) {
     let length = leaf.length_mm * 1e-3;
     Test {
-        name: "leaf-long",
+        name: "blade-long",
         value: length,
         bound: Bound::AtMost(PLAUSIBLE.blade_most_m),
         figure: Figure::Metres,
@@ -387,7 +395,7 @@ pub(crate) fn check_leaf(leaf: &LeafReport, crossings: Option<usize>, report: &m
     }
     .tell(report);
     Test {
-        name: "leaf-short",
+        name: "blade-short",
         value: length,
         bound: Bound::AtLeast(PLAUSIBLE.blade_least_m),
         figure: Figure::Metres,
@@ -425,7 +433,7 @@ pub(crate) fn check_leaf(leaf: &LeafReport, crossings: Option<usize>, report: &m
 pub(crate) fn check_scan(plant: &Plant, tally: &ScanTally, is_placed: bool, report: &mut Report) {
     let height = plant.extent().map_or(0.0, |(low, high)| high.y - low.y);
     Test {
-        name: "size-small",
+        name: "tree-small",
         value: height,
         bound: Bound::AtLeast(PLAUSIBLE.tree_least_m),
         figure: Figure::Metres,
@@ -464,8 +472,8 @@ pub(crate) fn check_scan(plant: &Plant, tally: &ScanTally, is_placed: bool, repo
         value: exponent,
         bound: if exponent < low { Bound::AtLeast(low) } else { Bound::AtMost(high) },
         figure: Figure::Number,
-        message: "the exponent of the pipe model is {value}, where its fit ends",
-        advice: "radii and volume of thin branches are not to be trusted: scan nearer, or without leaves",
+        message: "the exponent of the pipe model is {value}",
+        advice: "its fit ends there, so radii of thin branches are not to be trusted: scan nearer, or without leaves",
     }
     .tell(report);
 }
@@ -520,4 +528,88 @@ pub fn check_law(law: &GrowthLaw) -> Report {
         .tell(&mut report);
     }
     report
+}
+
+#[cfg(test)]
+mod tests {
+    use plant::AxisKind;
+
+    use super::*;
+
+    fn failed(report: &Report) -> Vec<&'static str> {
+        report.checks.iter().filter(|c| !c.holds()).map(|c| c.name).collect()
+    }
+
+    fn column(height: f64, radius: f64) -> Plant {
+        let mut plant = Plant::default();
+        plant.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * height], None);
+        plant.nodes.radius_m = vec![radius; 2];
+        plant
+    }
+
+    fn failed_of(plant: &Plant) -> Vec<&'static str> {
+        let mut report = Report::default();
+        check_plant(plant, &mut report);
+        assert_eq!(failed(&report), report.warnings.iter().map(|w| w.code).collect::<Vec<_>>());
+        failed(&report)
+    }
+
+    #[test]
+    fn each_check_has_its_row_in_the_docs() {
+        let docs = include_str!("../../../docs/limits.md");
+        for name in CHECKS {
+            assert!(docs.contains(&format!("`{name}`")), "{name} is in the table");
+        }
+    }
+
+    #[test]
+    fn columns_are_plausible_between_the_bounds() {
+        assert_eq!(failed_of(&column(20.0, 0.2)), [""; 0]);
+        assert_eq!(failed_of(&Plant::default()), ["nothing-made"]);
+        assert_eq!(failed_of(&column(140.0, 4.0)), ["size-large"]);
+        assert_eq!(failed_of(&column(0.4, 0.2)), [""; 0]);
+        assert_eq!(failed_of(&column(0.000_2, 0.000_02)), ["size-small"]);
+        assert_eq!(failed_of(&column(20.0, 5.0)), ["volume-large"]);
+        // McMahon's column of 0.1 m buckles at 17.3 m.
+        assert_eq!(failed_of(&column(1.5 * 17.2, 0.05)), [""; 0]);
+        assert_eq!(failed_of(&column(1.5 * 17.5, 0.05)), ["stem-slender"]);
+    }
+
+    fn item_of(plant: &Plant) -> crate::ItemReport {
+        let (mut checks, mut item) = (Report::default(), crate::ItemReport::default());
+        check_plant(plant, &mut checks);
+        item.add_checks(checks);
+        item
+    }
+
+    #[test]
+    fn only_an_error_refuses_unless_asked_to_be_strict() {
+        let thin = item_of(&column(30.0, 0.05));
+        assert_eq!((thin.refusal(false), thin.warnings.len()), (None, 1));
+        assert_eq!(thin.refusal(true).map(|c| c.name.as_str()), Some("stem-slender"));
+        assert_eq!(item_of(&Plant::default()).refusal(false).map(|c| c.name.as_str()), Some("nothing-made"));
+    }
+
+    #[test]
+    fn organs_that_were_not_told_apart_are_doubted() {
+        let told = |points: &[usize]| {
+            let mut report = Report::default();
+            check_organs(points, &mut report);
+            failed(&report)
+        };
+        assert_eq!(told(&[950, 30, 20]), ["one-organ"]);
+        assert_eq!(told(&[500, 300, 200]), [""; 0]);
+    }
+
+    #[test]
+    fn figures_have_the_digits_that_count() {
+        let shown = [
+            (0.7234, Figure::Share),
+            (0.000_3, Figure::Metres),
+            (2100.4, Figure::Metres),
+            (0.0, Figure::Number),
+        ];
+        let words = shown.map(|(value, figure)| figure.show(value));
+        assert_eq!(words, ["72.3 %", "0.0003 m", "2100 m", "0"]);
+    }
 }

@@ -15,9 +15,9 @@ use reading::{KeptStrokes, Kind, Reading, VeinReading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
+use crate::checks::{Sketched, check_plant, check_sketch};
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
-use crate::checks::{Sketched, check_plant, check_sketch};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
@@ -437,7 +437,7 @@ impl Evaluator {
         warnings.extend(told.iter().filter_map(|t| t.warning(edits)));
         let mut checks = Report::default();
         if !self.preview {
-            check_plant(shown, false, &mut checks);
+            check_plant(shown, &mut checks);
             let (ink, reading) = (&strokes.value.0, &reading.value);
             let sketched = Sketched { ink, reading, extent: self.extent(), is_guessed: self.is_guessed() };
             check_sketch(&sketched, &mut checks);

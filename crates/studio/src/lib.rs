@@ -64,8 +64,8 @@ pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{
-    CheckReport, Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
-    REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord, StrokeReport,
+    CheckReport, Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit,
+    LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord, StrokeReport,
     TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;

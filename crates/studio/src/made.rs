@@ -73,7 +73,7 @@ impl MadePlant {
         }
         .warning(warnings);
         let mut checks = Report::default();
-        check_plant(&plant, false, &mut checks);
+        check_plant(&plant, &mut checks);
         item.add_checks(checks);
         Self { plant, model, layout, skin, item }
     }

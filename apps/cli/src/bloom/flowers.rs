@@ -80,7 +80,13 @@ pub(super) fn drawn_flower(
             let open = plant.at(day, &law, seed, &machine.run())?;
             let lods = (1..=args.lods).map(|level| plant.at_level(&open, level, &machine.run()));
             let lods = lods.collect::<Result<_, _>>()?;
-            Ok(Shown { plant: Some(open.plant), model: open.model, lods, overlap: Some(open.overlap), checks: vec![] })
+            Ok(Shown {
+                plant: Some(open.plant),
+                model: open.model,
+                lods,
+                overlap: Some(open.overlap),
+                checks: vec![],
+            })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));

@@ -291,7 +291,7 @@ impl TreeEvaluator {
         let growth = GrowthReport::of(spec, &dressed.grown, self.inside);
         let mut checks = Report::default();
         if !self.previewing {
-            check_plant(plant, true, &mut checks);
+            check_plant(plant, &mut checks);
             check_tree(spec, &raw.grown.plant, &growth, &mut checks);
         }
         // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
