@@ -3,14 +3,14 @@
 use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Offset, Quantity, RegionLaw, Rival, Series, Trial};
 use burgeon::bloom::{MotionSpec, RegisterSpec, ShapeError};
 use burgeon::formats::read_growth;
-use burgeon::{RunReport, Seed};
+use burgeon::{RunReport, Seed, check_law};
 use serde::Serialize;
 
 use crate::args::FitArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, poses, report, say, stages};
+use crate::{checks, files, poses, report, say, stages};
 
 /// A law as the report tells it, lengths in metres.
 #[derive(Debug, Serialize)]
@@ -137,6 +137,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     let table = files::extension(&args.input).is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let fitted = if table { of_table(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
     let law = &fitted.law;
+    let checked = check_law(law);
     let text = serde_json::to_string_pretty(law)
         .map_err(|e| Failure::Bug(format!("the law cannot be written as JSON: {e}")))?;
     let (written, write_ms) = machine.timed(|| {
@@ -158,7 +159,9 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         item.timings_ms.add_io(fitted.read_ms, write_ms);
         item.timings_ms.total = machine.whole_ms();
         item.warnings.clone_from(&fitted.warnings);
+        item.add_checks(checked);
     }
+    checks::accept(&run.items, &args.checks)?;
     let report = FitReport {
         run,
         laws: law.laws.iter().map(|l| LawReport::new(l, law.span_days)).collect(),
@@ -168,7 +171,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     };
     report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
-        fitted.warnings.iter().for_each(|w| say::warning(w));
+        report.run.items.iter().flat_map(|i| &i.warnings).for_each(|w| say::warning(w));
         report.stages.iter().for_each(|t| say::line(&t.line()));
         report.poses.iter().flat_map(poses::PoseReport::lines).for_each(|l| say::line(&l));
         tell_laws(law);

@@ -20,7 +20,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{files, inputs, levels, picture, report, say};
+use crate::{checks, files, inputs, levels, picture, report, say};
 
 pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -86,6 +86,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         item.plant = Some(grown.plant.measure());
     }
     let mut items = vec![item];
+    checks::accept(&items, &args.checks).map_err(|f| f.of(Path::new(&named(args))))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let form = levels::Form::of(&args.surface).with(&copies);
         let (goal, plant) = ((path, format, form), (&grown.plant, &model));

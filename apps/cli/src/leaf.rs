@@ -21,7 +21,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{edits, files, inputs, levels, picture, report, say};
+use crate::{checks, edits, files, inputs, levels, picture, report, say};
 
 pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -83,6 +83,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         })?;
     }
     let mut items = vec![item];
+    checks::accept(&items, &args.checks)?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
         let plain = format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty();
@@ -175,7 +176,8 @@ const LOOK: [&str; 4] = ["curl", "wilt", "ball", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.
-const MADE: [&str; 14] = [
+const MADE: [&str; 15] = [
+    "strict",
     "lods",
     "materials",
     "number",

@@ -2,6 +2,7 @@
 
 mod args;
 mod bloom;
+mod checks;
 mod classes;
 mod compare;
 mod convert;

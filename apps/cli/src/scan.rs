@@ -15,7 +15,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{files, grow, levels, picture, report, say};
+use crate::{checks, files, grow, levels, picture, report, say};
 
 /// What became of the points.
 #[derive(Debug, Serialize)]
@@ -112,6 +112,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
+    checks::accept(&items, &args.checks).map_err(|f| f.of(&args.input))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let goal = (path, format, levels::Form::of(&args.surface));
         let plant = (&made.plant, &made.model);

@@ -94,6 +94,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         })?;
         report.items.extend(scene.get(plant.id()).map(|p| p.report()));
     }
+    crate::checks::accept(&report.items, &args.checks)?;
     let plants = seen.iter().filter_map(|p| Some(standing(p, scene.get(p.id())?.model)));
     let plants: Vec<Standing<'_>> = plants.collect();
     let model = scene_model(document.name(), &plants);

@@ -20,7 +20,7 @@ use crate::files::Kind;
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::output::Outputs;
-use crate::{bloom, edits, files, grow, inputs, levels, picture, project, report, say};
+use crate::{bloom, checks, edits, files, grow, inputs, levels, picture, project, report, say};
 
 /// A plant of any maker, with its meshes.
 struct Shaped {
@@ -78,6 +78,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         item.plant = Some(plant.measure());
     }
     let mut items = vec![item];
+    checks::accept(&items, &args.checks)?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let goal = (path, format, levels::Form::of(&args.surface));
         levels::write(&mut outputs, goal, (&plant, &model), &lods, &args.axes, &mut items, &machine)?;
@@ -116,7 +117,8 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
 /// Fails on options that nothing uses.
 fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
-    let plants = ["what", "edits", "output", "plant", "save", "png", "seed", "list", "report", "json"];
+    let plants =
+        ["what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json"];
     let users = "plants that are shaped";
     if args.template {
         given.refuse(&plants, users, "--template prints an example of edits")?;

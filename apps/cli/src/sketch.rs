@@ -21,7 +21,7 @@ use crate::files::{self, Goal, Kind};
 use crate::machine::{Machine, Progress};
 use crate::materials::Materials;
 use crate::output::Outputs;
-use crate::{names, output, picture, project, say};
+use crate::{checks, names, output, picture, project, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -223,10 +223,13 @@ impl<'a> Job<'a> {
     /// Makes one plant.
     fn made(&self, input: &Input, run: &Run<'_>) -> Outcome<Made> {
         let seed = self.seed(input.project.as_deref());
-        make_from_sketch(&input.read.drawing, &self.options(input), seed, run).map_err(|e| match e {
-            MakeError::Cancelled(_) => Failure::Cancelled,
-            other => Failure::Bad(other.to_string()),
-        })
+        let made =
+            make_from_sketch(&input.read.drawing, &self.options(input), seed, run).map_err(|e| match e {
+                MakeError::Cancelled(_) => Failure::Cancelled,
+                other => Failure::Bad(other.to_string()),
+            })?;
+        checks::accept(std::slice::from_ref(&made.item), &self.args.checks)?;
+        Ok(made)
     }
 
     /// The drawing as a document in which each of its plants is one.

@@ -2,7 +2,7 @@
 import { wrong } from './errors.js';
 import { Looks, type ObjectOptions, type Place, type ThreeModule } from './object.js';
 import type { Answer, PartArrays, Tables } from './protocol.js';
-import type { ItemReport, Json, MaterialView, PlantView, TextureView } from './wire.js';
+import type { CheckReport, ItemReport, Json, MaterialView, PlantView, TextureView } from './wire.js';
 
 /** A mesh with its name and material. */
 export interface PlantMesh extends PartArrays {
@@ -48,6 +48,11 @@ export class Plant {
   /** The entry of the report, as the command line writes it. */
   get report(): ItemReport {
     return this.answer.view.report;
+  }
+
+  /** What was checked of it: whether a person would accept it. Those that failed are among the report's warnings. */
+  get checks(): readonly CheckReport[] {
+    return this.answer.view.report.checks;
   }
 
   /** The fingerprint of the plant: the same on every machine, and as the command line's. */

@@ -21,6 +21,26 @@ export type Changed = {
   removed: number;
 };
 
+/** A measured value of a plant against what is plausible (`docs/limits.md` has the table). */
+export type CheckReport = {
+  /** What to do if it is not plausible. */
+  advice: string;
+  /** What is plausible. */
+  bound: number;
+  /** What was measured, with its bound, as a sentence. */
+  message: string;
+  /** A word that stays, such as `size-large`. */
+  name: string;
+  /** Whether the value is plausible. */
+  ok: boolean;
+  /** What it means if not. */
+  severity: SeverityWord;
+  /** On which side of the bound. */
+  side: SideWord;
+  /** What was measured. */
+  value: number;
+};
+
 /** Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read. */
 export type Counts = {
   /** Axes of every kind. */
@@ -109,6 +129,8 @@ export type GrowthReport = {
 export type ItemReport = {
   /** Of `shape --list`: the branches that were asked for. */
   branches?: Json[];
+  /** What was checked of it: whether a person would accept it. Those that failed are among the warnings. */
+  checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;
   /** Fingerprint of the plant: independent of platform and threads. */
@@ -311,6 +333,20 @@ export type ScanReport = {
   /** Greatest width across the midrib, millimetres. */
   width_mm: number;
 };
+
+/** What a check that fails means. */
+export type SeverityWord =
+  | /** The result may be wrong. */
+  "warning"
+  | /** Nobody would accept the result. */
+  "error";
+
+/** Which side of a bound is plausible. */
+export type SideWord =
+  | /** The bound or more. */
+  "at_least"
+  | /** The bound or less. */
+  "at_most";
 
 /** One stroke. */
 export type StrokeReport = {

@@ -223,6 +223,11 @@ class Plant:
         return list(self.report.get("warnings", []))
 
     @property
+    def checks(self) -> "List[Dict[str, Any]]":
+        """What was checked of it: ``name``, ``value``, ``bound``, ``side``, ``ok``, ``severity``, ``message``, ``advice``."""
+        return list(self.report.get("checks", []))
+
+    @property
     def spec(self) -> "Dict[str, Any]":
         """All that its maker was asked for, defaults too."""
         return json.loads(self._raw.spec())

@@ -61,6 +61,9 @@ impl Held {
         if !there {
             return Err(unusable(py, &"internal error, a bug in burgeon: no plant was made"));
         }
+        if let Some(check) = held.report().as_ref().and_then(|r| r.refusal(false)) {
+            return Err(unusable(py, &format_args!("{}: {}", check.message, check.advice)));
+        }
         Ok(Arc::new(held))
     }
 

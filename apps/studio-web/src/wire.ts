@@ -317,6 +317,26 @@ export type Changed = {
   removed: number;
 };
 
+/** A measured value of a plant against what is plausible (`docs/limits.md` has the table). */
+export type CheckReport = {
+  /** What to do if it is not plausible. */
+  advice: string;
+  /** What is plausible. */
+  bound: number;
+  /** What was measured, with its bound, as a sentence. */
+  message: string;
+  /** A word that stays, such as `size-large`. */
+  name: string;
+  /** Whether the value is plausible. */
+  ok: boolean;
+  /** What it means if not. */
+  severity: SeverityWord;
+  /** On which side of the bound. */
+  side: SideWord;
+  /** What was measured. */
+  value: number;
+};
+
 /** An sRGB colour, written `#rrggbb`. */
 export type Colour = string;
 
@@ -922,6 +942,8 @@ export type HandEdit =
 export type ItemReport = {
   /** Of `shape --list`: the branches that were asked for. */
   branches?: Json[];
+  /** What was checked of it: whether a person would accept it. Those that failed are among the warnings. */
+  checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;
   /** Fingerprint of the plant: independent of platform and threads. */
@@ -1765,6 +1787,20 @@ export type SetDown = {
   /** A quaternion (x, y, z, w) of any length above 0. */
   turn: [number, number, number, number];
 };
+
+/** What a check that fails means. */
+export type SeverityWord =
+  | /** The result may be wrong. */
+  "warning"
+  | /** Nobody would accept the result. */
+  "error";
+
+/** Which side of a bound is plausible. */
+export type SideWord =
+  | /** The bound or more. */
+  "at_least"
+  | /** The bound or less. */
+  "at_most";
 
 /** What came of an input. */
 export type ShapeAnswer = {

@@ -13,6 +13,7 @@
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
 //! | `nearest` | [`nearest()`], [`meant`]: which of the known words was meant |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats; [`escaped_xml`] |
+//! | `check` | [`Check`]: a value of a result against the bound of what is plausible |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
@@ -21,6 +22,7 @@
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
 mod budget;
+mod check;
 mod coded;
 mod digest;
 mod exps;
@@ -38,6 +40,7 @@ pub mod turn;
 mod units;
 
 pub use budget::{Budget, Counted, OverBudget, grouped};
+pub use check::{Bound, Check, Severity};
 pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
 pub use litemap::LiteMap;

@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Display};
 
-use crate::Clock;
+use crate::{Check, Clock};
 
 /// One thing that was not as the user might expect, and what was done about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,7 +100,7 @@ pub struct Stage {
     pub ms: f64,
 }
 
-/// Warnings and stage times, in the order in which they arose.
+/// Warnings, checks and stage times, in the order in which they arose.
 ///
 /// ```
 /// let mut report = base::Report::default();
@@ -114,6 +114,8 @@ pub struct Report {
     pub warnings: Vec<Warning>,
     /// Stage times; a stage that ran twice is listed once with the sum.
     pub stages: Vec<Stage>,
+    /// What was checked of the result, whether it held or not.
+    pub checks: Vec<Check>,
 }
 
 /// Warns in a sentence whose numbers and names are fields, so that every language has its own words around them.
@@ -152,6 +154,16 @@ impl Report {
     ) {
         let fields = fields.iter().map(|(name, value)| (*name, value.to_string())).collect();
         gather(&mut self.warnings, Warning { code, message: crate::brief(&message.into()), fields });
+    }
+
+    /// Adds a check; one that fails also warns, by its name and with its way out.
+    pub fn check(&mut self, check: Check) {
+        if !check.holds() {
+            let [value, bound] = &check.shown;
+            let message = format!("{}: {}", check.said(), check.advice);
+            self.warn_of(check.name, &[("value", value), ("bound", bound)], message);
+        }
+        self.checks.push(check);
     }
 
     /// Runs `f` and books its time under `name`.

@@ -15,6 +15,7 @@ use reading::{KeptStrokes, Kind, Reading, VeinReading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
+use crate::checks::{Sketched, check_plant, check_sketch};
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
@@ -434,10 +435,17 @@ impl Evaluator {
         let (told, edits) = self.shaped.as_ref().map_or((&[][..], &[][..]), |s| (&s.told, &s.edits));
         let mut warnings = report.warnings.clone();
         warnings.extend(told.iter().filter_map(|t| t.warning(edits)));
+        let mut checks = Report::default();
+        if !self.preview {
+            check_plant(shown, &mut checks);
+            let (ink, reading) = (&strokes.value.0, &reading.value);
+            let sketched = Sketched { ink, reading, extent: self.extent(), is_guessed: self.is_guessed() };
+            check_sketch(&sketched, &mut checks);
+        }
         let mut counts = Counts::of_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
-        ItemReport {
+        let mut item = ItemReport {
             name: name.to_owned(),
             output: String::new(),
             strokes: reading.value.strokes.iter().map(stroke_report).collect(),
@@ -449,7 +457,26 @@ impl Evaluator {
             edits: told.to_vec(),
             ..ItemReport::default()
         }
-        .warning(warnings)
+        .warning(warnings);
+        item.add_checks(checks);
+        item
+    }
+
+    /// The front of the meshes over the drawing, by their diagonals; none of a plant that was edited by hand.
+    fn extent(&self) -> Option<f64> {
+        let (plant, model) = (&self.plant.as_ref()?.value.0, &self.model.as_ref()?.value);
+        if self.shaped.is_some() || plant.map.metres_per_ink <= 0.0 {
+            return None;
+        }
+        let bounds = model.bounds();
+        let size = bounds.max - bounds.min;
+        // The drawing's diagonal is 1 in ink coordinates.
+        Some(size.truncate().length() / plant.map.metres_per_ink).filter(|e| e.is_finite())
+    }
+
+    /// Nobody said what the drawing shows.
+    fn is_guessed(&self) -> bool {
+        self.reading.as_ref().is_some_and(|r| r.from.2.is_none())
     }
 
     /// The stages that the last update did again, by their names in reports.

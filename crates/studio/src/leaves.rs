@@ -10,6 +10,8 @@ use mesh::{Texture, TriMesh};
 use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId, SplineBlade};
 use skin::{KeptShapes, LeafColours, LeafMeshSpec, ShapeMesh, SkinSpec, SurfacePictures};
 
+use crate::checks::check_leaf;
+use crate::leaf_blade::leaf_blade;
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 use crate::shaping::shaped;
@@ -115,7 +117,10 @@ pub fn make_leaf_of(
     let mut plant = Plant { name: name.into(), ..Plant::default() };
     bear(&mut plant, leaf.blade(), None, options.paint([1.0; 3]), seed.number());
     let (mut made, mesh) = finish(plant, &[texture], options, run, &mut report)?;
-    made.item.leaf = Some(leaf_report(&marks, &leaf, &mesh, options));
+    let told = leaf_report(&marks, &leaf, &mesh, options);
+    let crossings = geom::self_crossings(&leaf_blade(&leaf, &marks, 1.0).outline);
+    made = made.check(|r| check_leaf(&told, Some(crossings), r));
+    made.item.leaf = Some(told);
     Ok(made)
 }
 

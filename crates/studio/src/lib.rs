@@ -18,6 +18,7 @@
 //! ```
 
 mod balls;
+mod checks;
 mod days;
 mod drawn;
 mod evaluate;
@@ -50,6 +51,7 @@ pub use base::{
     brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly, quoted, set_of,
     sort_by_key, srgb_of_linear,
 };
+pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law};
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
@@ -62,8 +64,9 @@ pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{
-    Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
-    REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, StrokeReport, TimingsMs,
+    CheckReport, Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit,
+    LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord, StrokeReport,
+    TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{

@@ -7,7 +7,8 @@ use plant::Plant;
 use reading::Reading;
 use skin::{Layout, SkinSpec};
 
-use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::checks::check_plant;
+use crate::report::{CheckReport, Counts, ItemReport, TimingsMs};
 use crate::shaping::EditReport;
 
 /// Everything made from one drawing.
@@ -58,7 +59,7 @@ impl MadePlant {
     ) -> Self {
         let mut warnings = report.warnings.clone();
         warnings.extend(edits.iter().filter_map(|e| e.warning(asked)));
-        let item = ItemReport {
+        let mut item = ItemReport {
             name: plant.name.clone(),
             counts: Counts {
                 vertices: model.vertex_count() as u64,
@@ -67,10 +68,22 @@ impl MadePlant {
             },
             timings_ms: TimingsMs::from_report(report),
             edits,
+            checks: report.checks.iter().map(CheckReport::from).collect(),
             ..ItemReport::default()
         }
         .warning(warnings);
+        let mut checks = Report::default();
+        check_plant(&plant, &mut checks);
+        item.add_checks(checks);
         Self { plant, model, layout, skin, item }
+    }
+
+    /// With checks of what the maker alone knows.
+    pub(crate) fn check(mut self, checks: impl FnOnce(&mut Report)) -> Self {
+        let mut report = Report::default();
+        checks(&mut report);
+        self.item.add_checks(report);
+        self
     }
 
     /// With the digest of the meshes.

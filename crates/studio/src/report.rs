@@ -2,7 +2,7 @@
 
 use base::LiteMap;
 
-use base::{Report, Warning};
+use base::{Bound, Check, Report, Severity, Warning};
 use plant::{AxisKind, OrganKind, Plant};
 use reading::{Kind, Reading};
 use schemars::JsonSchema;
@@ -87,7 +87,10 @@ pub struct ItemReport {
     pub readings: Vec<ReadingReport>,
     /// What was not as the user might expect.
     pub warnings: Vec<String>,
-    /// The same with their codes, for shells that say them in another language.
+    /// What was checked of it: whether a person would accept it. Those that failed are among the warnings.
+    #[serde(default)]
+    pub checks: Vec<CheckReport>,
+    /// The warnings with their codes, for shells that say them in another language.
     #[serde(skip)]
     pub told: Vec<Warning>,
     /// Of a plant with axes: what a botanist would measure on it.
@@ -114,6 +117,80 @@ impl ItemReport {
     pub(crate) fn warning(self, told: Vec<Warning>) -> Self {
         let told = base::gathered(told);
         Self { warnings: told.iter().map(ToString::to_string).collect(), told, ..self }
+    }
+
+    /// With more checks and their warnings.
+    pub fn add_checks(&mut self, report: Report) {
+        self.warnings.extend(report.warnings.iter().map(ToString::to_string));
+        self.told.extend(report.warnings);
+        self.checks.extend(report.checks.iter().map(CheckReport::from));
+    }
+
+    /// The first check that makes this no result: one that failed as an error, or if `is_strict` any that failed.
+    pub fn refusal(&self, is_strict: bool) -> Option<&CheckReport> {
+        self.checks.iter().find(|c| !c.ok && (is_strict || c.severity == SeverityWord::Error))
+    }
+}
+
+/// A measured value of a plant against what is plausible (`docs/limits.md` has the table).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CheckReport {
+    /// A word that stays, such as `size-large`.
+    pub name: String,
+    /// What was measured.
+    pub value: f64,
+    /// What is plausible.
+    pub bound: f64,
+    /// On which side of the bound.
+    pub side: SideWord,
+    /// Whether the value is plausible.
+    pub ok: bool,
+    /// What it means if not.
+    pub severity: SeverityWord,
+    /// What was measured, with its bound, as a sentence.
+    pub message: String,
+    /// What to do if it is not plausible.
+    pub advice: String,
+}
+
+/// Which side of a bound is plausible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SideWord {
+    /// The bound or more.
+    AtLeast,
+    /// The bound or less.
+    AtMost,
+}
+
+/// What a check that fails means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SeverityWord {
+    /// The result may be wrong.
+    Warning,
+    /// Nobody would accept the result.
+    Error,
+}
+
+impl From<&Check> for CheckReport {
+    fn from(check: &Check) -> Self {
+        Self {
+            name: check.name.to_owned(),
+            value: check.value,
+            bound: check.bound.number(),
+            side: match check.bound {
+                Bound::AtLeast(_) => SideWord::AtLeast,
+                Bound::AtMost(_) => SideWord::AtMost,
+            },
+            ok: check.holds(),
+            severity: match check.severity {
+                Severity::Warning => SeverityWord::Warning,
+                Severity::Error => SeverityWord::Error,
+            },
+            message: check.said(),
+            advice: check.advice.to_owned(),
+        }
     }
 }
 

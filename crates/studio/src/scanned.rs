@@ -10,6 +10,7 @@ use mesh::{PointCloud, Texture};
 use plant::{AxisKind, NodeId, Paint, Plant, Shape, Sheet, Vein, Venation};
 use skin::CloudColours;
 
+use crate::checks::check_leaf;
 use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
@@ -69,7 +70,7 @@ pub fn make_leaf_from_scan(
     let mut outline = found.outline();
     outline.extend(outline.first().copied());
     let (blade, veins) = (&mesh.surface, &mesh.veins);
-    made.item.leaf = Some(LeafReport {
+    let told = LeafReport {
         surface: "scan".into(),
         rows: rows as u64,
         length_mm: 1e3 * geom::polyline_length3(&line),
@@ -86,7 +87,9 @@ pub fn make_leaf_from_scan(
             width_mm: 1e3 * width,
         }),
         ..LeafReport::default()
-    });
+    };
+    made = made.check(|r| check_leaf(&told, None, r));
+    made.item.leaf = Some(told);
     Ok((made, found))
 }
 

@@ -11,6 +11,7 @@ use plant::{AxisKind, NodeId, Plant, Shape};
 use serde::Serialize;
 use skin::CloudColours;
 
+use crate::checks::check_organs;
 use crate::leaves::{LeafError, LeafOptions, add_leaf, finish};
 use crate::made::MadePlant;
 use crate::scanned::{colours_of, painted, sheet_of};
@@ -120,6 +121,8 @@ pub fn make_seedling(
         fits.push(grove.add_organ((name, key), bearer, (limb, points, found))?);
     }
     let (made, _) = finish(plant, &textures, &options.leaf, run, &mut report)?;
+    let counts: Vec<usize> = organs.iter().map(|o| o.points.len()).collect();
+    let made = made.check(|r| check_organs(&counts, r));
     let all: Vec<DVec3> = organs.iter().flat_map(|o| o.points.iter().copied()).collect();
     let error = bloom::compare(&all, &surface_places(&made.model), run)?;
     Ok((made, fits, error))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, ViewWord, ranged, size};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, ViewWord, ranged, size};
 
 /// The two commands.
 #[derive(Debug, Subcommand)]
@@ -73,6 +73,8 @@ pub(crate) struct FitArgs {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -185,6 +187,8 @@ pub(crate) struct BloomRunArgs {
     pub(crate) view: ViewWord,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

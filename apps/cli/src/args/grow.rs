@@ -10,7 +10,7 @@ use burgeon::skin::{FoliageStyle, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
@@ -60,6 +60,8 @@ pub(crate) struct GrowArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

@@ -6,7 +6,7 @@ use burgeon::leaf::{BallMove, LeafSpec, SurfaceKind};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, of, ranged, whole};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, whole};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
@@ -86,6 +86,8 @@ pub(crate) struct LeafArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

@@ -26,7 +26,8 @@ pub(crate) use replay::ReplayArgs;
 pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{
-    AxesArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
+    AxesArgs, CheckArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord,
+    UpWord,
 };
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 

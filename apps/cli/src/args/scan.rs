@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::given::Given;
 use super::grow::TreeSurfaceArgs;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, ranged, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -55,6 +55,8 @@ pub(crate) struct ScanArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::given::Given;
 use super::grow::TreeSurfaceArgs;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
@@ -51,6 +51,8 @@ pub(crate) struct ShapeArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

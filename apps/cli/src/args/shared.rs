@@ -41,6 +41,16 @@ impl CommonArgs {
     }
 }
 
+/// What becomes of results that are not plausible.
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct CheckArgs {
+    /// Fail, with exit status 2 and no file, if any check of the result fails (docs/limits.md lists them). Without, only on
+    /// results that nobody would accept; other failed checks are warnings.
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
 /// How plants are meshed.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Surface")]

@@ -8,7 +8,7 @@ use burgeon::skin::{PetalColor, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, of, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, of, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
@@ -48,6 +48,8 @@ pub(crate) struct SketchArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

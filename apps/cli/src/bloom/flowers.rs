@@ -71,6 +71,7 @@ pub(super) fn drawn_flower(
     head.items[0].warnings.clone_from(&plant.item.warnings);
     head.items[0].warnings.extend(no_pace(args, &law));
     head.items[0].edits.clone_from(&plant.item.edits);
+    head.items[0].checks.clone_from(&plant.item.checks);
     let mut show = Show {
         name: files::stem(path),
         days: [0.0, plant.days[0] + plant.days[1]],
@@ -79,7 +80,13 @@ pub(super) fn drawn_flower(
             let open = plant.at(day, &law, seed, &machine.run())?;
             let lods = (1..=args.lods).map(|level| plant.at_level(&open, level, &machine.run()));
             let lods = lods.collect::<Result<_, _>>()?;
-            Ok(Shown { plant: Some(open.plant), model: open.model, lods, overlap: Some(open.overlap) })
+            Ok(Shown {
+                plant: Some(open.plant),
+                model: open.model,
+                lods,
+                overlap: Some(open.overlap),
+                checks: vec![],
+            })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
@@ -149,7 +156,8 @@ pub(super) fn flower(
             let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
             let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
             let overlap = bloom::part_overlap(&made.plant, None);
-            Ok(Shown { plant: Some(made.plant), model: made.model, lods, overlap: Some(overlap) })
+            let (plant, checks) = (Some(made.plant), made.item.checks);
+            Ok(Shown { plant, model: made.model, lods, overlap: Some(overlap), checks })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));

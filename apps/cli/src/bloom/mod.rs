@@ -7,6 +7,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+use burgeon::CheckReport;
 use burgeon::bloom::{FlowerSpec, GrowthLaw};
 use burgeon::document::PlantEdit;
 use burgeon::mesh::Model;
@@ -55,6 +56,8 @@ struct Shown {
     lods: Vec<Model>,
     /// The share of petal triangles that cross another petal.
     overlap: Option<f64>,
+    /// What was checked of the plant, if that was of this day.
+    checks: Vec<CheckReport>,
 }
 
 type Shape<'a> = Box<dyn FnMut(f64) -> Outcome<Shown> + 'a>;

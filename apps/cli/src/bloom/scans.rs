@@ -112,15 +112,16 @@ pub(super) fn run(
                 let lods =
                     lods.collect::<Result<_, _>>().map_err(|s| failed(start)(LeafError::from(s).into()))?;
                 scanned = Some(told);
+                let checks = plant.item.checks.clone();
                 item = Some(plant.item);
                 let model = Model { offset_m: loaded.origin.offset_m, ..plant.model };
-                return Ok(Shown { plant: Some(plant.plant), model, lods, overlap: None });
+                return Ok(Shown { plant: Some(plant.plant), model, lods, overlap: None, checks });
             }
             let mut model =
                 burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &organs.rows, &organs.points);
             burgeon::colour_points(&mut model, &organs.colors);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
-            Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None })
+            Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None, checks: vec![] })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));

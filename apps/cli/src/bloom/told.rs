@@ -9,7 +9,7 @@ use crate::args::BloomRunArgs;
 use crate::failure::Outcome;
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{poses, report, say, stages};
+use crate::{checks, poses, report, say, stages};
 
 /// Distances in millimetres: measured to reconstructed, and back.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -146,6 +146,11 @@ pub(super) fn tell(
     let item = &mut told.head.items[0];
     (item.counts, item.plant) = (written.counts, written.measures);
     item.digest = written.digest;
+    if !written.checks.is_empty() {
+        item.checks = written.checks;
+    }
+    let failed: Vec<String> = item.checks.iter().filter(|c| !c.ok).map(checks::sentence).collect();
+    item.warnings.extend(failed.into_iter().filter(|w| !item.warnings.contains(w)).collect::<Vec<_>>());
     item.timings_ms.structure = told.times[1];
     item.timings_ms.add_io(told.times[0], told.times[2]);
     item.timings_ms.total = machine.whole_ms();
@@ -162,6 +167,7 @@ pub(super) fn tell(
         scanned: told.plant,
         stages: told.stages,
     };
+    checks::accept(&report.run.items, &args.checks)?;
     report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
         let item = &report.run.items[0];

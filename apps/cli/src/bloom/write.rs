@@ -6,7 +6,7 @@ use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply
 use burgeon::glam::DVec3;
 use burgeon::mesh::PointCloud;
 use burgeon::plant::{Measures, Plant};
-use burgeon::{Counts, Digest};
+use burgeon::{CheckReport, Counts, Digest};
 
 use super::{Show, Shown};
 use crate::args::{AxesArgs, BloomRunArgs, PictureArgs, PlantFormat};
@@ -25,6 +25,8 @@ pub(super) struct Written {
     pub(super) measures: Option<Measures>,
     pub(super) digest: String,
     pub(super) overlap: Vec<f64>,
+    /// Of the first shape of which one failed, or of the last.
+    pub(super) checks: Vec<CheckReport>,
 }
 
 impl Written {
@@ -38,6 +40,9 @@ impl Written {
         self.counts.triangles = shown.model.triangle_count() as u64;
         self.measures = shown.plant.as_ref().map(Plant::measure);
         self.overlap.extend(shown.overlap);
+        if self.checks.iter().all(|c| c.ok) {
+            self.checks.clone_from(&shown.checks);
+        }
     }
 }
 

@@ -22,7 +22,7 @@ const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// Random numbers by splitmix64: the tests of the command know nothing of the core's.
-struct Dice(u64);
+pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
     fn next(&mut self) -> u64 {
@@ -33,7 +33,7 @@ impl Dice {
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "below n, which is a usize")]
-    fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % (n.max(1) as u64)) as usize
     }
 
@@ -505,9 +505,9 @@ fn tree(dir: &Path) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
     all
 }
 
-struct Ran {
-    status: Option<i32>,
-    told: String,
+pub(crate) struct Ran {
+    pub(crate) status: Option<i32>,
+    pub(crate) told: String,
 }
 
 /// Ends a child that takes too long. `None` is the status of one that was ended, or that a signal ended.
@@ -527,7 +527,7 @@ fn wait(mut child: Child) -> Option<i32> {
 }
 
 /// Runs with its output in files beside the folder, which no full pipe holds up.
-fn run(dir: &Path, args: &[OsString], input: Option<&[u8]>) -> Ran {
+pub(crate) fn run(dir: &Path, args: &[OsString], input: Option<&[u8]>) -> Ran {
     let [told, said] = ["told", "said"].map(|e| dir.with_extension(e));
     let mut command = Command::new(env!("CARGO_BIN_EXE_burgeon"));
     command.args(args).current_dir(dir).stdin(if input.is_some() { Stdio::piped() } else { Stdio::null() });
@@ -629,7 +629,7 @@ fn case(ground: &Ground, seed: u64, dir: &Path) -> Result<Option<i32>, String> {
     Ok(ran.status)
 }
 
-fn asked(name: &str, otherwise: u64) -> u64 {
+pub(crate) fn asked(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |n| n.parse().unwrap())
 }
 

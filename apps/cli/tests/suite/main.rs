@@ -3,6 +3,7 @@
 #[path = "../../../../crates/base/tests/missing/mod.rs"]
 mod missing;
 
+mod absurd;
 mod bloom;
 mod clouds;
 mod command;

@@ -12,6 +12,7 @@ use skin::{FoliageStyle, Layout, SkinSpec, SurfacePictures};
 use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
 use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
+use crate::checks::{check_plant, check_tree};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
@@ -288,6 +289,11 @@ impl TreeEvaluator {
             return ItemReport::default(); // update fills all of them before it comes here
         };
         let growth = GrowthReport::of(spec, &dressed.grown, self.inside);
+        let mut checks = Report::default();
+        if !self.previewing {
+            check_plant(plant, &mut checks);
+            check_tree(spec, &raw.grown.plant, &growth, &mut checks);
+        }
         // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;
@@ -298,7 +304,7 @@ impl TreeEvaluator {
         warnings.extend(told.cloned());
         let edits = self.shaped.as_ref();
         warnings.extend(edits.into_iter().flat_map(|s| s.told.iter().filter_map(|t| t.warning(&s.edits))));
-        ItemReport {
+        let mut item = ItemReport {
             name: spec.name.clone(),
             counts: Counts {
                 vertices: model.vertex_count() as u64,
@@ -311,7 +317,9 @@ impl TreeEvaluator {
             edits: edits.map_or_else(Vec::new, |s| s.told.clone()),
             ..ItemReport::default()
         }
-        .warning(warnings)
+        .warning(warnings);
+        item.add_checks(checks);
+        item
     }
 
     /// The stages that the last update did again: `structure`, `depth`, `shape`, `mesh`.

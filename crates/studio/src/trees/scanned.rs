@@ -11,6 +11,7 @@ use skin::SkinSpec;
 use super::evaluate::skinned;
 use super::look::{dressed, tint};
 use super::tree_blade;
+use crate::checks::check_scan;
 use crate::made::MadePlant;
 
 /// How a scan becomes a tree. Not saved with it.
@@ -116,7 +117,10 @@ pub fn make_tree_from_scan(
     let form = options.leaves.as_ref().map_or_else(BladeForm::default, |s| s.blade.form);
     let from = (dressed(options.skin.clone(), &look, form), look, None);
     let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
-    let mut made = MadePlant::untold(plant, (model, from.0), (vec![], &[]), &report).told();
+    let is_placed = options.scan.at.is_some();
+    let mut made = MadePlant::untold(plant, (model, from.0), (vec![], &[]), &report)
+        .check(|r| check_scan(&found.plant, &found.tally, is_placed, r))
+        .told();
     made.item.plant = Some(made.plant.measure());
     Ok((made, found))
 }

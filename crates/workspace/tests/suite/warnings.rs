@@ -59,6 +59,8 @@ fn codes(folder: &Path, found: &mut Vec<Found>) {
 fn each_warning_has_a_chinese_text() {
     let named = NAMED.map(|(code, fields)| (code.to_owned(), fields.iter().map(|&f| f.to_owned()).collect()));
     let mut found: Vec<Found> = named.into();
+    let of_check = |code: &str| (code.to_owned(), vec!["value".to_owned(), "bound".to_owned()]);
+    found.extend(burgeon::CHECKS.into_iter().map(of_check));
     for folder in TOLD {
         codes(&Path::new(CRATES).join(folder), &mut found);
     }
