@@ -247,6 +247,7 @@ export const en = {
   'note.exported': 'Exported {name}.',
   'note.nothing': 'There is nothing to export yet: draw at least one line.',
   'note.unreadable': '{name} cannot be opened: {why}',
+  'note.locked': 'it is given only to a browser that came by the whole link which the terminal shows; open that link',
   'note.large': 'it is larger than {limit} MB',
   'note.refused': 'Not done: {why}',
   'note.fault': 'The plant maker had a fault and was started again. Your drawing is complete.',
