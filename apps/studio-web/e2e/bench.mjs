@@ -7,7 +7,7 @@ import { FLAGS } from './flags.mjs';
 import { serve } from './server.mjs';
 
 const [browserPath, burgeon] = process.argv.slice(2);
-const url = await serve(burgeon, 'dist');
+const { url } = await serve(burgeon, 'dist');
 const browser = await chromium.launch({
   executablePath: browserPath,
   args: [...FLAGS, '--enable-blink-features=ForceEagerMeasureMemory'],

@@ -453,8 +453,8 @@ async function chinese({ page, url, shot }) {
   await page.locator('#b-export', { hasText: 'Export' }).waitFor();
 }
 
-async function correct({ page, url, shot }) {
-  await begin(page, `${url}?open=opened%2Ftulip.svg`);
+async function correct({ page, link, shot }) {
+  await begin(page, link);
   await until(page, 'triangles', ['above', 0], 'the file named on the command line is open');
   const before = await settled(page);
   await page.locator('.sheet').focus();
@@ -932,7 +932,22 @@ async function garden({ page, url, shot }) {
   await shot('scene-dark-chinese');
 }
 
-async function guarded({ page, url }) {
+async function guarded({ page, url, link, troubles }) {
+  // The file that was opened is for browsers that came by the whole link; the page is no secret.
+  const file = new URL('opened/tulip.svg', url).href;
+  const told = await page.request.get(file);
+  assert.equal(told.status(), 401);
+  assert.match(await told.text(), /Copy the link from the terminal/);
+  await page.goto(`${url}?open=opened%2Ftulip.svg`);
+  await page.locator('.note.bad', { hasText: 'whole link' }).waitFor();
+  // An answer of 401, which the console calls an error.
+  troubles.length = 0;
+  await page.goto(link);
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  assert.equal((await page.request.get(file)).status(), 200);
+  const kept = (await page.context().cookies(url)).find((c) => c.name === `burgeon-${new URL(url).port}`);
+  assert.ok(kept?.httpOnly && kept.sameSite === 'Strict', 'the cookie');
+  assert.ok(!page.url().includes('key='), 'the key does not stay in the address');
   const page_ = await page.goto(url);
   const headers = page_.headers();
   assert.match(headers['content-security-policy'], /default-src 'none'/);

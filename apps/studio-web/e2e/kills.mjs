@@ -55,7 +55,7 @@ process.on('uncaughtException', (e) => {
   process.exit(1);
 });
 
-const url = await serve(burgeon, folder);
+const { url } = await serve(burgeon, folder);
 const profile = mkdtempSync(join(tmpdir(), 'burgeon-kills-'));
 process.on('exit', () => {
   try {

@@ -12,8 +12,14 @@ const words = (page, text) => page.locator('footer, .status').filter({ hasText: 
 async function lan({ page, own, burgeon, folder, out, shot, troubles }) {
   const project = join(out, 'garden.burgeon');
   copyFileSync('../../fixtures/projects/version-4.burgeon', project);
-  const { url, code } = await serveNetwork(burgeon, folder, project);
+  const { url, link, code, fingerprint } = await serveNetwork(burgeon, folder, project);
   own.push(url);
+  // A link that a messenger looks at, too, asks for one press of a button; the certificate can be compared.
+  await page.request.head(link);
+  await page.goto(link);
+  await page.locator('input[name=key]').waitFor({ state: 'attached' });
+  await page.locator('code', { hasText: fingerprint }).waitFor();
+  await shot('network-link');
   await page.goto(url);
   await page.fill('input[name=code]', '12345678');
   await page.click('button');

@@ -25,7 +25,7 @@ mkdirSync(out, { recursive: true });
 /** Journeys at a time: while one waits another walks. */
 const WALKERS = Number(process.env.WALKERS ?? 2);
 
-const url = await serve(burgeon, folder, '../../fixtures/sketches/gallery/tulip.svg');
+const { url, link } = await serve(burgeon, folder, '../../fixtures/sketches/gallery/tulip.svg');
 
 const only = process.env.ONLY;
 const all = [
@@ -77,6 +77,7 @@ async function walk(browser, [name, journey, options]) {
       page,
       context,
       url,
+      link,
       own,
       burgeon,
       folder,

@@ -1,16 +1,23 @@
 /** The real server on a port of its own; it ends with the program that asked for it, however that ends. */
 import { spawn } from 'node:child_process';
 
+/** `url`: the page; `link`: the whole link that the terminal shows, with the key to the file that is opened, if there is one. */
 export async function serve(burgeon, folder, ...files) {
-  const found = await said(burgeon, ['--folder', folder, ...files], /http:\/\/127\.0\.0\.1:\d+\//);
-  return found[0];
+  const shown = /The Studio is at ((http:\/\/127\.0\.0\.1:\d+\/)\S*)/;
+  const [, link, url] = await said(burgeon, ['--folder', folder, ...files], shown);
+  return { url, link };
 }
 
-/** The server of the network, at this machine's own address: its address and the code that its terminal shows. */
+/** The server of the network, at this machine's own address: its address, and what its terminal shows. */
 export async function serveNetwork(burgeon, folder, file) {
-  const shown = /Or open (https:\/\/127\.0\.0\.1:\d+\/) and give the code (\d{4} \d{4})/;
-  const [, url, code] = await said(burgeon, ['--folder', folder, '--lan=127.0.0.1', file], shown);
-  return { url, code };
+  const shown =
+    /((?:[0-9A-F]{2}:){31}[0-9A-F]{2})[\s\S]*(https:\/\/\S+\?key=\S+)\s+Or open (https:\/\/127\.0\.0\.1:\d+\/) and give the code (\d{4} \d{4})/;
+  const [, fingerprint, link, url, code] = await said(
+    burgeon,
+    ['--folder', folder, '--lan=127.0.0.1', file],
+    shown,
+  );
+  return { url, link, code, fingerprint };
 }
 
 /** Starts a server and waits until it says this. */

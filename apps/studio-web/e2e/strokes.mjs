@@ -98,8 +98,8 @@ async function edit({ page, url, shot }) {
 }
 
 /** The whole is read as something else by one click, and a stroke that another one turned is turned back. */
-async function readings({ page, url, shot }) {
-  await begin(page, `${url}?open=opened%2Ftulip.svg`);
+async function readings({ page, link, shot }) {
+  await begin(page, link);
   await until(page, 'triangles', ['above', 0], 'the file is open');
   const plain = await settled(page);
   const chips = page.locator('.readings .chip[data-reading]');

@@ -168,6 +168,7 @@ export class Files {
   private async openUrl(name: string, url: string, offered = false): Promise<void> {
     try {
       const answer = await fetch(url);
+      if (answer.status === 401) throw new Error(t('note.locked'));
       if (!answer.ok) throw new Error(`${answer.status}`);
       await this.open(name, new Uint8Array(await answer.arrayBuffer()));
       if (offered) this.events.offered(name, answer.headers.get('ETag'));

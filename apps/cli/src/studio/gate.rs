@@ -1,7 +1,8 @@
 //! Who may come in from the network: a link and a code that work once, and what a browser was given for them.
 //!
 //! Guaranteed: without the key of the link, the code, or what was given for one of them, nothing is said but that it is
-//! needed; each works once; guesses are few. Nothing here reads a clock or a random number: both are given.
+//! needed; each works once, and a link that is only looked at is not used up; guesses are few. Nothing here reads a clock
+//! or a random number: both are given.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -11,7 +12,7 @@ use std::time::{Duration, Instant};
 const DIGITS: usize = 8;
 /// Wrong codes until a new one is shown, and until codes are no longer taken.
 const WRONG: u32 = 5;
-const MOST_WRONG: u32 = 25;
+pub(crate) const MOST_WRONG: u32 = 25;
 /// Browsers that are in at one time; the first goes when one more comes.
 const BROWSERS: usize = 16;
 
@@ -36,6 +37,8 @@ pub(crate) enum Entry {
     Wrong,
     /// The code is another, and was given too often: there is a new one, or none any more.
     Renewed,
+    /// No code is taken any more.
+    Stopped,
 }
 
 /// The state of the door.
@@ -55,6 +58,11 @@ impl Gate {
         gate
     }
 
+    /// Whether this is the key of the link, which stays good: programs that show a preview of a link open it, too.
+    pub(crate) fn is_key(&self, key: &str) -> bool {
+        is_same(&self.invitation.key, key)
+    }
+
     /// What lets the next browser in.
     pub(crate) fn invitation(&self) -> &Invitation {
         &self.invitation
@@ -62,23 +70,23 @@ impl Gate {
 
     /// Whether a browser is in.
     pub(crate) fn knows(&self, cookie: &str) -> bool {
-        self.browsers.iter().fold(false, |found, own| found | same(own, cookie))
+        self.browsers.iter().fold(false, |found, own| found | is_same(own, cookie))
     }
 
     /// With the key of the link.
     pub(crate) fn by_key(&mut self, key: &str) -> Entry {
-        if same(&self.invitation.key, key) { self.enter() } else { Entry::Wrong }
+        if self.is_key(key) { self.enter() } else { Entry::Wrong }
     }
 
     /// With the code; spaces and dashes in it are no matter.
     pub(crate) fn by_code(&mut self, code: &str) -> Entry {
         let digits: String = code.chars().filter(|c| !matches!(c, ' ' | '-' | '+')).collect();
-        let right = self.invitation.code.as_ref().is_some_and(|own| same(own, &digits));
-        if right {
+        let Some(own) = &self.invitation.code else { return Entry::Stopped };
+        if is_same(own, &digits) {
             return self.enter();
         }
         self.wrong += 1;
-        if self.invitation.code.is_none() || !self.wrong.is_multiple_of(WRONG) {
+        if !self.wrong.is_multiple_of(WRONG) {
             return Entry::Wrong;
         }
         self.renew();
@@ -86,7 +94,7 @@ impl Gate {
     }
 
     fn enter(&mut self) -> Entry {
-        let own = self.secret();
+        let own = secret(self.random);
         if self.browsers.len() >= BROWSERS {
             self.browsers.remove(0);
         }
@@ -100,18 +108,20 @@ impl Gate {
         (self.random)(&mut bytes);
         // 2^64 is so far above 10^8 that no code is likelier than another by more than one part in 10^11.
         let code = format!("{:0DIGITS$}", u64::from_le_bytes(bytes) % 10_u64.pow(8));
-        self.invitation = Invitation { key: self.secret(), code: (self.wrong < MOST_WRONG).then_some(code) };
-    }
-
-    fn secret(&self) -> String {
-        let mut bytes = [0; 16];
-        (self.random)(&mut bytes);
-        format!("{:032x}", u128::from_le_bytes(bytes))
+        let code = (self.wrong < MOST_WRONG).then_some(code);
+        self.invitation = Invitation { key: secret(self.random), code };
     }
 }
 
+/// 128 random bits as 32 hexadecimal digits.
+pub(crate) fn secret(random: Random) -> String {
+    let mut bytes = [0; 16];
+    random(&mut bytes);
+    format!("{:032x}", u128::from_le_bytes(bytes))
+}
+
 /// Whether two secrets are the same, in a time that does not say where they differ.
-fn same(own: &str, given: &str) -> bool {
+pub(crate) fn is_same(own: &str, given: &str) -> bool {
     let differ = own.bytes().zip(given.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
     own.len() == given.len() && differ == 0
 }
@@ -172,7 +182,9 @@ mod tests {
         let code = code.expect("a code");
         assert!(key.len() == 32 && code.len() == 8 && code.bytes().all(|b| b.is_ascii_digit()));
         assert!(!gate.knows("") && !gate.knows(&key));
+        assert!(gate.is_key(&key) && gate.is_key(&key) && !gate.is_key(&key[1..]), "looking uses nothing up");
         let Entry::In(first) = gate.by_key(&key) else { panic!("the link is right") };
+        assert!(!gate.is_key(&key), "it is used up");
         assert!(gate.knows(&first) && !gate.knows(&first[1..]));
         assert_eq!(
             (gate.by_key(&key), gate.by_code(&code)),
@@ -196,7 +208,7 @@ mod tests {
         }
         shown.dedup();
         assert_eq!((shown.len(), gate.invitation().code.as_ref()), (5, None));
-        assert_eq!(gate.by_code(""), Entry::Wrong);
+        assert_eq!(gate.by_code(""), Entry::Stopped);
         let key = gate.invitation().key.clone();
         assert!(matches!(gate.by_key(&key), Entry::In(_)), "the link still works");
         assert_eq!(gate.invitation().code, None, "and no code comes back");

@@ -131,7 +131,8 @@ fn converse(
         send(&mut stream, &refusal(400, "write https:// before the address"), end, takes)?;
         return stream.shutdown(Shutdown::Write);
     }
-    let mut tls = rustls::ServerConnection::new(Arc::clone(&network.tls)).map_err(std::io::Error::other)?;
+    let mut tls =
+        rustls::ServerConnection::new(Arc::clone(&network.identity.tls)).map_err(std::io::Error::other)?;
     talk(&mut rustls::Stream::new(&mut tls, &mut stream), peer, site, end, takes)?;
     tls.send_close_notify();
     while tls.wants_write() {
@@ -419,10 +420,15 @@ mod tests {
             address: SocketAddr,
             client: Arc<ClientConfig>,
             project: PathBuf,
+            fingerprint: String,
         }
 
         impl Served {
             fn new(test: &str) -> Self {
+                Self::behind(test, Gate::new(lan::RANDOM))
+            }
+
+            fn behind(test: &str, gate: Gate) -> Self {
                 let folder = std::env::temp_dir().join(format!("burgeon-lan-{test}-{}", std::process::id()));
                 std::fs::create_dir_all(&folder).unwrap();
                 std::fs::write(folder.join("index.html"), "<!doctype html>page").unwrap();
@@ -431,9 +437,10 @@ mod tests {
                 let listener = TcpListener::bind("127.0.0.1:0").unwrap();
                 let address = listener.local_addr().unwrap();
                 let site = Site::new(Page::Folder(folder), address.port(), Some(project.clone())).unwrap();
-                let tls = lan::tls(IpAddr::from([127, 0, 0, 1])).unwrap();
-                let site =
-                    site.in_network(address.to_string(), Network::new(tls, Gate::new(lan::RANDOM), shown));
+                let identity = lan::identity(IpAddr::from([127, 0, 0, 1])).unwrap();
+                let fingerprint = identity.fingerprint.clone();
+                let network = Network::new(identity, gate, shown);
+                let site = site.in_network(address.to_string(), network);
                 site.invite();
                 std::thread::spawn(move || http::serve(&listener, &site, http::Limits::NETWORK));
                 let provider = Arc::new(rustls::crypto::ring::default_provider());
@@ -443,7 +450,7 @@ mod tests {
                     .dangerous()
                     .with_custom_certificate_verifier(Arc::new(Anybody))
                     .with_no_client_auth();
-                Self { address, client: Arc::new(client), project }
+                Self { address, client: Arc::new(client), project, fingerprint }
             }
 
             /// What the terminal shows now.
@@ -487,12 +494,15 @@ mod tests {
 
             /// What a browser keeps that comes in by the link.
             fn enter(&self) -> String {
-                let answer = self.ask(&format!("GET /?key={}", self.invitation().key), "", b"");
+                let key = format!("key={}", self.invitation().key);
+                let answer = self.ask("POST /enter", "", key.as_bytes());
                 assert!(
                     answer.starts_with("HTTP/1.1 303")
                         && answer.contains("/?open=opened%2Fmy%20rose.burgeon")
                 );
+                let name = format!("Set-Cookie: burgeon-{}=", self.address.port());
                 assert!(answer.contains("; Secure; HttpOnly; SameSite=Lax"), "{answer}");
+                assert!(answer.contains(&name), "{answer}");
                 let cookie = answer.split("Set-Cookie: ").nth(1).unwrap().split(';').next().unwrap();
                 format!("Cookie: {cookie}\r\n")
             }
@@ -514,10 +524,13 @@ mod tests {
                 ("GET /?key=", "401", "used already"),
                 ("PUT /opened/my%20rose.burgeon", "401", "come in by"),
             ] {
-                for cookie in
-                    ["", "Cookie: burgeon=\r\n", "Cookie: burgeon=0123456789abcdef0123456789abcdef\r\n"]
-                {
-                    let answer = served.ask(line, cookie, b"");
+                let port = served.address.port();
+                for cookie in [
+                    String::new(),
+                    format!("Cookie: burgeon-{port}=\r\n"),
+                    format!("Cookie: burgeon-{port}=0123456789abcdef0123456789abcdef\r\n"),
+                ] {
+                    let answer = served.ask(line, &cookie, b"");
                     assert!(
                         answer.starts_with(&format!("HTTP/1.1 {status}")) && answer.contains(words),
                         "{line}: {answer}"
@@ -528,7 +541,9 @@ mod tests {
             let cookie = served.enter();
             assert!(served.ask("GET /", &cookie, b"").ends_with("page"));
             // The link is used up; the next one is shown, with another code.
-            assert!(served.ask(&format!("GET /?key={}", first.key), "", b"").starts_with("HTTP/1.1 401"));
+            let used = format!("key={}", first.key);
+            assert!(served.ask("POST /enter", "", used.as_bytes()).contains("used already"));
+            assert!(served.ask(&format!("GET /?{used}"), "", b"").contains("used already"));
             let code = served.invitation().code.unwrap();
             assert_ne!(Some(&code), first.code.as_ref());
             let given = format!("code={}+{}", &code[..4], &code[4..]);
@@ -577,6 +592,83 @@ mod tests {
             let left =
                 std::fs::read_dir(folder).unwrap().filter_map(|f| f.unwrap().file_name().into_string().ok());
             assert!(left.into_iter().all(|name| !name.ends_with(".part")), "no draft is left");
+        }
+
+        #[test]
+        fn a_link_that_is_only_looked_at_is_not_used_up() {
+            let served = Served::new("looked");
+            let key = served.invitation().key;
+            let link = format!("/?key={key}");
+            // Programs that show a preview ask for the head, then for the page, as often as they like.
+            for _ in 0..5 {
+                let head = served.ask(&format!("HEAD {link}"), "", b"");
+                assert!(head.starts_with("HTTP/1.1 401") && head.ends_with("\r\n\r\n"), "{head}");
+                let page = served.ask(&format!("GET {link}"), "", b"");
+                assert!(page.starts_with("HTTP/1.1 401") && !page.contains("Set-Cookie"), "{page}");
+                assert!(page.contains(&format!("name=key value=\"{key}\"")), "{page}");
+                assert!(page.contains(&served.fingerprint), "{page}");
+            }
+            assert_eq!(served.invitation().key, key);
+            // Another page cannot press the button.
+            let own = served.address;
+            let foreign = format!(
+                "POST /enter HTTP/1.1\r\nHost: {own}\r\nOrigin: https://evil.example\r\nContent-Length: 36\r\n\r\n"
+            );
+            assert!(served.send(&foreign, format!("key={key}").as_bytes()).starts_with("HTTP/1.1 403"));
+            let cookie = served.enter();
+            assert!(served.ask("GET /", &cookie, b"").ends_with("page"));
+            assert!(served.ask(&format!("GET {link}"), "", b"").contains("used already"));
+            // Who is in and opens the next link uses nothing up.
+            let next = served.invitation().key;
+            assert!(served.ask(&format!("GET /?key={next}"), &cookie, b"").ends_with("page"));
+            let pressed = served.ask("POST /enter", &cookie, format!("key={next}").as_bytes());
+            assert!(pressed.starts_with("HTTP/1.1 303") && served.invitation().key == next, "{pressed}");
+        }
+
+        #[test]
+        fn when_codes_are_stopped_the_page_and_the_terminal_say_how_to_go_on() {
+            let mut gate = Gate::new(lan::RANDOM);
+            (0..23).for_each(|_| drop(gate.by_code("1")));
+            let served = Served::behind("stopped", gate);
+            let wrong = || served.ask("POST /enter", "", b"code=1");
+            assert!(wrong().contains("name=code") && served.invitation().code.is_some(), "the 24th");
+            let last = wrong();
+            assert!(last.contains("no code is taken any more") && last.contains("Open the link"), "{last}");
+            assert!(!last.contains("name=code") && served.invitation().code.is_none());
+            let after = wrong();
+            assert!(after.contains("Open the link") && !after.contains("name=code"), "{after}");
+            assert!(served.ask("GET /", "", b"").contains("start the program anew"));
+            let cookie = served.enter();
+            assert!(served.ask("GET /", &cookie, b"").ends_with("page"), "the link still works");
+        }
+
+        #[cfg(unix)]
+        #[test]
+        fn a_project_that_is_written_back_keeps_its_rights() {
+            use std::os::unix::fs::PermissionsExt as _;
+            let served = Served::new("rights");
+            let cookie = served.enter();
+            let path = "/opened/my%20rose.burgeon";
+            let known = || {
+                let read = served.ask(&format!("GET {path}"), &cookie, b"");
+                format!("{cookie}If-Match: {}\r\n", etag(&read))
+            };
+            let rights = || std::fs::metadata(&served.project).unwrap().permissions().mode() & 0o7777;
+            let set = |mode| {
+                std::fs::set_permissions(&served.project, std::fs::Permissions::from_mode(mode)).unwrap();
+            };
+            for mode in [0o600, 0o640, 0o664] {
+                set(mode);
+                let saved = served.ask(&format!("PUT {path}"), &known(), &document_of(&format!("{mode:o}")));
+                assert!(saved.starts_with("HTTP/1.1 204"), "{saved}");
+                assert_eq!(rights(), mode, "{mode:o}");
+            }
+            // Nor is a file replaced that is not to be written.
+            set(0o400);
+            let before = std::fs::read(&served.project).unwrap();
+            let saved = served.ask(&format!("PUT {path}"), &known(), &document_of("not this"));
+            assert!(saved.starts_with("HTTP/1.1 507") && saved.contains("cannot be written"), "{saved}");
+            assert_eq!((rights(), std::fs::read(&served.project).unwrap()), (0o400, before));
         }
 
         fn document_of(name: &str) -> Vec<u8> {

@@ -11,7 +11,9 @@ use rustls::ServerConfig;
 use rustls::crypto::{CryptoProvider, ring};
 use rustls::pki_types::{PrivateKeyDer, PrivatePkcs8KeyDer};
 
-use super::gate::{Invitation, Random};
+use sha2::{Digest as _, Sha256};
+
+use super::gate::{Invitation, MOST_WRONG, Random};
 use crate::failure::{Failure, Outcome};
 use crate::say;
 
@@ -42,7 +44,7 @@ pub(super) fn address(named: &str) -> Outcome<IpAddr> {
 /// Random bytes of the system. A system without them has no secrets: then nothing is served.
 pub(super) const RANDOM: Random = |bytes| {
     if provider().secure_random.fill(bytes).is_err() {
-        say::error("the system gives no random numbers; the Studio cannot be served to the network");
+        say::error("the system gives no random numbers, without which the Studio is not served");
         std::process::exit(1);
     }
 };
@@ -52,7 +54,19 @@ fn provider() -> Arc<CryptoProvider> {
 }
 
 /// A server's side of TLS 1.3 and 1.2 for one address, with a certificate and a key that are in no file.
-pub(super) fn tls(address: IpAddr) -> Outcome<Arc<ServerConfig>> {
+#[derive(Clone, Debug)]
+pub(crate) struct Identity {
+    pub(crate) tls: Arc<ServerConfig>,
+    /// The SHA-256 of the certificate, as browsers show it: pairs of hexadecimal digits with colons between them.
+    pub(crate) fingerprint: String,
+}
+
+fn fingerprint_of(certificate: &[u8]) -> String {
+    Sha256::digest(certificate).iter().map(|b| format!("{b:02X}")).collect::<Vec<_>>().join(":")
+}
+
+/// An identity that is made on the spot.
+pub(super) fn identity(address: IpAddr) -> Outcome<Identity> {
     let fault = |what: &str| Failure::Bad(format!("no certificate could be made: {what}"));
     let key = KeyPair::generate().map_err(|e| fault(&e.to_string()))?;
     let names = vec![address.to_string(), "localhost".into()];
@@ -69,23 +83,35 @@ pub(super) fn tls(address: IpAddr) -> Outcome<Arc<ServerConfig>> {
         .with_no_client_auth()
         .with_single_cert(vec![certificate.der().clone()], secret)
         .map_err(|e| fault(&e.to_string()))?;
-    Ok(Arc::new(config))
+    Ok(Identity { tls: Arc::new(config), fingerprint: fingerprint_of(certificate.der()) })
 }
 
 /// Says how the next browser comes in.
 pub(super) fn invite(host: &str, invitation: &Invitation) {
+    invited(host, invitation).iter().for_each(|line| say::line(line));
+}
+
+fn invited(host: &str, invitation: &Invitation) -> Vec<String> {
     let link = format!("https://{host}/?key={}", invitation.key);
-    say::line("");
-    say::line("In the headset's browser, scan this or open the link, which works once:");
+    let begins =
+        "In the headset's browser, scan this or open the link, and press the button there; it works once:";
+    let mut lines = vec![String::new(), begins.into()];
     if let Ok(code) = QrCode::new(&link) {
         let drawn = code.render::<Dense1x2>().dark_color(Dense1x2::Light).light_color(Dense1x2::Dark).build();
-        drawn.lines().for_each(say::line);
+        lines.extend(drawn.lines().map(str::to_owned));
     }
-    say::line(&format!("  {link}"));
-    if let Some(code) = &invitation.code {
-        let (first, last) = code.split_at(4);
-        say::line(&format!("Or open https://{host}/ and give the code {first} {last}."));
-    }
+    lines.push(format!("  {link}"));
+    lines.push(match &invitation.code {
+        Some(code) => {
+            let (first, last) = code.split_at(4);
+            format!("Or open https://{host}/ and give the code {first} {last}.")
+        }
+        None => format!(
+            "Codes are not taken any more, because {MOST_WRONG} wrong ones were given: somebody may be guessing. The link \
+             still works. To have codes again, stop this program with Ctrl-C and start it anew."
+        ),
+    });
+    lines
 }
 
 #[cfg(test)]
@@ -101,5 +127,28 @@ mod tests {
             Ok(own) => assert!(!own.is_loopback() && !own.is_unspecified()),
             Err(e) => assert!(format!("{e:?}").contains("--lan=")),
         }
+    }
+
+    #[test]
+    fn a_fingerprint_is_written_as_browsers_write_it() {
+        // The SHA-256 of "abc" (FIPS 180-2, B.1).
+        let abc = fingerprint_of(b"abc");
+        assert!(abc.starts_with("BA:78:16:BF:8F:01:CF:EA:41:41:40:DE:5D:AE:22:23"), "{abc}");
+        assert_eq!(abc.len(), 95);
+        let local = IpAddr::from([127, 0, 0, 1]);
+        assert_ne!(identity(local).unwrap().fingerprint, identity(local).unwrap().fingerprint);
+    }
+
+    #[test]
+    fn the_terminal_shows_the_code_or_says_why_there_is_none() {
+        let key = "ab".repeat(16);
+        let mut invitation = Invitation { key: key.clone(), code: Some("12345678".into()) };
+        let lines = invited("192.0.2.7:7734", &invitation);
+        assert!(lines.contains(&format!("  https://192.0.2.7:7734/?key={key}")));
+        assert!(lines.last().unwrap().ends_with("give the code 1234 5678."));
+        invitation.code = None;
+        let last = invited("192.0.2.7:7734", &invitation).pop().unwrap();
+        assert!(last.contains("25 wrong ones") && last.contains("The link still works"), "{last}");
+        assert!(last.contains("start it anew"), "{last}");
     }
 }

@@ -1,12 +1,15 @@
 //! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else; with `--lan` to browsers of the
 //! network that were let in.
 
+mod door;
 mod gate;
 mod http;
 mod lan;
+mod local;
 mod request;
 mod site;
 
+use std::ffi::OsStr;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -16,6 +19,7 @@ use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
 use crate::{say, signals};
 use gate::Gate;
+use local::LocalKey;
 use site::{Files, Network, Page, Site};
 
 /// The page as it was when the program was built; empty where it had not been built then.
@@ -37,30 +41,59 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     if let Some(address) = address {
         return serve_network(&listener, address, site, opened.as_deref());
     }
-    let mut url = format!("http://127.0.0.1:{port}/");
-    if let Some(name) = opened.as_deref().and_then(Path::file_name) {
-        url += &format!("?open=opened%2F{}", site::escaped(&name.to_string_lossy()));
+    let url = format!("http://127.0.0.1:{port}{}", site.start());
+    if opened.is_none() {
+        say::line(&format!("The Studio is at {url}"));
+        say::line("It is served to this machine only. Stop it with Ctrl-C.");
+        if !args.no_open {
+            open_or_say(OsStr::new(&url));
+        }
+        http::serve(&listener, &site, http::Limits::USUAL);
+        return Ok(());
     }
-    say::line(&format!("The Studio is at {url}"));
-    say::line("It is served to this machine only. Stop it with Ctrl-C.");
-    if !args.no_open && !open_browser(&url) {
-        say::line("No browser could be opened: open the address yourself.");
+    let local = LocalKey::new(lan::RANDOM);
+    let link = format!("{url}&key={}", local.key());
+    say::line(&format!("The Studio is at {link}"));
+    say::line("It is served to this machine only, and the file only to browsers that have this whole link.");
+    say::line("Stop it with Ctrl-C.");
+    if !args.no_open {
+        match local.lead_to(&link) {
+            Ok(page) => open_or_say(page.as_os_str()),
+            Err(_) => say::line(NO_BROWSER),
+        }
     }
-    http::serve(&listener, &site, http::Limits::USUAL);
+    http::serve(&listener, &site.locked_by(local), http::Limits::USUAL);
     Ok(())
+}
+
+/// What is said where no browser is started.
+const NO_BROWSER: &str = "No browser could be opened: open the address yourself.";
+
+/// Opens an address or a page in a browser, or says that there is none.
+fn open_or_say(what: &OsStr) {
+    if !open_browser(what) {
+        say::line(NO_BROWSER);
+    }
 }
 
 /// Serves the network until the process ends.
 fn serve_network(listener: &TcpListener, address: IpAddr, site: Site, opened: Option<&Path>) -> Outcome {
     let own = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?;
     let host = SocketAddr::new(address, own.port()).to_string();
-    let network = Network::new(lan::tls(address)?, Gate::new(lan::RANDOM), lan::invite);
+    let identity = lan::identity(address)?;
+    let fingerprint = identity.fingerprint.clone();
+    let network = Network::new(identity, Gate::new(lan::RANDOM), lan::invite);
     let site = site.in_network(host.clone(), network);
     say::line(&format!("The Studio is at https://{host}/ for the browsers of your network that you let in."));
     say::line(
         "Browsers warn that they do not know the certificate: this program made it just now, for this address.",
     );
-    say::line("Choose \"Advanced\" and go on.");
+    say::line("Its SHA-256 fingerprint is");
+    say::line(&format!("  {fingerprint}"));
+    say::line(
+        "Look at the certificate in the browser (the sign before the address): if its fingerprint is another one, somebody \
+         is in between. If it is this one, choose \"Advanced\" and go on.",
+    );
     match opened {
         Some(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("burgeon")) => {
             say::line(&format!("What they change is written to {}.", path.display()));
@@ -113,7 +146,7 @@ fn page(folder: Option<&Path>, inside: Files) -> Outcome<Page> {
     Ok(Page::Inside(inside))
 }
 
-fn open_browser(url: &str) -> bool {
+fn open_browser(what: &OsStr) -> bool {
     let screen =
         ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|v| std::env::var_os(v).is_some_and(|s| !s.is_empty()));
     let mut command = if cfg!(target_os = "macos") {
@@ -127,7 +160,7 @@ fn open_browser(url: &str) -> bool {
     } else {
         return false;
     };
-    command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.arg(what).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.spawn().is_ok()
 }
 

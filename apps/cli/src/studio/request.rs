@@ -14,7 +14,7 @@ pub(crate) enum Target {
     File(String),
     /// The file that the Studio was opened with, by its name.
     Opened(String),
-    /// The door at which a code is given; of a server of the network only.
+    /// The door at which a code or a key is given; of a server of the network only.
     Door,
 }
 
@@ -23,7 +23,7 @@ pub(crate) enum Target {
 pub(crate) enum Method {
     /// GET or HEAD.
     Read,
-    /// POST, at the door.
+    /// POST, at the door: a code, or the key of a link.
     Enter,
     /// PUT, of the file that was opened.
     Save,
@@ -55,11 +55,11 @@ pub(crate) struct Addresses {
     pub(crate) hosts: Vec<String>,
     /// Most bytes that are taken in; 0 for a server that takes nothing.
     pub(crate) takes: usize,
+    /// The name under which a browser keeps that it came in: of a port, as browsers tell cookies apart by host only.
+    pub(crate) cookie: String,
 }
 
-/// The name under which a browser keeps that it came in.
-pub(crate) const COOKIE: &str = "burgeon";
-/// Longest code with its name that is given at the door.
+/// Longest code or key with its name that is given at the door.
 const DOOR_BYTES: usize = 64;
 
 /// What a request with this head (up to and without the empty line) asks for.
@@ -132,7 +132,7 @@ pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'stati
     }
     let target_is = target_is.ok_or((404, NO_FILE))?;
     let pairs = cookies.unwrap_or_default().split(';').filter_map(|pair| pair.trim().split_once('='));
-    let cookie = pairs.filter(|(name, _)| *name == COOKIE).map(|(_, value)| value.to_owned()).next();
+    let cookie = pairs.filter(|(name, _)| *name == own.cookie).map(|(_, value)| value.to_owned()).next();
     let query = target.split_once('?').map_or("", |(_, query)| query).split('#').next().unwrap_or_default();
     let key = query.split('&').find_map(|pair| pair.strip_prefix("key=")).map(str::to_owned);
     Ok(Asked { method, target: target_is, length, cookie, key, known: known.map(str::to_owned), unpacks })
@@ -190,7 +190,7 @@ mod tests {
 
     fn hosts() -> Addresses {
         let hosts = ["127.0.0.1:7734", "localhost:7734"].map(String::from).to_vec();
-        Addresses { scheme: "http", hosts, takes: 0 }
+        Addresses { scheme: "http", hosts, takes: 0, cookie: "burgeon-7734".into() }
     }
 
     /// What must hold of any head that is not refused, told by reading it in another way.
@@ -264,12 +264,15 @@ mod tests {
 
     #[test]
     fn a_server_of_the_network_takes_codes_and_the_file_that_was_opened_and_no_more() {
-        let own = Addresses { scheme: "https", hosts: vec!["192.0.2.7:7734".into()], takes: 1000 };
+        let hosts = vec!["192.0.2.7:7734".into()];
+        let own = Addresses { scheme: "https", hosts, takes: 1000, cookie: "burgeon-7734".into() };
         let ask = |line: &str, headers: &str| {
             asked(format!("{line} HTTP/1.1\r\nHost: 192.0.2.7:7734{headers}").as_bytes(), &own)
         };
         let ours = "\r\nOrigin: https://192.0.2.7:7734";
-        let link = ask("GET /?open=opened%2Fa.burgeon&key=abc", "\r\nCookie: a=b; burgeon=xyz").unwrap();
+        let link =
+            ask("GET /?open=opened%2Fa.burgeon&key=abc", "\r\nCookie: burgeon-8080=no; burgeon-7734=xyz")
+                .unwrap();
         assert_eq!((link.key.as_deref(), link.cookie.as_deref()), (Some("abc"), Some("xyz")));
         let door = ask("POST /enter", &format!("{ours}\r\nContent-Length: 13")).unwrap();
         assert_eq!((door.method, door.target, door.length), (Method::Enter, Target::Door, 13));

@@ -1,5 +1,6 @@
-//! What is answered to a request: the files of the page, and the file that the Studio was opened with. To the network
-//! only to browsers that came in, and a project that was opened is written back.
+//! What is answered to a request: the files of the page, and the file that the Studio was opened with, which is given only to
+//! browsers that have the key. To the network everything only to browsers that came in, and a project that was opened is
+//! written back.
 //!
 //! `request -> the file, if it is one of the page -> status, headers, bytes`
 
@@ -7,15 +8,17 @@ use std::borrow::Cow;
 use std::io::Write as _;
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use burgeon::document::{MAX_PROJECT_BYTES, read_project};
-use rustls::ServerConfig;
 use sha2::{Digest as _, Sha256};
 
+use super::door::{Asks, doorway, locked, stopped};
 use super::gate::{Entry, Gate, Invitation, Pace, Peers};
-use super::request::{Addresses, Asked, COOKIE, Method, NO_FILE, Target, asked};
+use super::lan::Identity;
+use super::local::LocalKey;
+use super::request::{Addresses, Asked, Method, NO_FILE, Target, asked};
 use crate::draft::Draft;
 use crate::failure::{Failure, Outcome};
 use crate::placing::{Move, put_all};
@@ -26,7 +29,7 @@ pub(crate) const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-uns
     form-action 'none'; frame-ancestors 'none'";
 
 /// Headers of every answer, the refusals included.
-const ALWAYS: &str = "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+pub(super) const ALWAYS: &str = "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
     Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\
     Cross-Origin-Resource-Policy: same-origin\r\nPermissions-Policy: camera=(), microphone=(), geolocation=()\r\n\
     Connection: close\r\n";
@@ -58,19 +61,25 @@ pub(crate) enum Page {
 const STRANGERS: Pace = Pace { at_once: 60.0, per_second: 10.0 };
 const TRIES: Pace = Pace { at_once: 5.0, per_second: 0.5 };
 
+/// What is said of a key that is not the one of the link.
+const USED_UP: &str =
+    "This link was used already, or is another one. Take the one that the terminal shows now.";
+
 /// A page that is served on one port of this machine.
 #[derive(Debug)]
 pub(crate) struct Site {
     page: Page,
     own: Addresses,
     opened: Option<PathBuf>,
+    /// For whom the file is that was opened, where the page is served to this machine.
+    local: Option<LocalKey>,
     network: Option<Network>,
 }
 
 /// What a server of the network has besides.
 #[derive(Debug)]
 pub(crate) struct Network {
-    pub(crate) tls: Arc<ServerConfig>,
+    pub(crate) identity: Identity,
     door: Mutex<Door>,
     /// One change of the file at a time.
     writing: Mutex<()>,
@@ -85,10 +94,17 @@ struct Door {
     tries: Peers,
 }
 
+impl Door {
+    /// What a stranger without a link is asked for.
+    fn asks(&self) -> Asks<'static> {
+        if self.gate.invitation().code.is_some() { Asks::Code } else { Asks::Link }
+    }
+}
+
 impl Network {
-    pub(crate) fn new(tls: Arc<ServerConfig>, gate: Gate, invite: fn(&str, &Invitation)) -> Self {
+    pub(crate) fn new(identity: Identity, gate: Gate, invite: fn(&str, &Invitation)) -> Self {
         let door = Door { gate, strangers: Peers::default(), tries: Peers::default() };
-        Self { tls, door: Mutex::new(door), writing: Mutex::default(), invite }
+        Self { identity, door: Mutex::new(door), writing: Mutex::default(), invite }
     }
 
     fn door(&self) -> MutexGuard<'_, Door> {
@@ -121,12 +137,18 @@ impl Site {
             inside @ Page::Inside(_) => inside,
         };
         let hosts = ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")).to_vec();
-        Ok(Self { page, own: Addresses { scheme: "http", hosts, takes: 0 }, opened, network: None })
+        let own = Addresses { scheme: "http", hosts, takes: 0, cookie: format!("burgeon-{port}") };
+        Ok(Self { page, own, opened, local: None, network: None })
+    }
+
+    /// The same page, whose opened file is for browsers of this machine that have the key; without one it is for nobody.
+    pub(crate) fn locked_by(self, local: LocalKey) -> Self {
+        Self { local: Some(local), ..self }
     }
 
     /// The same page for the network, under this host and no other.
     pub(crate) fn in_network(self, host: String, network: Network) -> Self {
-        let own = Addresses { scheme: "https", hosts: vec![host], takes: MAX_PROJECT_BYTES };
+        let own = Addresses { scheme: "https", hosts: vec![host], takes: MAX_PROJECT_BYTES, ..self.own };
         Self { own, network: Some(network), ..self }
     }
 
@@ -144,61 +166,100 @@ impl Site {
     /// What a request with this head asks for, or the answer that refuses it before its body is read.
     pub(crate) fn asked(&self, head: &[u8], peer: IpAddr) -> Result<Asked, Answer> {
         let asked = asked(head, &self.own).map_err(|(status, why)| refusal(status, why).to(head))?;
-        self.admit(&asked, peer).map_or(Ok(asked), |answer| Err(answer.to(head)))
+        let instead = match &self.network {
+            Some(network) => self.admit(network, &asked, peer),
+            None => self.unlock(&asked),
+        };
+        instead.map_or(Ok(asked), |answer| Err(answer.to(head)))
     }
 
     /// The answer to a request that may be answered, whose body was read.
     pub(crate) fn answer(&self, head: &[u8], asked: &Asked, body: &[u8], peer: IpAddr) -> Answer {
         let answer = match asked.method {
-            Method::Enter => self.enter(body, peer),
+            Method::Enter => self.enter(asked, body, peer),
             Method::Save => self.save(asked, body),
             Method::Read => self.file(asked).unwrap_or_else(|| refusal(404, NO_FILE)),
         };
         answer.to(head)
     }
 
-    /// What a stranger is told; nothing to a browser that is in.
-    fn admit(&self, asked: &Asked, peer: IpAddr) -> Option<Answer> {
-        let mut door = self.network.as_ref()?.door();
+    /// What is told to a browser of this machine that wants the file and has not its key, or comes with the key; nothing
+    /// to others, as the page itself is no secret.
+    fn unlock(&self, asked: &Asked) -> Option<Answer> {
+        let has = |given: Option<&str>| self.local.as_ref().filter(|l| given.is_some_and(|g| l.is_key(g)));
+        if matches!(asked.target, Target::Opened(_)) {
+            return has(asked.cookie.as_deref()).is_none().then(locked);
+        }
+        // Where nothing was opened a key opens nothing.
+        asked.key.as_deref().filter(|_| self.opened.is_some())?;
+        let Some(local) = has(asked.key.as_deref()) else { return Some(locked()) };
+        local.arrived();
+        Some(self.admitted(&format!("{}; Path=/; HttpOnly; SameSite=Strict", local.key())))
+    }
+
+    /// What a stranger of the network is told; nothing to a browser that is in.
+    fn admit(&self, network: &Network, asked: &Asked, peer: IpAddr) -> Option<Answer> {
+        let mut door = network.door();
         if asked.cookie.as_deref().is_some_and(|c| door.gate.knows(c)) {
             return None;
         }
         if !door.strangers.may(peer, STRANGERS, Instant::now()) {
             return Some(refusal(429, "too many requests; wait a little"));
         }
-        if let Some(key) = asked.key.as_deref().filter(|_| asked.method == Method::Read) {
-            if let Entry::In(cookie) = door.gate.by_key(key) {
+        let at_door = match &asked.target {
+            Target::Door => true,
+            Target::File(path) => path == "index.html",
+            Target::Opened(_) => false,
+        };
+        match asked.method {
+            Method::Enter => None,
+            Method::Read if at_door => {
+                let key = asked.key.as_deref();
+                let right = key.filter(|key| door.gate.is_key(key)).map(Asks::Button);
+                let why = if key.is_some() && right.is_none() { USED_UP } else { "" };
+                let asks = right.unwrap_or(door.asks());
                 drop(door);
-                return Some(self.welcome(&cookie, peer));
+                Some(doorway(why, asks, &network.identity.fingerprint))
             }
-            return Some(doorway(
-                "This link was used already, or is another one. Take the one that the terminal shows now.",
-            ));
-        }
-        match (asked.method, &asked.target) {
-            (Method::Enter, _) => None,
-            (Method::Read, Target::Door) => Some(doorway("")),
-            (Method::Read, Target::File(path)) if path == "index.html" => Some(doorway("")),
             _ => Some(refusal(401, "come in by the link or the code that the terminal shows")),
         }
     }
 
-    /// The answer to a code.
-    fn enter(&self, body: &[u8], peer: IpAddr) -> Answer {
+    /// The answer to a code, or to the key of a link.
+    fn enter(&self, asked: &Asked, body: &[u8], peer: IpAddr) -> Answer {
         let Some(network) = &self.network else { return refusal(404, NO_FILE) };
         let mut door = network.door();
+        // Who is in already and presses the button of another link leaves that to the next browser.
+        if asked.cookie.as_deref().is_some_and(|c| door.gate.knows(c)) {
+            drop(door);
+            return self.redirected("");
+        }
         if !door.tries.may(peer, TRIES, Instant::now()) {
             return refusal(429, "too many tries; wait a minute");
         }
-        let code = str::from_utf8(body).ok().and_then(|text| text.strip_prefix("code="));
-        let entry = code.map_or(Entry::Wrong, |code| door.gate.by_code(code));
+        let given = str::from_utf8(body).ok().and_then(|text| text.split_once('='));
+        let (entry, wrong) = match given {
+            Some(("key", key)) => (door.gate.by_key(key), USED_UP),
+            Some(("code", code)) => {
+                (door.gate.by_code(code), "This is not the code that the terminal shows now.")
+            }
+            _ => (Entry::Wrong, "This is neither a code nor the key of a link."),
+        };
+        let asks = door.asks();
         drop(door);
+        let again = |why: &str| doorway(why, asks, &network.identity.fingerprint);
         match entry {
             Entry::In(cookie) => self.welcome(&cookie, peer),
-            Entry::Wrong => doorway("This is not the code that the terminal shows now."),
+            Entry::Wrong => again(wrong),
+            Entry::Stopped => again(""),
             Entry::Renewed => {
                 self.invite();
-                doorway("This is not the code, and the code is another one now: look at the terminal.")
+                match asks {
+                    Asks::Code | Asks::Button(_) => {
+                        again("This is not the code, and the code is another one now: look at the terminal.")
+                    }
+                    Asks::Link => again(&stopped()),
+                }
             }
         }
     }
@@ -207,12 +268,26 @@ impl Site {
     fn welcome(&self, cookie: &str, peer: IpAddr) -> Answer {
         crate::say::line(&format!("A browser at {peer} is in."));
         self.invite();
+        self.admitted(&format!("{cookie}; Path=/; Secure; HttpOnly; SameSite=Lax"))
+    }
+
+    /// The path and the query of the page with the file that was opened.
+    pub(crate) fn start(&self) -> String {
         let open = self.opened.as_deref().and_then(Path::file_name);
-        let to =
-            open.map_or("/".into(), |name| format!("/?open=opened%2F{}", escaped(&name.to_string_lossy())));
+        open.map_or("/".into(), |name| format!("/?open=opened%2F{}", escaped(&name.to_string_lossy())))
+    }
+
+    /// Has a browser keep a cookie and go to the page.
+    fn admitted(&self, cookie: &str) -> Answer {
+        self.redirected(&format!("Set-Cookie: {}={cookie}\r\n", self.own.cookie))
+    }
+
+    /// Has a browser go to the page.
+    fn redirected(&self, more: &str) -> Answer {
         let head = format!(
-            "HTTP/1.1 303 In\r\nLocation: {to}\r\nSet-Cookie: {COOKIE}={cookie}; Path=/; Secure; HttpOnly; SameSite=Lax\r\n\
-             Content-Length: 0\r\nCache-Control: no-store\r\nContent-Security-Policy: default-src 'none'\r\n{ALWAYS}\r\n"
+            "HTTP/1.1 303 In\r\nLocation: {}\r\n{more}Content-Length: 0\r\nCache-Control: no-store\r\n\
+             Content-Security-Policy: default-src 'none'\r\n{ALWAYS}\r\n",
+            self.start()
         );
         Answer { status: 303, head, body: Cow::default() }
     }
@@ -240,14 +315,7 @@ impl Site {
             answer.head = answer.head.replace("Cache-Control:", &format!("ETag: {now}\r\nCache-Control:"));
             return answer;
         }
-        let folder = path.parent().unwrap_or(Path::new("."));
-        let written = Draft::create(folder).and_then(|(draft, mut file)| {
-            file.write_all(body)?;
-            file.sync()?;
-            drop(file);
-            put_all(&[Move { draft, place: path.to_path_buf() }]).map_err(|refused| refused.error)
-        });
-        match written {
+        match replace(path, body) {
             Ok(()) => {
                 let head = format!(
                     "HTTP/1.1 204 Saved\r\nETag: {}\r\nCache-Control: no-store\r\n{ALWAYS}\r\n",
@@ -261,7 +329,8 @@ impl Site {
 
     fn file(&self, asked: &Asked) -> Option<Answer> {
         match &asked.target {
-            Target::Door => Some(doorway("")),
+            // To a stranger the door was shown already.
+            Target::Door => Some(self.redirected("")),
             Target::Opened(name) => {
                 let path = self.is_opened(name)?;
                 let bytes = std::fs::read(path).ok()?;
@@ -335,26 +404,19 @@ fn version(bytes: &[u8]) -> String {
     format!("\"{digits}\"")
 }
 
-/// The page at which a code is given.
-fn doorway(why: &str) -> Answer {
-    let body = format!(
-        "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">\
-         <title>Burgeon Studio</title><style>body{{font:1.3rem system-ui;margin:15vh auto;max-width:22rem;padding:1rem}}\
-         input,button{{font:inherit;padding:.6em;width:100%;box-sizing:border-box;margin:.4em 0}}</style>\
-         <h1>Burgeon Studio</h1><p role=alert>{why}</p><form method=post action=/enter>\
-         <label>The code that the terminal shows · 终端显示的代码\
-         <input name=code inputmode=numeric autocomplete=off autofocus maxlength=12></label>\
-         <button>Come in · 进入</button></form></html>\n"
-    );
-    let head = format!(
-        "HTTP/1.1 401 Code\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-         Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; \
-         frame-ancestors 'none'; base-uri 'none'\r\n{}\r\n",
-        body.len(),
-        // Without a referrer a form's origin would be "null".
-        ALWAYS.replace("no-referrer", "same-origin")
-    );
-    Answer { status: 401, head, body: body.into_bytes().into() }
+/// Puts these bytes in the place of a file, whole or not at all; who may read and write it stays as it was.
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let rights = std::fs::metadata(path)?.permissions();
+    if rights.readonly() {
+        return Err(std::io::ErrorKind::PermissionDenied.into());
+    }
+    let (draft, mut file) = Draft::create(path.parent().unwrap_or(Path::new(".")))?;
+    // Before there is anything in it to be read.
+    file.file().set_permissions(rights)?;
+    file.write_all(bytes)?;
+    file.sync()?;
+    drop(file);
+    put_all(&[Move { draft, place: path.to_path_buf() }]).map_err(|refused| refused.error)
 }
 
 /// An answer that gives nothing but a reason.
@@ -403,7 +465,13 @@ mod tests {
         fs::write(base.join("my rose.svg"), "<svg/>").unwrap();
         #[cfg(unix)]
         std::os::unix::fs::symlink(base.join("secret.js"), root.join("link.js")).unwrap();
-        (Site::new(Page::Folder(root), 7734, Some(base.join("my rose.svg"))).unwrap(), base)
+        let site = Site::new(Page::Folder(root), 7734, Some(base.join("my rose.svg"))).unwrap();
+        (site.locked_by(LocalKey::new(|bytes| bytes.fill(0xab))), base)
+    }
+
+    /// What a browser sends that has come with the key.
+    fn kept() -> String {
+        format!("\r\nCookie: burgeon-80=1; burgeon-7734={}", "ab".repeat(16))
     }
 
     /// The answer to a head without a body.
@@ -446,7 +514,7 @@ mod tests {
             let answer = get(&site, line, headers);
             assert!(answer.status == status && answer.body.is_empty(), "{line}{headers}: {answer:?}");
         }
-        let opened = get(&site, "GET /opened/my%20rose.svg HTTP/1.1", "");
+        let opened = get(&site, "GET /opened/my%20rose.svg HTTP/1.1", &kept());
         assert!(opened.status == 200 && opened.head.contains("application/octet-stream"), "{}", opened.head);
         fs::remove_dir_all(base).unwrap();
     }
@@ -457,6 +525,7 @@ mod tests {
         let files: Files =
             &[("assets/a-1.js", b"code"), ("index.html", b"<!doctype html>page"), ("notes.txt", b"")];
         let inside = Site::new(Page::Inside(files), 7734, Some(base.join("my rose.svg"))).unwrap();
+        let inside = inside.locked_by(LocalKey::new(|bytes| bytes.fill(0xab)));
         for line in [
             "GET / HTTP/1.1",
             "HEAD / HTTP/1.1",
@@ -471,6 +540,7 @@ mod tests {
             "POST / HTTP/1.1",
         ] {
             assert_eq!(get(&inside, line, ""), get(&folder, line, ""), "{line}");
+            assert_eq!(get(&inside, line, &kept()), get(&folder, line, &kept()), "{line}");
         }
         assert_eq!(get(&inside, "GET / HTTP/1.1", "\r\nOrigin: http://evil.example").status, 403);
         assert_eq!(plain(&inside, b"GET / HTTP/1.1\r\nHost: evil.example").status, 421);
@@ -516,6 +586,7 @@ mod tests {
     #[test]
     fn everything_else_is_refused() {
         let (site, base) = site("refuses");
+        let kept = kept();
         for (line, headers, status) in [
             ("GET /../secret.js HTTP/1.1", "", 404),
             ("GET /%2e%2e/secret.js HTTP/1.1", "", 404),
@@ -526,8 +597,9 @@ mod tests {
             ("GET /.hidden.js HTTP/1.1", "", 404),
             ("GET /notes.txt HTTP/1.1", "", 404),
             ("GET /assets HTTP/1.1", "", 404),
-            ("GET /opened/secret.js HTTP/1.1", "", 404),
-            ("GET /opened/../secret.js HTTP/1.1", "", 404),
+            ("GET /opened/secret.js HTTP/1.1", &kept, 404),
+            ("GET /opened/../secret.js HTTP/1.1", &kept, 404),
+            ("GET /opened/secret.js HTTP/1.1", "", 401),
             ("GET /a%00.js HTTP/1.1", "", 404),
             ("GET /%zz HTTP/1.1", "", 404),
             ("GET http://127.0.0.1:7734/ HTTP/1.1", "", 404),
@@ -560,6 +632,52 @@ mod tests {
         // A link from elsewhere may bring a person here.
         let link = get(&site, "GET / HTTP/1.1", "\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate");
         assert_eq!(link.status, 200);
+        fs::remove_dir_all(base).unwrap();
+    }
+
+    #[test]
+    fn the_file_that_was_opened_is_for_those_who_have_the_key() {
+        let (site, base) = site("locked");
+        let key = "ab".repeat(16);
+        fs::write(base.join("my rose.svg"), "private").unwrap();
+        let file = "GET /opened/my%20rose.svg HTTP/1.1";
+        let wrong = "ac".repeat(16);
+        for cookie in [
+            String::new(),
+            "\r\nCookie: burgeon-7734=".into(),
+            format!("\r\nCookie: burgeon-7734={wrong}"),
+            format!("\r\nCookie: burgeon={key}"),
+            format!("\r\nCookie: burgeon-7735={key}"),
+            format!("\r\nCookie: burgeon-7734={}", &key[1..]),
+        ] {
+            for line in [file, "HEAD /opened/my%20rose.svg HTTP/1.1", "GET /opened/another.svg HTTP/1.1"] {
+                let answer = get(&site, line, &cookie);
+                assert_eq!(answer.status, 401, "{line}{cookie}");
+                assert!(!answer.body.windows(7).any(|w| w == b"private"), "{line}{cookie}");
+            }
+        }
+        let told = get(&site, file, "");
+        assert!(String::from_utf8_lossy(&told.body).contains("Copy the link from the terminal"));
+        // A key in the address of the file itself is not enough: it would stand in the history of the browser.
+        assert_eq!(get(&site, &format!("GET /opened/my%20rose.svg?key={key} HTTP/1.1"), "").status, 401);
+        assert_eq!(get(&site, "GET / HTTP/1.1", "").status, 200, "the page is no secret");
+        assert_eq!(get(&site, &format!("GET /?key={wrong} HTTP/1.1"), "").status, 401);
+        // The link works as often as it is opened, as a browser may be closed and opened again.
+        for line in ["HEAD", "GET", "GET"] {
+            let link = format!("{line} /?open=opened%2Fmy%20rose.svg&key={key} HTTP/1.1");
+            let entered = get(&site, &link, "\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate");
+            assert_eq!(entered.status, 303);
+            assert!(entered.head.contains("Location: /?open=opened%2Fmy%20rose.svg\r\n"), "{}", entered.head);
+            let keeps = format!("Set-Cookie: burgeon-7734={key}; Path=/; HttpOnly; SameSite=Strict\r\n");
+            assert!(entered.head.contains(&keeps), "{}", entered.head);
+        }
+        assert_eq!(&*get(&site, file, &kept()).body, b"private");
+        // A file without a key is for nobody, and a page without a file needs no key.
+        let nobodys = Site::new(Page::Inside(&[]), 7734, Some(base.join("my rose.svg"))).unwrap();
+        assert_eq!(get(&nobodys, file, &kept()).status, 401);
+        assert_eq!(get(&nobodys, &format!("GET /?key={key} HTTP/1.1"), "").status, 401);
+        let empty = Site::new(Page::Inside(&[("index.html", b"page")]), 7734, None).unwrap();
+        assert_eq!(get(&empty, &format!("GET /?key={key} HTTP/1.1"), "").status, 200);
         fs::remove_dir_all(base).unwrap();
     }
 
