@@ -31,11 +31,17 @@ pub enum Counted {
     Strokes,
     /// Edits by hand of one plant.
     Edits,
+    /// Nodes, leaves and flowers of a plant that holds copies of its own branches: each copy may double them.
+    Pieces,
+    /// Nodes, leaves and flowers, each time that an edit goes through them: what edits take time for.
+    EditedPieces,
+    /// Measured sizes, each time that a growth law is compared with them: what laws take time for.
+    Comparisons,
 }
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
@@ -48,6 +54,9 @@ impl Counted {
         Self::Slivers,
         Self::Strokes,
         Self::Edits,
+        Self::Pieces,
+        Self::EditedPieces,
+        Self::Comparisons,
     ];
 
     /// In messages.
@@ -65,6 +74,9 @@ impl Counted {
             Self::Slivers => "slivers side by side at a place of an obstacle, in the mean,",
             Self::Strokes => "strokes",
             Self::Edits => "edits",
+            Self::Pieces => "nodes, leaves and flowers",
+            Self::EditedPieces => "nodes, leaves and flowers that edits go through",
+            Self::Comparisons => "comparisons of sizes with growth laws",
         }
     }
 
@@ -75,13 +87,15 @@ impl Counted {
             Self::Roots | Self::Slivers => 1_000,
             Self::Points => 2_000_000,
             Self::Joints => 2_000_000,
-            Self::Leaves | Self::Obstacles => 1_000_000,
+            Self::Leaves | Self::Obstacles | Self::Pieces => 1_000_000,
             Self::Course => 100_000,
             Self::MarkerQueries => 100_000_000,
-            Self::JointYears => 20_000_000,
+            Self::JointYears | Self::Comparisons => 20_000_000,
             Self::Triangles => 16_000_000,
             Self::Strokes => 20_000,
             Self::Edits => 1_000,
+            // The most edits of an oak.
+            Self::EditedPieces => 60_000_000,
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `Plant + edits -> Draft -> each edit done or not, with the reason -> Plant`
 
-use base::{Cancelled, Run, Seed};
+use base::{Counted, Run, Seed, Stopped};
 use glam::{DQuat, DVec3};
 use growth::Obstacles;
 use plant::{OrganKind, Plant};
@@ -44,7 +44,7 @@ pub struct Applied {
 /// and what grows.
 ///
 /// # Errors
-/// [`Cancelled`].
+/// [`Stopped`]: cancelled, or over the budget of the pieces that edits go through or that copies make.
 ///
 /// ```
 /// use base::Run;
@@ -60,14 +60,14 @@ pub struct Applied {
 /// let applied = apply(&p, &again, &Context::default(), &Run::plain())?;
 /// assert_eq!((applied.plant.axes.len(), applied.outcomes[0].is_done()), (1, true));
 /// assert_eq!(applied.outcomes[1].to_string(), "not done: there is no branch number 0 there: it has 0 (numbered from 0)");
-/// # Ok::<(), base::Cancelled>(())
+/// # Ok::<(), base::Stopped>(())
 /// ```
 pub fn apply(
     plant: &Plant,
     edits: &[HandEdit],
     context: &Context,
     run: &Run<'_>,
-) -> Result<Applied, Cancelled> {
+) -> Result<Applied, Stopped> {
     if edits.is_empty() {
         return Ok(Applied { plant: plant.clone(), outcomes: Vec::new() });
     }
@@ -92,24 +92,29 @@ pub fn apply(
 /// let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0]), at: 0.5 };
 /// assert!(shaping.push(&cut, &Context::default(), &Run::plain())?.is_done());
 /// assert!(shaping.into_plant().nodes.position.iter().all(|p| p.y <= 1.0));
-/// # Ok::<(), base::Cancelled>(())
+/// # Ok::<(), base::Stopped>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Shaping {
     draft: Draft,
+    /// Pieces that the edits so far went through.
+    gone_through: u64,
 }
+
+/// What to do about edits that take too long.
+const FEWER_EDITS: &str = "take fewer edits, or edit a smaller plant";
 
 impl Shaping {
     /// A plant that is to be edited. Cost: linear in the plant.
     pub fn new(plant: &Plant) -> Self {
-        Self { draft: Draft::new(plant) }
+        Self { draft: Draft::new(plant), gone_through: 0 }
     }
 
     /// Does one edit, or says why not and changes nothing. Cost: linear in the plant, and what grows.
     ///
     /// # Errors
-    /// [`Cancelled`]: nothing was changed.
-    pub fn push(&mut self, edit: &HandEdit, context: &Context, run: &Run<'_>) -> Result<Outcome, Cancelled> {
+    /// [`Stopped`]: nothing was changed.
+    pub fn push(&mut self, edit: &HandEdit, context: &Context, run: &Run<'_>) -> Result<Outcome, Stopped> {
         self.push_again(edit, context, &mut KeptGrowth::default(), run)
     }
 
@@ -118,22 +123,26 @@ impl Shaping {
     /// nothing grows on.
     ///
     /// # Errors
-    /// [`Cancelled`]: nothing was changed.
+    /// [`Stopped`]: nothing was changed.
     pub fn push_again(
         &mut self,
         edit: &HandEdit,
         context: &Context,
         kept: &mut KeptGrowth,
         run: &Run<'_>,
-    ) -> Result<Outcome, Cancelled> {
+    ) -> Result<Outcome, Stopped> {
         run.cancel.check()?;
+        let through = self.gone_through + self.draft.pieces();
+        run.budget.check(Counted::EditedPieces, through, FEWER_EDITS)?;
         let bench = Bench { obstacles: &context.obstacles, exponent: context.pipe_exponent, run };
         let mut next = self.draft.clone();
         let before = leaf_count(&next);
         if !matches!(edit, HandEdit::Grow { .. }) {
             *kept = KeptGrowth::default();
         }
-        match one(&mut next, edit, kept, &bench) {
+        let done = one(&mut next, edit, kept, &bench);
+        self.gone_through = through;
+        match done {
             Ok(mut changed) => {
                 let after = leaf_count(&next);
                 if changed.leaves_added == 0 {
@@ -147,7 +156,7 @@ impl Shaping {
                 Ok(Outcome::Done(changed))
             }
             Err(Stop::Why(why)) => Ok(Outcome::NotDone(why)),
-            Err(Stop::Cancelled(c)) => Err(c),
+            Err(Stop::Stopped(stopped)) => Err(stopped),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What every edit is given, and why one stops.
 
-use base::{Cancelled, Report, Run};
+use base::{Cancelled, OverBudget, Report, Run, Stopped};
 use growth::{GrowthError, Obstacles};
 
 use crate::draft::Draft;
@@ -13,7 +13,7 @@ pub(crate) const MOST_AXES: usize = 400_000;
 /// Why an edit stopped.
 pub(crate) enum Stop {
     Why(Why),
-    Cancelled(Cancelled),
+    Stopped(Stopped),
 }
 
 impl From<Why> for Stop {
@@ -24,14 +24,20 @@ impl From<Why> for Stop {
 
 impl From<Cancelled> for Stop {
     fn from(c: Cancelled) -> Self {
-        Self::Cancelled(c)
+        Self::Stopped(c.into())
+    }
+}
+
+impl From<OverBudget> for Stop {
+    fn from(much: OverBudget) -> Self {
+        Self::Stopped(much.into())
     }
 }
 
 impl From<GrowthError> for Stop {
     fn from(error: GrowthError) -> Self {
         match error {
-            GrowthError::Cancelled(c) => Self::Cancelled(c),
+            GrowthError::Cancelled(c) => c.into(),
             // All numbers are ours or checked: what is left is a place where nothing can grow.
             _ => Self::Why(Why::NothingGrew),
         }

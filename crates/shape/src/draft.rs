@@ -190,6 +190,12 @@ impl Draft {
         plant
     }
 
+    /// Nodes, leaves and flowers, of dead branches, too: what an edit goes through.
+    pub(crate) fn pieces(&self) -> u64 {
+        let nodes: usize = self.branches.iter().map(|b| b.points.len()).sum();
+        (nodes + self.organs.len() + self.flowers.len()) as u64
+    }
+
     /// Numbers of the living branches that each branch bears.
     pub(crate) fn children(&self) -> Vec<Vec<usize>> {
         let mut children = vec![Vec::new(); self.branches.len()];

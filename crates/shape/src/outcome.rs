@@ -65,12 +65,6 @@ pub enum Why {
     /// The plant has no branch at all.
     #[error("the plant has no branch")]
     NoBranches,
-    /// A copy would make the plant too large.
-    #[error("the plant would have more than {most} nodes and leaves")]
-    TooLarge {
-        /// The most there may be.
-        most: usize,
-    },
     /// The edit would make the plant too large.
     #[error("the plant would have more than {most} branches")]
     TooMany {
@@ -97,7 +91,6 @@ impl Why {
             Self::NoLeaves => "no-leaves",
             Self::NoBranches => "no-branches",
             Self::TooMany { .. } => "too-many",
-            Self::TooLarge { .. } => "too-large",
         }
     }
 }

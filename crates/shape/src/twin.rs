@@ -2,7 +2,7 @@
 //!
 //! `Draft, branch -> the branch again, with all that it bears`
 
-use base::Seed;
+use base::{Counted, Run, Seed};
 use glam::{DQuat, DVec3};
 use plant::{FlowerId, Frame};
 
@@ -18,8 +18,8 @@ use crate::sketch_branch::own_seed;
 const COPY: u64 = 0x636f_7079;
 const MIRROR: u64 = 0x6d69_7272;
 
-/// Most nodes, leaves and flowers of a plant after a copy: a branch that bears copies of itself doubles with each.
-const MOST_PIECES: usize = 4_000_000;
+/// What to do about a plant that its copies make too large.
+const FEWER_COPIES: &str = "copy fewer branches, or smaller ones";
 /// A mirrored branch sits on wood that comes within this share of the plant's size of where it should begin, as what
 /// [`AxisKey::Near`] means does.
 const NEAR: f64 = 0.1;
@@ -45,7 +45,7 @@ pub(crate) fn copy(
     };
     let own = own_seed(draft, Seed::new(draft.branches[b].key).child(COPY), target);
     let what = draft.subtree(b);
-    let rows = draft.twin(&what, own)?;
+    let rows = draft.twin(&what, own, bench.run)?;
     let Some(top) = rows[b] else { return Err(Why::BranchGone.into()) };
     let made: Vec<bool> = (0..draft.branches.len()).map(|i| i >= what.len()).collect();
     draft.carry(&made, base, target, turn);
@@ -114,7 +114,7 @@ pub(crate) fn complete(
         let target = seat.map_or(wanted, |(_, place)| place);
         let own = own_seed(draft, Seed::new(draft.branches[top].key).child(MIRROR), target);
         let (first, organs) = (draft.branches.len(), draft.organs.len());
-        let rows = draft.twin(&what, own)?;
+        let rows = draft.twin(&what, own, bench.run)?;
         let Some(twin) = rows[top] else { continue };
         let by = target - wanted;
         for branch in &mut draft.branches[first..] {
@@ -184,7 +184,7 @@ fn end_at_obstacles(draft: &mut Draft, first: usize, bench: &Bench<'_>) {
 impl Draft {
     /// Branches again where they are, with all organs and flowers on them: new rows at the end, `fresh`, each with a key
     /// of its own. Returns the row of each twin; what bears a branch that is not copied bears its twin, too.
-    fn twin(&mut self, what: &[bool], own: Seed) -> Result<Vec<Option<usize>>, Stop> {
+    fn twin(&mut self, what: &[bool], own: Seed, run: &Run<'_>) -> Result<Vec<Option<usize>>, Stop> {
         let mut rows = vec![None; self.branches.len()];
         let mut next = self.branches.len();
         for ((row, branch), inside) in rows.iter_mut().zip(&self.branches).zip(what) {
@@ -198,15 +198,11 @@ impl Draft {
         }
         let hangs = |at: Option<At>| at.is_some_and(|at| rows.get(at.branch).is_some_and(Option::is_some));
         let organs = self.organs.iter().filter(|o| o.alive && hangs(o.at)).count();
-        let nodes = |b: &crate::draft::Branch| if b.alive { b.points.len() } else { 0 };
-        let copied = self.branches.iter().zip(&rows).filter(|(_, r)| r.is_some());
-        let pieces = self.branches.iter().map(nodes).sum::<usize>()
-            + copied.map(|(b, _)| nodes(b)).sum::<usize>()
-            + self.organs.len()
-            + organs;
-        if pieces > MOST_PIECES {
-            return Err(Why::TooLarge { most: MOST_PIECES }.into());
-        }
+        let flowers = self.flowers.iter().filter(|f| f.alive && hangs(f.at)).count();
+        let copied = self.branches.iter().zip(&rows).filter(|(_, row)| row.is_some());
+        let nodes: usize = copied.map(|(b, _)| b.points.len()).sum();
+        let pieces = self.pieces() + (nodes + organs + flowers) as u64;
+        run.budget.check(Counted::Pieces, pieces, FEWER_COPIES)?;
         let follow = |at: Option<At>| {
             at.map(|at| At { branch: rows.get(at.branch).copied().flatten().unwrap_or(at.branch), ..at })
         };

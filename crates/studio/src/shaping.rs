@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, Run, Stopped, Warning};
+use base::{Counted, Run, Stopped, Warning};
 use document::PlantEdit;
 use glam::DVec3;
 use plant::{AxisId, Plant};
@@ -64,7 +64,7 @@ struct Begun {
 }
 
 impl Begun {
-    fn push(&mut self, edit: &Arc<HandEdit>, context: &Context, run: &Run<'_>) -> Result<(), Cancelled> {
+    fn push(&mut self, edit: &Arc<HandEdit>, context: &Context, run: &Run<'_>) -> Result<(), Stopped> {
         self.push_again(edit, context, &mut KeptGrowth::default(), run)
     }
 
@@ -74,7 +74,7 @@ impl Begun {
         context: &Context,
         growing: &mut KeptGrowth,
         run: &Run<'_>,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<(), Stopped> {
         self.outcomes.push(self.shaping.push_again(edit, context, growing, run)?);
         self.edits.push(Arc::clone(edit));
         Ok(())

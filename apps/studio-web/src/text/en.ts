@@ -635,7 +635,6 @@ export const en = {
   'why.no-leaves': 'there are no leaves there',
   'why.no-branches': 'the plant has no branch',
   'why.too-many': 'too many branches',
-  'why.too-large': 'too many nodes and leaves',
   'key.shape': 'shape by hand',
   'key.shape.tools': 'its tools, pointing to leaves',
   'key.shape.up': 'what bears the branch; back to the twig',

@@ -623,7 +623,6 @@ export const zh: Record<TextKey, string> = {
   'why.no-leaves': '那里没有叶子',
   'why.no-branches': '植物没有枝条',
   'why.too-many': '枝条过多',
-  'why.too-large': '节点和叶子过多',
   'key.shape': '手工塑形',
   'key.shape.tools': '塑形工具：从指认到叶子',
   'key.shape.up': '所指枝条的母枝；退回小枝',

@@ -1,6 +1,6 @@
 //! Every edit on plants of every maker: sound, deterministic, honest.
 
-use base::{Executor, NoClock, Report, Run, Seed};
+use base::{Budget, Counted, Executor, NoClock, OverBudget, Report, Run, Seed, Stopped};
 use glam::{DVec2, DVec3};
 use growth::{
     CompetitionSpec, FoliageSpec, GuidedChange, GuidedSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec,
@@ -583,17 +583,49 @@ fn a_copy_is_the_branch_again_with_all_that_it_bears() {
     }
 }
 
-#[test]
-fn copies_of_copies_end_before_memory_does() {
+/// A stem of so many nodes, and an edit that copies it with all its copies onto itself.
+fn doubling(nodes: i32) -> (Plant, HandEdit) {
     let mut plant = Plant::default();
-    let line: Vec<DVec3> = (0..50_000).map(|i| DVec3::Y * (1e-4 * f64::from(i))).collect();
+    let line: Vec<DVec3> = (0..nodes).map(|i| DVec3::Y * (1e-4 * f64::from(i))).collect();
     plant.add_axis(AxisKind::Branch, None, 1, &line, None);
-    let double = HandEdit::Copy { axis: path(&[0]), to: Destination::Place { axis: path(&[0]), at: 1.0 } };
-    let a = done(&plant, &vec![double; 9]);
-    let made = a.outcomes.iter().filter(|o| o.is_done()).count();
-    assert!((5..9).contains(&made), "{made}");
-    assert_eq!(a.outcomes[8], Outcome::NotDone(Why::TooLarge { most: 4_000_000 }));
-    assert!(a.plant.nodes.position.len() <= 4_000_000);
+    (plant, HandEdit::Copy { axis: path(&[0]), to: Destination::Place { axis: path(&[0]), at: 1.0 } })
+}
+
+fn over_budget(plant: &Plant, edits: &[HandEdit], times: f64) -> Option<OverBudget> {
+    let run = Run { budget: Budget { times, ..Budget::default() }, ..Run::plain() };
+    match apply(plant, edits, &Context::default(), &run) {
+        Ok(_) => None,
+        Err(Stopped::OverBudget(much)) => Some(much),
+        Err(Stopped::Cancelled(_)) => panic!("nobody cancelled"),
+    }
+}
+
+#[test]
+fn copies_of_copies_are_refused_before_they_are_made() {
+    let (plant, double) = doubling(50_000);
+    let four = vec![double.clone(); 4];
+    assert_eq!(over_budget(&plant, &four, 1.0), None);
+    let made = done(&plant, &four).plant.nodes.position.len();
+    assert!((800_000..=1_000_000).contains(&made), "{made}");
+    for (copies, times) in [(5, 1.0), (200, 1.0), (4, 0.25)] {
+        let much = over_budget(&plant, &vec![double.clone(); copies], times).expect("too much");
+        assert_eq!(much.what, Counted::Pieces);
+        // The copy that would be too much is not begun: the plant was within the limit, and doubles.
+        assert!((much.limit + 1..=2 * much.limit + 16).contains(&much.number), "{much}");
+        assert!(much.to_string().contains("copy fewer branches"), "{much}");
+    }
+}
+
+#[test]
+fn edits_of_a_large_plant_are_counted_by_what_they_go_through() {
+    let (plant, _) = doubling(100_000);
+    let none = HandEdit::Prune { axis: path(&[0, 7]), at: 0.0 };
+    // A thousandth of the limit: 60,000 pieces.
+    let much = over_budget(&plant, core::slice::from_ref(&none), 0.001).expect("too much");
+    assert_eq!((much.what, much.number, much.limit), (Counted::EditedPieces, 100_000, 60_000));
+    assert_eq!(over_budget(&plant, &vec![none.clone(); 3], 0.005), None);
+    let much = over_budget(&plant, &vec![none; 4], 0.005).expect("edits that are not done take time, too");
+    assert_eq!((much.what, much.number), (Counted::EditedPieces, 400_000));
 }
 
 /// A trunk with a limb on either side of the plane x = 0, and leaves on them.
