@@ -68,7 +68,7 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
         }
         Failure::at(
             path,
-            "is neither a drawing (.svg, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
+            "is neither a drawing (.svg, .svgz, .excalidraw, .tldr, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
              .obj, .ply, .stl); give the file the extension of its format",
         )
     })

@@ -12,7 +12,7 @@ import { dialog, download, el, note } from './ui';
 
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
-const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
+const ACCEPT = '.burgeon,.svg,.svgz,.excalidraw,.tldr,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
 /** How a zip begins: PK. */
 const ZIP = [0x50, 0x4b] as const;
 const TYPES: Record<string, string> = {

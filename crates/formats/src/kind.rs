@@ -62,11 +62,16 @@ pub enum DrawingFormat {
     Ndjson,
     /// Our own `drawing/1`; one drawing a file.
     Json,
+    /// Excalidraw's files and what it puts on the clipboard; one drawing a file.
+    Excalidraw,
+    /// tldraw's files; one drawing a file.
+    Tldraw,
 }
 
 impl DrawingFormat {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Svg, Self::InkMl, Self::Ndjson, Self::Json];
+    pub const ALL: [Self; 6] =
+        [Self::Svg, Self::InkMl, Self::Ndjson, Self::Json, Self::Excalidraw, Self::Tldraw];
 
     /// The name for messages.
     pub const fn word(self) -> &'static str {
@@ -75,6 +80,8 @@ impl DrawingFormat {
             Self::InkMl => "InkML",
             Self::Ndjson => "ndjson",
             Self::Json => "drawing JSON",
+            Self::Excalidraw => "Excalidraw",
+            Self::Tldraw => "tldraw",
         }
     }
 
@@ -87,7 +94,9 @@ impl DrawingFormat {
     /// ```
     pub fn from_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
-            "svg" => Some(Self::Svg),
+            "svg" | "svgz" => Some(Self::Svg),
+            "excalidraw" => Some(Self::Excalidraw),
+            "tldr" => Some(Self::Tldraw),
             "inkml" | "ink" => Some(Self::InkMl),
             "ndjson" | "jsonl" => Some(Self::Ndjson),
             "json" => Some(Self::Json),
@@ -109,6 +118,10 @@ impl DrawingFormat {
         match first {
             b'<' if has("<svg") || has(":svg") => Some(Self::Svg),
             b'<' if has("<ink") || has(":ink") => Some(Self::InkMl),
+            // A packed file: of all drawings only SVG is.
+            0x1f if head.starts_with(&[0x1f, 0x8b]) => Some(Self::Svg),
+            b'{' if has("\"excalidraw\"") || has("\"excalidraw/clipboard\"") => Some(Self::Excalidraw),
+            b'{' if has("\"tldrawFileFormatVersion\"") => Some(Self::Tldraw),
             b'{' if has("\"burgeon\"") => Some(Self::Json),
             b'{' if has("\"drawing\"") || has("\"key_id\"") => Some(Self::Ndjson),
             b'{' if has("\"strokes\"") => Some(Self::Json),

@@ -5,6 +5,7 @@
 //! | step | module | paper |
 //! |---|---|---|
 //! | strokes as they were drawn | `drawing` | |
+//! | what drawing programs paint, as plain strokes | `normal` | |
 //! | turned, pulled, smoothed, cut, joined, rubbed out in part | `edit` | |
 //! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
 //! | which strokes are of one plant | `subjects` | |
@@ -19,6 +20,7 @@ mod classify;
 mod clean;
 mod drawing;
 mod edit;
+mod normal;
 mod subjects;
 
 pub use class::StrokeClass;
@@ -34,4 +36,5 @@ pub use classify::{
 pub use clean::{Ink, InkMap, InkStroke, clean, clean_again};
 pub use drawing::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 pub use edit::{StrokePull, StrokeTurn, cut, joined, rubbed, smoothed};
+pub use normal::{Change, Figure, Fill, Normal, normalise};
 pub use subjects::Subjects;

@@ -31,7 +31,7 @@ pub enum WorkspaceError {
     NoUsableStroke,
     /// Nothing says what the file is.
     #[error(
-        "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .inkml, .ndjson, .json), marks \
+        "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .svgz, .excalidraw, .tldr, .inkml, .ndjson, .json), marks \
          of a leaf (.csv), a tree or flower (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
     )]
     UnknownFile,

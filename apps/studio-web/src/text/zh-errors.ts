@@ -10,7 +10,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'no-drawing': '文件里没有绘图',
   'no-usable-stroke': '文件里没有可用的笔画',
   'unknown-file':
-    '无法识别这个文件：请提供项目（.burgeon）、绘图（.svg、.inkml、.ndjson、.json）、叶片标记（.csv）、树或花（.toml）或模型（.glb、.gltf、.obj、.ply、.stl）',
+    '无法识别这个文件：请提供项目（.burgeon）、绘图（.svg、.svgz、.excalidraw、.tldr、.inkml、.ndjson、.json）、叶片标记（.csv）、树或花（.toml）或模型（.glb、.gltf、.obj、.ply、.stl）',
   'not-text': '文件不是 UTF-8 文本，请另存为 UTF-8（{why}）',
   'obstacle-file': '障碍物是模型：请提供 .glb、.gltf、.obj、.ply 或 .stl 文件',
   'no-surface': '模型里没有表面',
@@ -338,5 +338,13 @@ export const zhWarnings: Record<string, string> = {
   'svg-left-out': '没有读取：{what}（{count}）',
   'svg-style': '{count} 个复合样式选择器没有查看',
   'filled-outline': '{count} 个填充的形状是变宽画笔的笔画：取了它们的中心线，宽度作为压力',
+  'off-sheet': '{count} 个形状在画纸之外，已略去',
+  'paper-left-out': '{count} 条线是纸面（页面、边框、卡片、天空、地面、格线），已略去',
+  'traced-ink': '{count} 个填充的形状是描摹的墨迹：取了它们的中心线',
+  'drawn-twice': '{count} 条线画了两遍：各算一笔',
+  'pieces-joined': '{count} 段端点相接的线连成了较长的笔画',
+  'colour-under-line': '{count} 个色块在线条之下：线条取了它们的颜色',
+  'shade-left-out': '{count} 个色块是所在形状的阴影，已略去',
+  'hatching-left-out': '{count} 笔是排线或点画，已略去',
   'color-unknown': '第 {stroke} 笔：颜色“{color}”不是 #rrggbb，已忽略',
 };

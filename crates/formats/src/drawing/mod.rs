@@ -1,16 +1,19 @@
 //! bytes -> [`ink::Drawing`]s, y up, in whatever unit the file has.
 
+mod excalidraw;
 mod inkml;
 mod json;
 mod mode;
 mod quickdraw;
 mod svg;
+mod tldraw;
 mod xml;
 
 use std::io::{BufRead, Read};
 
-use base::Warning;
-use ink::Drawing;
+use base::{Report, Warning};
+use glam::DVec2;
+use ink::{Drawing, Figure, InkSample, Stroke};
 
 use crate::error::{DrawingError, FileFault, Place};
 use crate::foreign::Foreign;
@@ -93,13 +96,19 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
             advice: "simplify the drawing or split it into several files",
         }));
     }
-    let text = text_of(bytes).map_err(file)?;
+    let text = text_of(unpacked(bytes).map_err(file)?).map_err(file)?;
     if text.trim().is_empty() {
         return Err(file(FileFault::Empty));
     }
-    let mut report = base::Report::default();
+    let mut report = Report::default();
     let drawing = match format {
         DrawingFormat::Svg => svg::read(&text, name, &mut report)?,
+        DrawingFormat::Excalidraw => excalidraw::read(&text, name, &mut report)?,
+        DrawingFormat::Tldraw => tldraw::read(&text, name, &mut report)?,
+        // What Excalidraw puts on the clipboard is kept under any name.
+        DrawingFormat::Json if DrawingFormat::sniff(text.as_bytes()) == Some(DrawingFormat::Excalidraw) => {
+            excalidraw::read(&text, name, &mut report)?
+        }
         DrawingFormat::InkMl => inkml::read(&text, name, &mut report)?,
         DrawingFormat::Json => json::read(&text, name, &mut report)?,
         DrawingFormat::Ndjson => quickdraw::read_line(&text, 1, name, &mut report)?,
@@ -108,6 +117,55 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
         return Err(file(FileFault::no_strokes(&report)));
     }
     Ok(ReadDrawing { drawing, warnings: report.warnings })
+}
+
+/// The bytes of a file that is packed as gzip (`.svgz`), or those of any other as they are.
+fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, FileFault> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes);
+    }
+    let mut out = Vec::new();
+    let read =
+        flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(MAX_DRAWING_BYTES + 1).read_to_end(&mut out);
+    if let Err(e) = read {
+        let what = format!("the packed (gzip) file is broken: {e}");
+        return Err(FileFault::malformed(what, "save it again, or save it as plain SVG"));
+    }
+    if out.len() as u64 > MAX_DRAWING_BYTES {
+        return Err(FileFault::TooMuch {
+            what: "the size when unpacked, in bytes,",
+            limit: MAX_DRAWING_BYTES,
+            advice: "simplify the drawing or split it into several files",
+        });
+    }
+    Ok(out)
+}
+
+/// The strokes that figures of a drawing program mean, and in the report what was done to them.
+fn plain_strokes(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, report: &mut Report) -> Vec<Stroke> {
+    let normal = ink::normalise(figures, sheet);
+    for (change, count) in &normal.changes {
+        report.warn_of(change.code(), &[("count", count)], change.sentence(*count));
+    }
+    normal.strokes
+}
+
+/// The corners of a box of size 1, y down.
+const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+/// A closed polygon in a box of the given size.
+fn polygon(size: DVec2, corners: &[[f64; 2]]) -> Vec<InkSample> {
+    let closed = corners.iter().chain(corners.first());
+    closed.map(|c| (DVec2::from(*c) * size).into()).collect()
+}
+
+/// A closed ellipse in a box of the given size, with so many points a quarter.
+fn ellipse(size: DVec2, quarter: u32) -> Vec<InkSample> {
+    let at = |k: u32| {
+        let (sin, cos) = base::ops::sin_cos(base::ops::TAU * f64::from(k) / f64::from(4 * quarter));
+        (size * 0.5 * (DVec2::new(cos, sin) + 1.0)).into()
+    };
+    (0..4 * quarter).chain([0]).map(at).collect()
 }
 
 /// The XML declaration names the encoding of older drawing programs, whose bytes are the first 256 characters.

@@ -20,12 +20,21 @@ const TOLD: [&str; 9] = [
     "studio/src",
 ];
 /// Told in other ways than by a call of `warn` with the code in it.
-const NAMED: [(&str, &[&str]); 5] = [
+const NAMED: [(&str, &[&str]); 14] = [
     ("unlike-a-plant", &[]),
     ("edit-not-done", &["edit", "word", "why"]),
     ("sample-skipped", &["stroke", "count"]),
     ("stray-skipped", &["stroke", "count"]),
     ("growth-too-much", &["year", "years", "joints", "next", "most"]),
+    ("off-sheet", &["count"]),
+    ("paper-left-out", &["count"]),
+    ("filled-outline", &["count"]),
+    ("traced-ink", &["count"]),
+    ("drawn-twice", &["count"]),
+    ("pieces-joined", &["count"]),
+    ("colour-under-line", &["count"]),
+    ("shade-left-out", &["count"]),
+    ("hatching-left-out", &["count"]),
 ];
 
 /// A code and the fields that go with it.

@@ -4,7 +4,6 @@
 //! properties that matter here are read by the modules beside this one.
 
 mod path;
-mod ribbon;
 mod style;
 mod write;
 
@@ -15,12 +14,12 @@ use std::sync::Arc;
 
 use base::Report;
 use glam::{DAffine2, DVec2};
-use ink::{Drawing, InkSample, Layer, Stroke};
+use ink::{Drawing, Figure, Fill, Layer, Stroke};
 use roxmltree::{Node, NodeId};
 
 use self::path::SubPath;
 use self::style::{Paint, Sheet, Style};
-use super::{number_end, xml};
+use super::{number_end, plain_strokes, xml};
 use crate::DrawingFormat;
 use crate::error::{DrawingError, FileFault, Place};
 
@@ -62,6 +61,8 @@ struct Reader<'a> {
     work: usize,
     left_out: LiteMap<&'static str, usize>,
     broken: Vec<Broken>,
+    /// What the `use` elements on the way refer to.
+    using: Vec<NodeId>,
 }
 
 /// An attribute that cannot be read to its end, and where it stands.
@@ -90,6 +91,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         }
     }
     base::sort_by(&mut by_id, |a, b| a.0.cmp(b.0));
+    sheet.servers = style::servers(root, &sheet);
     let mut reader = Reader {
         by_id,
         sheet,
@@ -101,8 +103,9 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         work: 0,
         left_out: LiteMap::new(),
         broken: Vec::new(),
+        using: Vec::new(),
     };
-    reader.walk(root, Style::default(), DAffine2::IDENTITY, Depth::default())?;
+    reader.walk(root, Style::default(), stretched(root), Depth::default())?;
     reader.tell(report);
     let title = root.children().find(|n| n.tag_name().name() == "title").and_then(|n| n.text());
     let title = title.map(str::trim).filter(|t| !t.is_empty());
@@ -110,8 +113,9 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     let name = if name.is_empty() { title.unwrap_or_default() } else { name };
     // What is hidden comes last: numbers of strokes, and all that follows from them, are as if it were not there.
     let (hidden, seen): (Vec<Shape>, Vec<Shape>) = reader.shapes.into_iter().partition(|s| s.style.hidden);
-    let mut all = strokes(&seen, &reader.layers, report);
-    all.extend(strokes(&hidden, &reader.layers, &mut Report::default()));
+    let corners = sheet_corners(root);
+    let mut all = strokes(&seen, &reader.layers, corners, report);
+    all.extend(strokes(&hidden, &reader.layers, corners, &mut Report::default()));
     Ok(Drawing { name: name.to_owned(), strokes: all, layers: reader.layers })
 }
 
@@ -122,8 +126,61 @@ struct Depth {
 }
 
 impl<'a> Reader<'a> {
-    /// Bounded recursion: by the nesting of the XML, the chain of `use`, and both together.
+    /// [`Self::enter`], and what of it a clip path leaves.
     fn walk(
+        &mut self,
+        node: Node<'a, 'a>,
+        inherited: Style,
+        parent: DAffine2,
+        depth: Depth,
+    ) -> Result<(), DrawingError> {
+        let before = self.shapes.len();
+        self.enter(node, inherited, parent, depth)?;
+        let Some(clip) = self.said(node, "clip-path") else { return Ok(()) };
+        let Some(clip) = style::reference(&clip).and_then(|(id, _)| self.target(node, id)) else {
+            return Ok(());
+        };
+        if clip.tag_name().name() != "clipPath"
+            || clip.attribute("clipPathUnits") == Some("objectBoundingBox")
+            || self.shapes.len() == before
+            || depth.uses >= MAX_USE
+        {
+            return Ok(());
+        }
+        let drawn = self.shapes.len();
+        let here = parent * self.own_transform(node) * self.own_transform(clip);
+        let deeper = Depth { uses: depth.uses + 1, elements: depth.elements + 1 };
+        for child in clip.children().filter(Node::is_element) {
+            self.walk(child, Style::default(), here, deeper)?;
+        }
+        let window = self.shapes.split_off(drawn).iter().filter_map(extent).reduce(both);
+        let inside = |shape: &Shape| match (window, extent(shape)) {
+            (Some((lo, hi)), Some((from, to))) => from.cmple(hi).all() && to.cmpge(lo).all(),
+            // Of a window that is not read, such as text, nothing is known.
+            (window, _) => window.is_some() || clip.children().any(|n| n.is_element()),
+        };
+        let kept: Vec<Shape> = self.shapes.split_off(before).into_iter().filter(inside).collect();
+        for _ in kept.len()..drawn - before {
+            self.leave_out("clipped away");
+        }
+        self.shapes.extend(kept);
+        Ok(())
+    }
+
+    /// The element with this id.
+    fn target(&self, node: Node<'a, 'a>, id: &str) -> Option<Node<'a, 'a>> {
+        let row = self.by_id.get(self.by_id.partition_point(|row| row.0 < id)).filter(|row| row.0 == id);
+        row.and_then(|&(_, id)| node.document().get_node(id))
+    }
+
+    /// A property of an element itself: in its style, in the sheet, or as an attribute.
+    fn said(&self, node: Node<'_, '_>, name: &str) -> Option<String> {
+        let inline = node.attribute("style").and_then(|s| style::declared(s, name)).map(str::to_owned);
+        inline.or_else(|| self.sheet.value(node, name)).or_else(|| node.attribute(name).map(str::to_owned))
+    }
+
+    /// Bounded recursion: by the nesting of the XML, the chain of `use`, and both together.
+    fn enter(
         &mut self,
         node: Node<'a, 'a>,
         inherited: Style,
@@ -180,23 +237,33 @@ impl<'a> Reader<'a> {
             "use" => {
                 let shift = DAffine2::from_translation(DVec2::new(self.x(node, "x"), self.y(node, "y")));
                 let href = node.attributes().find(|a| a.name() == "href").map_or("", |a| a.value());
-                let place = |id| {
-                    self.by_id.get(self.by_id.partition_point(|row| row.0 < id)).filter(|row| row.0 == id)
-                };
-                let target = href.strip_prefix('#').and_then(place);
-                let Some(target) = target.and_then(|&(_, id)| node.document().get_node(id)) else {
+                // Cairo and others write text as pictures of its letters.
+                if href.starts_with("#glyph") {
+                    self.leave_out("text");
+                    return Ok(());
+                }
+                let Some(target) = href.strip_prefix('#').and_then(|id| self.target(node, id)) else {
                     self.leave_out("use of something that is not in the file");
                     return Ok(());
                 };
+                if self.using.contains(&target.id()) || node.ancestors().any(|a| a == target) {
+                    self.leave_out("use that refers to itself");
+                    return Ok(());
+                }
+                self.using.push(target.id());
                 let deeper = Depth { uses: depth.uses + 1, ..deeper };
                 if target.tag_name().name() == "symbol" {
                     let style = style.of(target, &self.sheet);
+                    let here = here
+                        * shift
+                        * viewport_of(target, [node.attribute("width"), node.attribute("height")]);
                     for child in target.children().filter(Node::is_element) {
-                        self.walk(child, style, here * shift, deeper)?;
+                        self.walk(child, style, here, deeper)?;
                     }
                 } else {
                     self.walk(target, style, here * shift, deeper)?;
                 }
+                self.using.pop();
             }
             "text" => self.leave_out("text"),
             "image" => self.leave_out("image"),
@@ -229,11 +296,14 @@ impl<'a> Reader<'a> {
     }
 
     fn own_transform(&mut self, node: Node<'_, '_>) -> DAffine2 {
-        let Some(text) = node.attribute("transform") else { return DAffine2::IDENTITY };
-        path::transform(text).unwrap_or_else(|| {
+        let Some(text) = self.said(node, "transform") else { return DAffine2::IDENTITY };
+        let Some(own) = path::transform(&text, self.viewport) else {
             self.broken(node, "transform");
-            DAffine2::IDENTITY
-        })
+            return DAffine2::IDENTITY;
+        };
+        let origin = self.said(node, "transform-origin").and_then(|text| origin(&text, self.viewport));
+        let Some(origin) = origin else { return own };
+        DAffine2::from_translation(origin) * own * DAffine2::from_translation(DVec2::ZERO - origin)
     }
 
     fn shape(&mut self, node: Node<'_, '_>, style: Style, here: DAffine2) {
@@ -250,7 +320,7 @@ impl<'a> Reader<'a> {
                 let pieces = vec![path::Piece::Line(to)];
                 (vec![SubPath { start: from, pieces, closed: false }], None)
             }
-            "rect" => (self.rect(node, style), None),
+            "rect" => (self.rect(node), None),
             tag @ ("circle" | "ellipse") => {
                 let centre = DVec2::new(self.x(node, "cx"), self.y(node, "cy"));
                 let r = if tag == "circle" {
@@ -276,6 +346,13 @@ impl<'a> Reader<'a> {
         if style.stroke == Paint::None && style.fill == Paint::None {
             return self.leave_out("shape without stroke and fill");
         }
+        if !style.is_lined() && !style.is_filled() {
+            return self.leave_out("invisible");
+        }
+        let marker = |name: &&str| self.said(node, name).is_some_and(|v| v.trim() != "none");
+        if ["marker-end", "marker-start"].iter().any(marker) {
+            return self.leave_out("arrow");
+        }
         let mut paths = paths;
         for path in &mut paths {
             path.transform(here);
@@ -283,21 +360,14 @@ impl<'a> Reader<'a> {
         }
         let id = node.attribute("id").map(str::to_owned);
         let scale = here.matrix2.determinant().abs().sqrt();
-        let painted = style.stroke != Paint::None;
-        let width = style.width.map(|w| w * scale).filter(|w| painted && w.is_finite() && *w > 0.0);
+        let width = style.width.map(|w| w * scale).filter(|w| style.is_lined() && w.is_finite() && *w > 0.0);
         self.shapes.push(Shape { paths, style, id, width });
     }
 
-    fn rect(&mut self, node: Node<'_, '_>, style: Style) -> Vec<SubPath> {
+    fn rect(&self, node: Node<'_, '_>) -> Vec<SubPath> {
         let at = DVec2::new(self.x(node, "x"), self.y(node, "y"));
         let size = DVec2::new(self.x(node, "width"), self.y(node, "height"));
         if !(size.x > 0.0 && size.y > 0.0) {
-            return Vec::new();
-        }
-        // 0.95: programs that paint the sheet leave at most a thin rim.
-        let sheet = style.stroke == Paint::None && size.cmpge(self.viewport * 0.95).all();
-        if sheet && self.viewport.min_element() > 0.0 {
-            self.leave_out("rectangle that paints the whole sheet");
             return Vec::new();
         }
         let (rx, ry) = (node.attribute("rx"), node.attribute("ry"));
@@ -400,6 +470,27 @@ fn viewport(root: Node<'_, '_>) -> DVec2 {
     }
 }
 
+/// The corners of the sheet, y up; `None` where the file does not say.
+fn sheet_corners(root: Node<'_, '_>) -> Option<(DVec2, DVec2)> {
+    let size = viewport(root);
+    let at = view_box(root).map_or(DVec2::ZERO, |[x, y, ..]| DVec2::new(x, y));
+    let map = stretched(root);
+    let (a, b) = (map.transform_point2(at), map.transform_point2(at + size));
+    (size.min_element() > 0.0).then(|| (DVec2::new(a.x, 0.0 - b.y), DVec2::new(b.x, 0.0 - a.y)))
+}
+
+/// How a sheet is pulled whose sides need not keep their proportion.
+fn stretched(root: Node<'_, '_>) -> DAffine2 {
+    let free = root.attribute("preserveAspectRatio").is_some_and(|v| v.trim().starts_with("none"));
+    let side = |name| root.attribute(name).filter(|v| !v.contains('%')).map(|v| length(v, 0.0));
+    match (view_box(root), side("width"), side("height")) {
+        (Some([_, _, w, h]), Some(wide), Some(high)) if free && wide > 0.0 && high > 0.0 => {
+            DAffine2::from_scale(DVec2::new((wide / w) / (high / h), 1.0))
+        }
+        _ => DAffine2::IDENTITY,
+    }
+}
+
 /// Placement of an inner `<svg>`.
 fn nested_viewport(node: Node<'_, '_>) -> DAffine2 {
     if node.tag_name().name() != "svg" {
@@ -407,69 +498,103 @@ fn nested_viewport(node: Node<'_, '_>) -> DAffine2 {
     }
     let side = |name| node.attribute(name).map_or(0.0, |v| length(v, 0.0));
     let shift = DAffine2::from_translation(DVec2::new(side("x"), side("y")));
-    let Some([x, y, w, h]) = view_box(node) else { return shift };
-    let scale = (side("width") / w).min(side("height") / h);
-    let scale = if scale > 0.0 { scale } else { 1.0 };
-    shift * DAffine2::from_scale(DVec2::splat(scale)) * DAffine2::from_translation(DVec2::new(-x, -y))
+    shift * viewport_of(node, [node.attribute("width"), node.attribute("height")])
 }
 
-fn strokes(shapes: &[Shape], layers: &[Layer], report: &mut Report) -> Vec<Stroke> {
-    let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    let points = shapes.iter().flat_map(|s| &s.paths).flat_map(SubPath::control_points);
-    for p in points.filter(|p| p.is_finite()) {
-        min = min.min(p);
-        max = max.max(p);
+/// From the box that an element shows to the place that it is shown in.
+fn viewport_of(node: Node<'_, '_>, size: [Option<&str>; 2]) -> DAffine2 {
+    let Some([x, y, w, h]) = view_box(node) else { return DAffine2::IDENTITY };
+    let [wide, high] = size.map(|v| v.map_or(0.0, |v| length(v, 0.0)));
+    let from = DAffine2::from_translation(DVec2::new(-x, -y));
+    let scale = DVec2::new(wide / w, high / h);
+    if !(scale.min_element() > 0.0 && scale.is_finite()) {
+        return from;
     }
-    let diagonal = (max - min).length();
+    let how = node.attribute("preserveAspectRatio").unwrap_or_default();
+    if how.trim().starts_with("none") {
+        return DAffine2::from_scale(scale) * from;
+    }
+    let even = if how.contains("slice") { scale.max_element() } else { scale.min_element() };
+    let along = |min: &str, max: &str| match () {
+        () if how.contains(min) => 0.0,
+        () if how.contains(max) => 1.0,
+        () => 0.5,
+    };
+    let free = DVec2::new(wide, high) - DVec2::new(w, h) * even;
+    let shift = free * DVec2::new(along("xMin", "xMax"), along("YMin", "YMax"));
+    DAffine2::from_translation(shift) * DAffine2::from_scale(DVec2::splat(even)) * from
+}
+
+/// `transform-origin`: two lengths, percents of the sheet, or words for its sides.
+fn origin(text: &str, sheet: DVec2) -> Option<DVec2> {
+    let words: Vec<&str> = text.split_ascii_whitespace().take(2).collect();
+    let mut at = [None; 2];
+    for (k, word) in words.iter().enumerate() {
+        let (axis, share) = match *word {
+            "left" => (0, 0.0),
+            "right" => (0, 1.0),
+            "top" => (1, 0.0),
+            "bottom" => (1, 1.0),
+            "center" => (k, 0.5),
+            number => {
+                let whole = if k == 0 { DVec2::new(sheet.x, 0.0) } else { DVec2::new(sheet.y, 0.0) };
+                at[k] = path::css_numbers(number, whole)?.first().copied();
+                continue;
+            }
+        };
+        at[axis] = Some(sheet[axis] * share);
+    }
+    let [x, y] = at;
+    if x.is_none() && y.is_none() {
+        return None;
+    }
+    Some(DVec2::new(x.unwrap_or(0.5 * sheet.x), y.unwrap_or(0.5 * sheet.y)))
+}
+
+/// The box of a shape.
+fn extent(shape: &Shape) -> Option<(DVec2, DVec2)> {
+    let points = shape.paths.iter().flat_map(SubPath::control_points).filter(|p| p.is_finite());
+    points.map(|p| (p, p)).reduce(both)
+}
+
+fn both(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> (DVec2, DVec2) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+fn strokes(
+    shapes: &[Shape],
+    layers: &[Layer],
+    sheet: Option<(DVec2, DVec2)>,
+    report: &mut Report,
+) -> Vec<Stroke> {
+    let diagonal = shapes.iter().filter_map(extent).reduce(both).map_or(0.0, |(lo, hi)| (hi - lo).length());
     let tolerance = (diagonal * FLATNESS).max(f64::MIN_POSITIVE);
-    let flat: Vec<Vec<Vec<DVec2>>> =
-        shapes.iter().map(|s| s.paths.iter().map(|p| p.flatten(tolerance)).collect()).collect();
-    let candidates: Vec<ribbon::Candidate<'_>> = shapes
-        .iter()
-        .zip(&flat)
-        .map(|(shape, lines)| ribbon::Candidate {
-            lines,
-            fill_only: shape.style.stroke == Paint::None,
-            fill_said: shape.style.fill_said,
-        })
-        .collect();
-    let centre_lines = ribbon::centre_lines(&candidates, diagonal);
-    let mut out = Vec::new();
-    let mut reduced = 0_usize;
-    for ((shape, lines), centre) in shapes.iter().zip(flat).zip(centre_lines) {
-        let color = shape.style.stroke.color().or_else(|| shape.style.fill.color());
-        let layer = shape.style.layer.and_then(|row| layers.get(row));
-        let stroke = |samples: Vec<InkSample>| Stroke {
-            samples,
-            mode: shape.style.mode,
-            color,
+    let figure = |shape: &Shape| {
+        let style = &shape.style;
+        let color = Some(style.stroke).filter(|_| style.is_lined()).and_then(Paint::color);
+        let like = Stroke {
+            samples: Vec::new(),
+            mode: style.mode,
+            color: color.or_else(|| style.fill.color()),
             width: shape.width,
-            layer: layer.map(|l| Arc::clone(&l.name)),
-            hidden: shape.style.hidden,
+            layer: style.layer.and_then(|row| layers.get(row)).map(|l| Arc::clone(&l.name)),
+            hidden: style.hidden,
             id: shape.id.clone(),
         };
-        if let Some(line) = centre {
-            reduced += 1;
-            let samples = line.into_iter().map(|(at, pressure)| InkSample {
-                at: up(at),
-                time_ms: None,
-                pressure: Some(pressure),
-            });
-            out.push(stroke(samples.collect()));
-        } else {
-            out.extend(lines.into_iter().map(|l| stroke(l.into_iter().map(|p| up(p).into()).collect())));
+        let flat = |p: &SubPath| p.flatten(tolerance).into_iter().map(|p| up(p).into()).collect();
+        Figure {
+            like,
+            lines: shape.paths.iter().map(flat).collect(),
+            lined: style.is_lined(),
+            fill: style.is_filled().then(|| Fill {
+                color: style.fill.color(),
+                said: style.fill_said,
+                opacity: style.area_opacity(),
+                even_odd: style.even_odd,
+            }),
         }
-    }
-    if reduced > 0 {
-        base::warn!(
-            report,
-            "filled-outline",
-            { count = reduced },
-            "{count} filled shapes are strokes of a variable-width pen: their centre lines were taken, \
-             and their widths as pressure"
-        );
-    }
-    out
+    };
+    plain_strokes(shapes.iter().map(figure).collect(), sheet, report)
 }
 
 /// The sheet's y points down, ours up.

@@ -367,25 +367,62 @@ pub(super) fn poly(points: &str, closed: bool) -> (Option<SubPath>, Option<usize
     (path, None)
 }
 
-/// `transform="..."`: translate, scale, rotate, skewX, skewY, matrix. `None` if it is broken.
-pub(super) fn transform(text: &str) -> Option<DAffine2> {
+/// Degrees, pixels and percents of the sheet for a number with a unit of CSS; plain numbers stay.
+fn unit(name: &str, value: f64, whole: f64) -> Option<f64> {
+    Some(match name {
+        "" | "px" | "deg" => value,
+        "rad" => value * (180.0 / ops::PI),
+        "grad" => value * 0.9,
+        "turn" => value * 360.0,
+        "%" => value * whole / 100.0,
+        "pt" => value * 96.0 / 72.0,
+        "mm" => value * 96.0 / 25.4,
+        "cm" => value * 96.0 / 2.54,
+        "in" => value * 96.0,
+        "em" | "rem" => value * 16.0,
+        _ => return None,
+    })
+}
+
+/// Numbers with the units of CSS; percents are of the sheet's sides in turn.
+pub(super) fn css_numbers(text: &str, sheet: DVec2) -> Option<Vec<f64>> {
+    let mut s = Scanner { text, at: 0 };
+    let mut v = Vec::new();
+    while !s.done() && v.len() < 7 {
+        let value = s.number()?;
+        let rest = &s.text[s.at..];
+        let end = rest.find(|c: char| !(c.is_ascii_alphabetic() || c == '%')).unwrap_or(rest.len());
+        s.at += end;
+        v.push(unit(&rest[..end], value, if v.len() % 2 == 0 { sheet.x } else { sheet.y })?);
+    }
+    Some(v)
+}
+
+/// `transform="..."`, or the same as CSS: translate, scale, rotate, skew, matrix, also along one axis. `None` if it is
+/// broken.
+pub(super) fn transform(text: &str, sheet: DVec2) -> Option<DAffine2> {
+    if text.trim() == "none" {
+        return Some(DAffine2::IDENTITY);
+    }
     let mut all = DAffine2::IDENTITY;
     let mut rest = text.trim();
     while !rest.is_empty() {
         let (name, after) = rest.split_once('(')?;
         let (inside, after) = after.split_once(')')?;
         rest = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
-        let mut s = Scanner { text: inside, at: 0 };
-        let mut v = Vec::new();
-        while !s.done() && v.len() < 7 {
-            v.push(s.number()?);
-        }
+        let v = css_numbers(inside, sheet)?;
         let radians = |deg: f64| deg % 360.0 * (ops::PI / 180.0);
         let matrix = |m: [f64; 6]| DAffine2::from_cols_array(&m);
         all *= match (name.trim(), v.as_slice()) {
             ("matrix", &[a, b, c, d, e, f]) => matrix([a, b, c, d, e, f]),
             ("translate", &[x]) => DAffine2::from_translation(DVec2::new(x, 0.0)),
             ("translate", &[x, y]) => DAffine2::from_translation(DVec2::new(x, y)),
+            ("translateX", &[x]) => DAffine2::from_translation(DVec2::new(x, 0.0)),
+            ("translateY", &[y]) => DAffine2::from_translation(DVec2::new(0.0, y)),
+            ("scaleX", &[x]) => DAffine2::from_scale(DVec2::new(x, 1.0)),
+            ("scaleY", &[y]) => DAffine2::from_scale(DVec2::new(1.0, y)),
+            ("skew", &[a]) => matrix([1.0, 0.0, ops::tan(radians(a)), 1.0, 0.0, 0.0]),
+            ("skew", &[a, b]) => matrix([1.0, ops::tan(radians(b)), ops::tan(radians(a)), 1.0, 0.0, 0.0]),
             ("scale", &[s]) => DAffine2::from_scale(DVec2::splat(s)),
             ("scale", &[x, y]) => DAffine2::from_scale(DVec2::new(x, y)),
             ("rotate", &[a] | &[a, _, _]) => {
@@ -474,12 +511,15 @@ mod tests {
 
     #[test]
     fn transforms_compose_from_left_to_right() {
-        let m = transform("translate(10) rotate(90 1 1), scale(2)").expect("reads");
+        let m = transform("translate(10) rotate(90 1 1), scale(2)", DVec2::ZERO).expect("reads");
         assert!((m.transform_point2(DVec2::new(1.0, 0.0)) - DVec2::new(12.0, 2.0)).length() < 1e-12);
-        let m = transform("matrix(1 0 0 -1 5 6)").expect("reads");
+        let m = transform("matrix(1 0 0 -1 5 6)", DVec2::ZERO).expect("reads");
         assert_eq!(m.transform_point2(DVec2::new(1.0, 2.0)), DVec2::new(6.0, 4.0));
-        assert!(transform("rotate(90").is_none());
-        assert!(transform("spin(3)").is_none());
+        assert!(transform("rotate(90", DVec2::ZERO).is_none());
+        assert!(transform("spin(3)", DVec2::ZERO).is_none());
+        let m =
+            transform("translate(50%, 10px) rotate(0.25turn) scaleX(2)", DVec2::splat(40.0)).expect("CSS");
+        assert!((m.transform_point2(DVec2::X) - DVec2::new(20.0, 12.0)).length() < 1e-12);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use ink::StrokeMode;
 use roxmltree::Node;
 
 use crate::drawing::mode::mode_in;
-use crate::drawing::parse_color;
+use crate::drawing::{parse_color, xml};
 
 /// How a line or an area is painted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,14 @@ pub(super) struct Style {
     pub(super) mode: StrokeMode,
     /// As attributes and `style` say it, in the units of the element; sheets of style are not asked.
     pub(super) width: Option<f64>,
+    /// The line has no width: it is not seen.
+    no_width: bool,
+    /// Of all ancestors together.
+    pub(super) opacity: f64,
+    fill_opacity: f64,
+    stroke_opacity: f64,
+    /// `fill-rule`.
+    pub(super) even_odd: bool,
     /// Row of the layer.
     pub(super) layer: Option<usize>,
     /// On a layer that is hidden.
@@ -54,61 +62,193 @@ impl Default for Style {
             displayed: true,
             mode: StrokeMode::Parts,
             width: None,
+            no_width: false,
+            opacity: 1.0,
+            fill_opacity: 1.0,
+            stroke_opacity: 1.0,
+            even_odd: false,
             layer: None,
             hidden: false,
         }
     }
 }
 
+/// Paint of less opacity is not seen.
+const UNSEEN: f64 = 0.004;
+
+/// What a value of `url(#..)` means: the mean colour of a gradient.
+pub(super) type Servers = LiteMap<String, [u8; 3]>;
+
 impl Style {
+    /// Whether its line is seen.
+    pub(super) fn is_lined(&self) -> bool {
+        self.stroke != Paint::None && !self.no_width && self.opacity * self.stroke_opacity > UNSEEN
+    }
+
+    /// Whether its area is seen.
+    pub(super) fn is_filled(&self) -> bool {
+        self.fill != Paint::None && self.area_opacity() > UNSEEN
+    }
+
+    /// How opaque its area is.
+    pub(super) fn area_opacity(&self) -> f64 {
+        self.opacity * self.fill_opacity
+    }
+
     /// The style of `node`, whose parent has `self`.
     pub(super) fn of(self, node: Node<'_, '_>, sheet: &Sheet) -> Self {
-        let mut style = Self { displayed: true, ..self };
+        let mut style = Self { displayed: true, opacity: 1.0, ..self };
         // `color` first: the others may refer to it.
-        for name in ["color", "stroke", "fill", "visibility", "display", "stroke-width"] {
+        for name in [
+            "color",
+            "stroke",
+            "fill",
+            "visibility",
+            "display",
+            "stroke-width",
+            "opacity",
+            "fill-opacity",
+            "stroke-opacity",
+            "fill-rule",
+        ] {
             if let Some(value) = node.attribute(name) {
-                style.set(name, value);
+                style.set(name, value, &sheet.servers);
             }
         }
         sheet.apply(node, &mut style);
         if let Some(inline) = node.attribute("style") {
-            declarations(inline).for_each(|(name, value)| style.set(name, value));
+            declarations(inline).for_each(|(name, value)| style.set(name, value, &sheet.servers));
         }
+        // Opacity is not inherited: what is below is seen through all of them.
+        style.opacity *= self.opacity;
         if let Some(mode) = own_mode(node) {
             style.mode = mode;
         }
         style
     }
 
-    fn set(&mut self, name: &str, value: &str) {
+    fn set(&mut self, name: &str, value: &str, servers: &Servers) {
         let value = value.trim().trim_end_matches("!important").trim_end();
         if value == "inherit" {
             return;
         }
         match name {
             "color" => self.color = parse_color(value).unwrap_or(self.color),
-            "stroke" => self.stroke = self.paint(value),
+            "stroke" => self.stroke = self.paint(value, servers),
             "fill" => {
-                self.fill = self.paint(value);
+                self.fill = self.paint(value, servers);
                 self.fill_said = true;
             }
             "visibility" => self.visible = !matches!(value, "hidden" | "collapse"),
             "display" => self.displayed = value != "none",
             "stroke-width" => {
                 // Of a percentage of the sheet nobody draws.
-                self.width = Some(super::length(value, 0.0)).filter(|w| w.is_finite() && *w > 0.0);
+                let width = super::length(value, 0.0);
+                self.no_width = width == 0.0 && value.starts_with(['0', '.']);
+                self.width = Some(width).filter(|w| w.is_finite() && *w > 0.0);
             }
+            "fill-rule" => self.even_odd = value == "evenodd",
+            "opacity" => self.opacity = share(value).unwrap_or(self.opacity),
+            "fill-opacity" => self.fill_opacity = share(value).unwrap_or(self.fill_opacity),
+            "stroke-opacity" => self.stroke_opacity = share(value).unwrap_or(self.stroke_opacity),
             _ => {}
         }
     }
 
-    fn paint(&self, value: &str) -> Paint {
+    fn paint(&self, value: &str, servers: &Servers) -> Paint {
+        if let Some((id, fallback)) = reference(value) {
+            let known = servers.get(id).copied().or_else(|| parse_color(fallback));
+            return known.map_or(Paint::Server, Paint::Color);
+        }
         match value {
+            _ if is_clear(value) => Paint::None,
             "none" | "transparent" => Paint::None,
             "currentColor" | "currentcolor" => Paint::Color(self.color),
             _ => parse_color(value).map_or(Paint::Server, Paint::Color),
         }
     }
+}
+
+/// A number from 0 to 1, or a percentage.
+fn share(text: &str) -> Option<f64> {
+    let value = match text.trim().strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().ok()? / 100.0,
+        None => text.trim().parse().ok()?,
+    };
+    value.is_finite().then_some(value.clamp(0.0, 1.0))
+}
+
+/// Whether a colour has an alpha of its own that is 0.
+fn is_clear(value: &str) -> bool {
+    let inner = value.strip_prefix("rgba(").or_else(|| value.strip_prefix("rgb("));
+    if let Some(inner) = inner {
+        let parts = inner.trim_end_matches(')').split([',', ' ', '/']).filter(|p| !p.is_empty());
+        return parts.skip(3).any(|alpha| share(alpha) == Some(0.0));
+    }
+    value.strip_prefix('#').is_some_and(|hex| match hex.len() {
+        4 => hex.ends_with('0'),
+        8 => hex.ends_with("00"),
+        _ => false,
+    })
+}
+
+/// The id of `url(#id)`, and what follows it.
+pub(super) fn reference(value: &str) -> Option<(&str, &str)> {
+    let (inside, rest) = value.trim().strip_prefix("url(")?.split_once(')')?;
+    Some((inside.trim().trim_matches(['"', '\'']).strip_prefix('#')?, rest.trim()))
+}
+
+/// The mean colour of each gradient; one that refers to another has that one's.
+pub(super) fn servers(root: Node<'_, '_>, sheet: &Sheet) -> Servers {
+    let mut own = Servers::new();
+    let mut refers: Vec<(String, String)> = Vec::new();
+    let gradients = root.descendants().filter(|n| n.tag_name().name().ends_with("Gradient"));
+    for node in gradients {
+        let Some(id) = node.attribute("id") else { continue };
+        let stops: Vec<[u8; 3]> = node.children().filter_map(|stop| stop_color(stop, sheet)).collect();
+        let href = node.attributes().find(|a| a.name() == "href").and_then(|a| a.value().strip_prefix('#'));
+        if let Some(mean) = mean(&stops) {
+            own.insert(id.to_owned(), mean);
+        } else if let Some(href) = href {
+            refers.push((id.to_owned(), href.to_owned()));
+        }
+    }
+    // A few rounds follow any chain that a program writes.
+    for _ in 0..4 {
+        for (id, href) in &refers {
+            if let Some(&color) = own.get(href) {
+                own.insert(id.clone(), color);
+            }
+        }
+    }
+    own
+}
+
+fn stop_color(stop: Node<'_, '_>, sheet: &Sheet) -> Option<[u8; 3]> {
+    if stop.tag_name().name() != "stop" {
+        return None;
+    }
+    let mut color = stop.attribute("stop-color").unwrap_or("black").to_owned();
+    sheet.each_of(stop, |name, value| {
+        if name == "stop-color" {
+            value.clone_into(&mut color);
+        }
+    });
+    for (name, value) in stop.attribute("style").into_iter().flat_map(declarations) {
+        if name == "stop-color" {
+            value.clone_into(&mut color);
+        }
+    }
+    parse_color(&color)
+}
+
+fn mean(colors: &[[u8; 3]]) -> Option<[u8; 3]> {
+    let count = u32::try_from(colors.len()).ok().filter(|n| *n > 0)?;
+    let channel = |k: usize| {
+        let sum: u32 = colors.iter().map(|c| u32::from(c[k])).sum();
+        u8::try_from((sum + count / 2) / count).unwrap_or(u8::MAX)
+    };
+    Some([channel(0), channel(1), channel(2)])
 }
 
 /// The mode that an element's own label, id or class asks for.
@@ -119,21 +259,49 @@ fn own_mode(node: Node<'_, '_>) -> Option<StrokeMode> {
     })
 }
 
+/// The last value that a declaration block gives a property.
+pub(super) fn declared<'t>(text: &'t str, wanted: &str) -> Option<&'t str> {
+    declarations(text).filter(|(name, _)| *name == wanted).last().map(|(_, value)| value)
+}
+
 fn declarations(text: &str) -> impl Iterator<Item = (&str, &str)> {
     text.split(';').filter_map(|d| d.split_once(':')).map(|(name, value)| (name.trim(), value.trim()))
 }
 
-/// The rules of `<style>` elements that have one plain selector: `tag`, `.class`, `#id`, `*`.
+/// The rules of `<style>` elements: selectors of tags, classes, ids and `*`, alone, together (`g.leaf#a`), as descendants
+/// (`.a .b`) and as children (`.a > .b`).
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
-    /// Selector -> the properties that concern us; a later value replaces an earlier one.
-    rules: LiteMap<String, LiteMap<String, String>>,
+    /// By the last simple part of the selector, which finds the rules of an element: rules in the order of the sheet.
+    rules: LiteMap<String, Vec<Rule>>,
+    count: usize,
+    /// Colours of gradients.
+    pub(super) servers: Servers,
     /// Selectors that were not understood.
     pub(super) ignored: usize,
 }
 
+/// A rule that concerns us.
+#[derive(Debug)]
+struct Rule {
+    selector: Vec<Compound>,
+    /// Ids, classes, tags.
+    weight: [usize; 3],
+    order: usize,
+    wanted: Vec<(String, String)>,
+}
+
+/// Simple selectors that one element has to meet, and whether the one before it is its parent.
+#[derive(Debug, Default)]
+struct Compound {
+    simple: Vec<String>,
+    child: bool,
+}
+
 /// More rules than any drawing has: the rest is not looked at.
 const MAX_RULES: usize = 20_000;
+/// More simple selectors in a row than any drawing has.
+const MAX_SIMPLE: usize = 16;
 
 impl Sheet {
     pub(super) fn add(&mut self, text: &str) {
@@ -143,7 +311,7 @@ impl Sheet {
             let Some((body, after)) = after.split_once('}') else { return };
             rest = after;
             let wanted: Vec<(String, String)> = declarations(body)
-                .filter(|(name, _)| matches!(*name, "color" | "stroke" | "fill" | "visibility" | "display"))
+                .filter(|(name, _)| CONCERNS.contains(name))
                 // No value that we understand is longer; every element reads them.
                 .map(|(name, value)| (name.to_owned(), value.chars().take(64).collect()))
                 .collect();
@@ -151,40 +319,128 @@ impl Sheet {
                 continue;
             }
             for selector in selectors.split(',').map(str::trim) {
-                let plain = !selector.is_empty()
-                    && selector
-                        .bytes()
-                        .skip(1)
-                        .all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_'));
-                if plain && self.rules.len() < MAX_RULES {
-                    let rule = self.rules.entry(selector.to_owned()).or_default();
-                    for (name, value) in &wanted {
-                        rule.insert(name.clone(), value.clone());
-                    }
-                } else {
+                let read = selector_of(selector).filter(|_| self.count < MAX_RULES);
+                let Some(selector) = read else {
                     self.ignored += 1;
-                }
+                    continue;
+                };
+                let simple = || selector.iter().flat_map(|c| &c.simple);
+                let count = |first: char| simple().filter(|s| s.starts_with(first)).count();
+                let (ids, classes) = (count('#'), count('.'));
+                let weight = [ids, classes, simple().filter(|s| *s != "*").count() - ids - classes];
+                let key = selector.last().and_then(|c| c.simple.last()).cloned().unwrap_or_default();
+                self.count += 1;
+                let rule = Rule { selector, weight, order: self.count, wanted: wanted.clone() };
+                self.rules.entry(key).or_default().push(rule);
             }
         }
     }
 
     fn apply(&self, node: Node<'_, '_>, style: &mut Style) {
+        self.each_of(node, |name, value| style.set(name, value, &self.servers));
+    }
+
+    /// The last value that the sheet gives a property of an element.
+    pub(super) fn value(&self, node: Node<'_, '_>, wanted: &str) -> Option<String> {
+        let mut found = None;
+        self.each_of(node, |name, value| {
+            if name == wanted {
+                found = Some(value.to_owned());
+            }
+        });
+        found
+    }
+
+    /// All that the sheet says of an element, the weightiest last.
+    fn each_of(&self, node: Node<'_, '_>, mut set: impl FnMut(&str, &str)) {
         if self.rules.is_empty() {
             return;
         }
-        let mut by = |selector: &str| {
-            for (name, value) in self.rules.get(selector).into_iter().flatten() {
-                style.set(name, value);
+        let mut keys = vec!["*".to_owned(), node.tag_name().name().to_owned()];
+        let classes = node.attribute("class").unwrap_or_default();
+        keys.extend(classes.split_ascii_whitespace().take(64).map(|class| format!(".{class}")));
+        keys.extend(node.attribute("id").map(|id| format!("#{id}")));
+        let mut found: Vec<&Rule> = Vec::new();
+        for key in &keys {
+            let rules = self.rules.get(key.as_str()).into_iter().flatten();
+            found.extend(rules.filter(|rule| meets(node, &rule.selector)));
+        }
+        base::sort_by(&mut found, |a, b| a.weight.cmp(&b.weight).then(a.order.cmp(&b.order)));
+        for (name, value) in found.into_iter().flat_map(|rule| &rule.wanted) {
+            set(name, value);
+        }
+    }
+}
+
+/// The properties that concern us.
+const CONCERNS: [&str; 13] = [
+    "color",
+    "stroke",
+    "fill",
+    "visibility",
+    "display",
+    "opacity",
+    "fill-opacity",
+    "stroke-opacity",
+    "fill-rule",
+    "stop-color",
+    "transform",
+    "transform-origin",
+    "clip-path",
+];
+
+/// A selector, taken apart; `None` if it asks for more than names, or for too much.
+fn selector_of(text: &str) -> Option<Vec<Compound>> {
+    let mut out: Vec<Compound> = Vec::new();
+    let mut child = false;
+    for word in text.replace('>', " > ").split_ascii_whitespace() {
+        if word == ">" {
+            child = true;
+            continue;
+        }
+        let mut simple: Vec<String> = Vec::new();
+        for c in word.chars() {
+            match c {
+                '.' | '#' | '*' => simple.push(c.to_string()),
+                _ if c.is_alphanumeric() || matches!(c, '-' | '_') => match simple.last_mut() {
+                    Some(last) if last != "*" => last.push(c),
+                    _ => simple.push(c.to_string()),
+                },
+                _ => return None,
             }
+        }
+        if simple.iter().any(|s| matches!(s.as_str(), "." | "#")) {
+            return None;
+        }
+        out.push(Compound { simple, child });
+        child = false;
+    }
+    let all: usize = out.iter().map(|c| c.simple.len()).sum();
+    ((1..=MAX_SIMPLE).contains(&all) && !child && !out[0].child).then_some(out)
+}
+
+/// Whether an element meets a selector; of ancestors that a part can mean, the nearest is taken.
+fn meets(node: Node<'_, '_>, selector: &[Compound]) -> bool {
+    let mut at = Some(node);
+    let mut anywhere = false;
+    for part in selector.iter().rev() {
+        let found =
+            at.into_iter().flat_map(|n| n.ancestors()).take(if anywhere { xml::MAX_DEPTH } else { 1 });
+        let Some(found) = found.into_iter().find(|a| part.simple.iter().all(|s| is_named(*a, s))) else {
+            return false;
         };
-        by("*");
-        by(node.tag_name().name());
-        for class in node.attribute("class").unwrap_or_default().split_ascii_whitespace().take(64) {
-            by(&format!(".{class}"));
-        }
-        if let Some(id) = node.attribute("id") {
-            by(&format!("#{id}"));
-        }
+        (at, anywhere) = (found.parent(), !part.child);
+    }
+    true
+}
+
+fn is_named(node: Node<'_, '_>, simple: &str) -> bool {
+    if let Some(class) = simple.strip_prefix('.') {
+        node.attribute("class").is_some_and(|all| all.split_ascii_whitespace().any(|c| c == class))
+    } else if let Some(id) = simple.strip_prefix('#') {
+        node.attribute("id") == Some(id)
+    } else {
+        node.is_element() && (simple == "*" || node.tag_name().name() == simple)
     }
 }
 

@@ -97,7 +97,7 @@ fn what_is_not_seen_is_left_out_and_said() {
     assert_eq!(d.strokes.len(), 1);
     let all = w.join("\n");
     for word in [
-        "whole sheet (1)",
+        "1 lines are paper",
         "hidden (2)",
         "without stroke and fill (1)",
         "text (1)",
@@ -124,10 +124,64 @@ fn use_bombs_are_refused() {
     }
     let m = failure(&format!("{body}</defs><use href='#u11'/>"));
     assert!(m.contains("after expanding `use`"), "{m}");
-    let m = failure("<g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g>");
-    assert!(m.contains("nesting of `use`") && m.contains("line 1"), "{m}");
-    let m = failure("<use id='s' href='#s'/>");
-    assert!(m.contains("nesting of `use`"), "{m}");
+}
+
+#[test]
+fn a_use_that_refers_to_itself_loses_itself_only() {
+    let (d, w) = drawing(
+        "<g stroke='red'><g id='a'><path d='M0 0L1 1'/><use href='#b'/></g><g id='b'><use href='#a'/></g>\
+         <use id='s' href='#s'/><path d='M5 5L6 6'/></g>",
+    );
+    assert!(ends(&d).contains(&[[0.0, 0.0], [1.0, -1.0]]) && ends(&d).contains(&[[5.0, -5.0], [6.0, -6.0]]));
+    assert!(w.iter().any(|w| w.contains("use that refers to itself")), "{w:?}");
+}
+
+#[test]
+fn invisible_ink_is_left_out_and_said() {
+    let (d, w) = drawing(
+        "<defs><clipPath id='c'><rect width='9' height='9'/></clipPath></defs>\
+         <g stroke='red' fill='none'><g opacity='0'><path d='M1 1L2 2'/></g><path stroke-width='0' d='M1 1L2 2'/>\
+         <path stroke-opacity='0' d='M1 1L2 2'/><path stroke='#f000' d='M1 1L2 2'/>\
+         <path clip-path='url(#c)' d='M20 20L30 30'/><path clip-path='url(#c)' d='M5 5L30 30'/>\
+         <path d='M200 200L300 300'/><path d='M50 50L60 60'/><path d='M50 50L60 70'/></g>",
+    );
+    assert_eq!(d.strokes.len(), 3, "{:?}", ends(&d));
+    let all = w.join("\n");
+    for word in
+        ["invisible (3)", "clipped away (1)", "1 shapes lie outside the sheet", "without stroke and fill (1)"]
+    {
+        assert!(all.contains(word), "{word} in {all}");
+    }
+}
+
+#[test]
+fn styles_of_css_place_and_paint() {
+    let (d, w) = drawing(
+        "<style>g.a > .p { stroke: #010203 } .a .q .p { stroke: #040506 } .turned { transform: rotate(90deg); \
+         transform-origin: 10px 10px }</style><g class='a' fill='none' stroke='red'><path class='p' d='M0 0L1 1'/>\
+         <g class='q'><g><path class='p' d='M0 0L1 1'/></g></g><path class='turned' d='M10 10L20 10'/></g>",
+    );
+    assert_eq!(w, Vec::<String>::new());
+    let colors: Vec<_> = d.strokes.iter().filter_map(|s| s.color).collect();
+    assert_eq!(colors, [[1, 2, 3], [4, 5, 6], [255, 0, 0]]);
+    assert_eq!(ends(&d)[2], [[10.0, -10.0], [10.0, -20.0]]);
+}
+
+#[test]
+fn gradients_give_their_mean() {
+    let (d, _) = drawing(
+        "<linearGradient id='g'><stop stop-color='#000000'/><stop style='stop-color:#ff0000'/></linearGradient>\
+         <radialGradient id='h' href='#g'/><path fill='url(#h)' d='M0 0L30 0L30 40L2 50Z'/>",
+    );
+    assert_eq!(d.strokes[0].color, Some([128, 0, 0]));
+}
+
+#[test]
+fn a_sheet_that_is_stretched_stretches_its_drawing() {
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 10 10' width='40' height='20' \
+                preserveAspectRatio='none'><path stroke='red' d='M1 1L5 3'/></svg>";
+    let d = read(text, "t", &mut Report::default()).expect("reads");
+    assert_eq!(ends(&d), [[[2.0, -1.0], [10.0, -3.0]]]);
 }
 
 #[test]

@@ -4,14 +4,55 @@
 
 use glam::DVec2;
 
+use super::{Change, Work, places};
+use crate::InkSample;
+
+impl Work {
+    /// Areas that are the stroke of a variable-width pen become its centre line.
+    pub(super) fn take_pen_outlines(&mut self) {
+        if self.figures.iter().all(|f| f.lined) {
+            return;
+        }
+        let lines: Vec<Vec<Vec<DVec2>>> =
+            self.figures.iter().map(|f| f.lines.iter().map(|l| places(l)).collect()).collect();
+        let candidate = |(lines, f): (_, &super::Figure)| Candidate {
+            lines,
+            fill_only: !f.lined && !is_solid(f),
+            fill_said: f.fill.is_some_and(|f| f.said),
+        };
+        let candidates: Vec<Candidate<'_>> =
+            lines.iter().map(Vec::as_slice).zip(&self.figures).map(candidate).collect();
+        let found = centre_lines(&candidates, self.diagonal());
+        let mut reduced = 0;
+        for (figure, centre) in self.figures.iter_mut().zip(found) {
+            let Some(centre) = centre else { continue };
+            reduced += 1;
+            let sample = |(at, pressure)| InkSample { at, time_ms: None, pressure: Some(pressure) };
+            figure.lines = vec![centre.into_iter().map(sample).collect()];
+            figure.like.color = figure.like.color.or(figure.fill.and_then(|f| f.color));
+            (figure.lined, figure.fill) = (true, None);
+        }
+        self.note(Change::PenOutline, reduced);
+    }
+}
+
+/// Whether two sub-paths that run the same way round are painted as one area: programs that imitate a hand draw it twice.
+fn is_solid(figure: &super::Figure) -> bool {
+    let turned = |line: &[InkSample]| geom::signed_area(&places(line)) > 0.0;
+    match figure.lines.as_slice() {
+        [a, b] => !figure.fill.is_some_and(|f| f.even_odd) && turned(a) == turned(b),
+        _ => false,
+    }
+}
+
 /// A shape's flattened sub-paths and how it is painted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate<'a> {
-    pub(super) lines: &'a [Vec<DVec2>],
+struct Candidate<'a> {
+    lines: &'a [Vec<DVec2>],
     /// Painted by its area alone.
-    pub(super) fill_only: bool,
+    fill_only: bool,
     /// The file asks for the fill.
-    pub(super) fill_said: bool,
+    fill_said: bool,
 }
 
 /// A centre line: points with the width there.
@@ -27,7 +68,7 @@ const WIDEST: f64 = 0.06;
 
 /// For each candidate the centre line with pressures (width over the greatest width), or `None` where the
 /// outline itself is the stroke.
-pub(super) fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(DVec2, f64)>>> {
+fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(DVec2, f64)>>> {
     let measured: Vec<Option<Ribbon>> = candidates.iter().map(measure).collect();
     let sure = |c: &Candidate<'_>, r: &Ribbon| {
         let most = if c.fill_said { SLENDER } else { SLENDER_UNSAID };

@@ -1,0 +1,149 @@
+//! Colour under lines, and shade over colour.
+
+use glam::DVec2;
+
+use super::{Change, Extent, Figure, Fill, LIMITS, Work, is_closed, places, some_of};
+
+/// Points of an area that are compared with an outline.
+const COMPARED: usize = 32;
+/// An area under an outline has this share of its box, at least.
+const SAME_SIZE: f64 = 0.6;
+/// Shade lies within what it shades by this share of its points.
+const WITHIN: f64 = 0.85;
+/// Opaque shade has a share of the area that it shades within these.
+const PART: core::ops::Range<f64> = 0.1..0.85;
+/// Opaque shade follows the outline with this share of its points.
+const ALONG: f64 = 0.3;
+/// What is paler in each channel is the white of the paper.
+const WHITE: u8 = 246;
+
+/// A closed outline of a figure.
+struct Outline {
+    figure: usize,
+    points: Vec<DVec2>,
+    extent: Extent,
+    area: f64,
+}
+
+impl Work {
+    /// Areas under lines give them their colour and go; areas within others that shade them go.
+    pub(super) fn colour_lines(&mut self) {
+        for figure in &mut self.figures {
+            if let Some(Fill { color: Some(color), said: true, opacity, .. }) = figure.fill
+                && figure.lined
+                && opacity > 0.0
+                && color.iter().any(|c| *c < WHITE)
+            {
+                figure.like.color = Some(color);
+            }
+        }
+        let outlines = self.outlines();
+        let areas: Vec<&Outline> = outlines.iter().filter(|o| is_area(&self.figures[o.figure])).collect();
+        if areas.is_empty() || areas.len() * outlines.len() > LIMITS.pairs {
+            return;
+        }
+        let mut color_of: Vec<(usize, [u8; 3])> = Vec::new();
+        let (mut under, mut shade) = (self.none_out(), self.none_out());
+        for area in &areas {
+            let near = || outlines.iter().filter(|o| o.figure != area.figure && o.extent.meets(area.extent));
+            let above = |o: &&Outline| self.figures[o.figure].lined || o.figure > area.figure;
+            let line = near().find(|o| above(o) && lies_under(area, o));
+            if let Some(line) = line {
+                // Of two areas the upper one is seen.
+                let lined = self.figures[line.figure].lined;
+                if let Some(color) = self.figures[area.figure].fill.and_then(|f| f.color).filter(|_| lined) {
+                    color_of.push((line.figure, color));
+                }
+                under[area.figure].fill(true);
+            } else if near().any(|o| self.is_shade(area, o)) {
+                shade[area.figure].fill(true);
+            }
+        }
+        // The area that lies lowest is the colour, what lies over it shades it.
+        for (figure, color) in color_of.into_iter().rev() {
+            if color.iter().any(|c| *c < WHITE) {
+                self.figures[figure].like.color = Some(color);
+            }
+        }
+        let colours = count_of(&under);
+        let shades = count_of(&shade);
+        for (under, shade) in under.iter_mut().zip(shade) {
+            under.iter_mut().zip(shade).for_each(|(u, s)| *u |= s);
+        }
+        if self.take_out(&under) > 0 {
+            self.note(Change::Colour, colours);
+            self.note(Change::Shade, shades);
+        }
+    }
+
+    /// The first sub-path of each figure, if it is closed.
+    fn outlines(&self) -> Vec<Outline> {
+        let outline = |(figure, f): (usize, &Figure)| {
+            let line = f.lines.first()?;
+            let extent = Extent::of(line)?;
+            let points = places(line);
+            let area = geom::signed_area(&points).abs();
+            (is_closed(line) && area > 0.0).then_some(Outline { figure, points, extent, area })
+        };
+        self.figures.iter().enumerate().filter_map(outline).collect()
+    }
+
+    /// Whether an area shades what an outline encloses: see-through and within it, or a part of it along its edge.
+    fn is_shade(&self, area: &Outline, of: &Outline) -> bool {
+        let below = &self.figures[of.figure];
+        let fill = self.figures[area.figure].fill;
+        let translucent = fill.is_some_and(|f| f.opacity < LIMITS.translucent);
+        let larger = area.area <= if translucent { 1.1 } else { PART.end } * of.area;
+        let slack = 0.1 * of.extent.size().max_element();
+        if !(larger && of.extent.holds(area.extent, slack)) || (below.fill.is_none() && !below.lined) {
+            return false;
+        }
+        let within = |p: DVec2| {
+            geom::contains(&of.points, p)
+                || geom::closest_on_polyline(&of.points, p)
+                    .is_some_and(|c| c.point.distance(p) <= 0.3 * slack)
+        };
+        let points: Vec<DVec2> = some_of(&area.points, COMPARED).collect();
+        if share(&points, within) < WITHIN {
+            return false;
+        }
+        let edge = 0.04 * of.extent.size().min_element();
+        let on_edge =
+            |p: DVec2| geom::closest_on_polyline(&of.points, p).is_some_and(|c| c.point.distance(p) <= edge);
+        translucent || (area.area >= PART.start * of.area && share(&points, on_edge) >= ALONG)
+    }
+}
+
+fn count_of(out: &[Vec<bool>]) -> usize {
+    out.iter().flatten().filter(|o| **o).count()
+}
+
+fn is_area(figure: &Figure) -> bool {
+    !figure.lined && figure.fill.is_some()
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a few points")]
+fn share(points: &[DVec2], holds: impl Fn(DVec2) -> bool) -> f64 {
+    points.iter().filter(|p| holds(**p)).count() as f64 / points.len().max(1) as f64
+}
+
+/// Whether a coloured area has the form of an outline and lies under it, up to a small shift.
+fn lies_under(area: &Outline, line: &Outline) -> bool {
+    let (a, b) = (area.extent, line.extent);
+    let common = a.hi.min(b.hi) - a.lo.max(b.lo);
+    let common = common.x.max(0.0) * common.y.max(0.0);
+    if common < SAME_SIZE * (a.area() + b.area() - common) {
+        return false;
+    }
+    let shift = b.middle() - a.middle();
+    let near = LIMITS.under * b.size().min_element();
+    if shift.length() > 2.0 * near {
+        return false;
+    }
+    let by = |p: DVec2| {
+        geom::closest_on_polyline(&line.points, p + shift)
+            .is_some_and(|c| c.point.distance(p + shift) <= near)
+    };
+    let points: Vec<DVec2> = some_of(&area.points, COMPARED).collect();
+    share(&points, by) >= WITHIN
+}

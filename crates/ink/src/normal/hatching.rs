@@ -1,0 +1,212 @@
+//! Strokes that shade an outline: parallel lines, zigzag, dots.
+
+use glam::DVec2;
+
+use super::{Change, Extent, LIMITS, Work, chord_of, is_closed, length_of, places};
+use crate::InkSample;
+
+/// A stroke of a hatching bends no more than this: its chord over its length.
+const NEARLY_STRAIGHT: f64 = 0.94;
+/// Turns of a zigzag are sharper than this cosine: 115 degrees.
+const SHARP: f64 = -0.42;
+/// Least turns of a zigzag, and their share of all its corners.
+const TURNS: usize = 6;
+const TURNS_SHARE: f64 = 0.6;
+/// A piece of a zigzag leads along it within this cosine.
+const ALONG: f64 = 0.85;
+/// Places along a zigzag that are looked at.
+const ALONG_ZIGZAG: f64 = 48.0;
+/// Neighbouring hatches are nearer than this share of the drawing's diagonal, or than they are long.
+const APART: f64 = 0.02;
+/// Least dots of a stipple within an outline.
+const DOTS: usize = 12;
+/// Ends of hatches lie this near to the outline, as a share of its narrower side.
+const AT_EDGE: f64 = 0.16;
+/// Share of the hatches that lie within the outline and end on it.
+const MOST: f64 = 0.75;
+
+struct Outline {
+    figure: usize,
+    points: Vec<DVec2>,
+    extent: Extent,
+}
+
+/// An open line that may be a hatch.
+#[derive(Clone, Copy)]
+struct Hatch {
+    figure: usize,
+    line: usize,
+    from: DVec2,
+    to: DVec2,
+}
+
+impl Work {
+    pub(super) fn leave_hatching_out(&mut self) {
+        let diagonal = self.diagonal();
+        let outlines = self.closed_outlines();
+        if outlines.is_empty() {
+            return;
+        }
+        let mut out = self.none_out();
+        let mut colors: Vec<(usize, [u8; 3])> = Vec::new();
+        let mut run: Vec<Hatch> = Vec::new();
+        let mut dots: Vec<Hatch> = Vec::new();
+        let mut compared = 0;
+        for (k, figure) in self.figures.iter().enumerate() {
+            for (l, line) in figure.lines.iter().enumerate() {
+                let (Some(first), Some(last)) = (line.first(), line.last()) else { continue };
+                let hatch = Hatch { figure: k, line: l, from: first.at, to: last.at };
+                if Extent::of(line).is_some_and(|e| e.size().max_element() <= 0.6 * LIMITS.dot * diagonal) {
+                    dots.push(hatch);
+                    continue;
+                }
+                let straight = figure.lined && chord_of(line).length() >= NEARLY_STRAIGHT * length_of(line);
+                if !(straight
+                    && run.last().is_none_or(|before| self.goes_with(before, &run[0], &hatch, diagonal)))
+                {
+                    self.end_run(&mut run, &outlines, &mut out, &mut colors);
+                }
+                if straight {
+                    run.push(hatch);
+                }
+                compared += outlines.len();
+                if figure.lined
+                    && compared < LIMITS.pairs
+                    && is_zigzag(line, diagonal)
+                    && let Some(o) =
+                        around(&geom::resample(&places(line), length_of(line) / ALONG_ZIGZAG), &outlines)
+                    && o.figure != k
+                {
+                    out[k][l] = true;
+                    colors.extend(figure.like.color.map(|c| (o.figure, c)));
+                }
+            }
+        }
+        self.end_run(&mut run, &outlines, &mut out, &mut colors);
+        stipple(&dots, &outlines, &mut out);
+        for (figure, color) in colors {
+            let f = &mut self.figures[figure];
+            if f.fill.is_none() {
+                f.like.color = Some(color);
+            }
+        }
+        self.leave_out(&out, Change::Hatching);
+    }
+
+    fn closed_outlines(&self) -> Vec<Outline> {
+        let mut out = Vec::new();
+        for (figure, f) in self.figures.iter().enumerate() {
+            for line in f.lines.iter().filter(|l| is_closed(l)) {
+                out.extend(Extent::of(line).map(|extent| Outline { figure, points: places(line), extent }));
+            }
+        }
+        // The smallest outline around something is the one that it lies in.
+        base::sort_by(&mut out, |a, b| a.extent.area().total_cmp(&b.extent.area()));
+        out
+    }
+
+    /// Whether a line is the next hatch: painted alike, parallel, beside the one before.
+    fn goes_with(&self, before: &Hatch, first: &Hatch, next: &Hatch, diagonal: f64) -> bool {
+        let like = |h: &Hatch| {
+            let s = &self.figures[h.figure].like;
+            (s.color, s.mode, s.layer.clone())
+        };
+        let (a, b, c) = (before.to - before.from, next.to - next.from, first.to - first.from);
+        let longest = a.length().max(b.length());
+        let apart = before.from.midpoint(before.to).distance(next.from.midpoint(next.to));
+        like(before) == like(next)
+            && b.dot(c).abs() >= LIMITS.parallel * b.length() * c.length()
+            && (before.figure == next.figure || apart <= longest.max(APART * diagonal))
+    }
+
+    fn end_run(
+        &self,
+        run: &mut Vec<Hatch>,
+        outlines: &[Outline],
+        out: &mut [Vec<bool>],
+        colors: &mut Vec<(usize, [u8; 3])>,
+    ) {
+        let hatches = core::mem::take(run);
+        if hatches.len() < LIMITS.hatches {
+            return;
+        }
+        let middles: Vec<DVec2> = hatches.iter().map(|h| h.from.midpoint(h.to)).collect();
+        let Some(outline) = around(&middles, outlines) else { return };
+        let near = AT_EDGE * outline.extent.size().min_element();
+        let at_edge = |p: DVec2| {
+            geom::closest_on_polyline(&outline.points, p).is_some_and(|c| c.point.distance(p) <= near)
+        };
+        let across = hatches.iter().filter(|h| at_edge(h.from) && at_edge(h.to)).count();
+        #[expect(clippy::cast_precision_loss, reason = "numbers of strokes")]
+        if (across as f64) < MOST * hatches.len() as f64 {
+            return;
+        }
+        hatches.iter().for_each(|h| out[h.figure][h.line] = true);
+        let color = self.figures[hatches[0].figure].like.color;
+        colors.extend(color.map(|c| (outline.figure, c)));
+    }
+}
+
+/// The smallest outline that most points lie in.
+fn around<'a>(points: &[DVec2], outlines: &'a [Outline]) -> Option<&'a Outline> {
+    let some: Vec<DVec2> = super::some_of(points, 24).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a few points")]
+    let holds = |o: &&Outline| {
+        let inside = some.iter().filter(|p| {
+            let boxed = o.extent.lo.cmple(**p).all() && o.extent.hi.cmpge(**p).all();
+            boxed && geom::contains(&o.points, **p)
+        });
+        inside.count() as f64 >= MOST * some.len() as f64
+    };
+    outlines.iter().find(holds)
+}
+
+/// Whether a line runs to and fro.
+fn is_zigzag(line: &[InkSample], diagonal: f64) -> bool {
+    if line.len() < TURNS || chord_of(line).length() > 0.6 * length_of(line) {
+        return false;
+    }
+    let corners = geom::simplify(&places(line), 0.004 * diagonal);
+    let turns = corners.windows(3).filter(|w| {
+        let (a, b) = (w[1] - w[0], w[2] - w[1]);
+        a.dot(b) <= SHARP * a.length() * b.length()
+    });
+    let turns = turns.count();
+    #[expect(clippy::cast_precision_loss, reason = "numbers of corners")]
+    let share = turns as f64 / corners.len().saturating_sub(2).max(1) as f64;
+    (turns >= TURNS && share >= TURNS_SHARE) || runs_to_and_fro(&corners)
+}
+
+/// Whether most of a line runs along one direction, forth and back by turns.
+fn runs_to_and_fro(corners: &[DVec2]) -> bool {
+    let pieces: Vec<DVec2> = corners.windows(2).map(|w| w[1] - w[0]).collect();
+    let longest = pieces.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length()));
+    let Some(way) = longest.map(DVec2::normalize_or_zero) else { return false };
+    let along: Vec<f64> = pieces
+        .iter()
+        .map(|p| p.dot(way))
+        .zip(&pieces)
+        .filter(|(along, p)| along.abs() >= ALONG * p.length())
+        .map(|(along, _)| along)
+        .collect();
+    let whole: f64 = pieces.iter().map(|p| p.length()).sum();
+    let turns = along.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
+    turns >= TURNS && along.iter().map(|a| a.abs()).sum::<f64>() >= TURNS_SHARE * whole
+}
+
+/// Tiny dots, many of them in one outline.
+fn stipple(dots: &[Hatch], outlines: &[Outline], out: &mut [Vec<bool>]) {
+    if dots.len() < DOTS || dots.len() * outlines.len() > LIMITS.pairs {
+        return;
+    }
+    let mut inside: Vec<Vec<&Hatch>> = outlines.iter().map(|_| Vec::new()).collect();
+    for dot in dots {
+        let own = |o: &Outline| o.figure != dot.figure && geom::contains(&o.points, dot.from);
+        if let Some(row) = outlines.iter().position(own) {
+            inside[row].push(dot);
+        }
+    }
+    for dots in inside.into_iter().filter(|d| d.len() >= DOTS) {
+        dots.iter().for_each(|d| out[d.figure][d.line] = true);
+    }
+}

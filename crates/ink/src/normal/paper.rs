@@ -1,0 +1,201 @@
+//! What is the sheet and not on it: pages, frames, cards, sky and ground, ruling.
+
+use glam::DVec2;
+
+use super::{Change, Extent, LIMITS, Work, is_closed, length_of, places};
+use crate::InkSample;
+
+/// Sky and ground fill the corners of the paper as near to its sides as this share of them.
+const INSET: f64 = 0.04;
+
+/// A line and where it is.
+struct Placed {
+    figure: usize,
+    line: usize,
+    extent: Extent,
+}
+
+impl Work {
+    /// Figures outside the sheet, where the greater part of the drawing lies on it.
+    pub(super) fn off_sheet(&mut self) {
+        let Some((lo, hi)) = self.sheet else { return };
+        let sheet = Extent { lo, hi };
+        let mut out = self.none_out();
+        for (figure, out) in self.figures.iter().zip(&mut out) {
+            for (line, out) in figure.lines.iter().zip(out) {
+                *out = Extent::of(line).is_some_and(|e| !e.meets(sheet));
+            }
+        }
+        let (gone, all) = (out.iter().flatten().filter(|o| **o).count(), out.iter().flatten().count());
+        if gone * 2 < all {
+            self.leave_out(&out, Change::OffSheet);
+        }
+    }
+
+    pub(super) fn leave_paper_out(&mut self) {
+        let mut out = self.none_out();
+        let mut placed: Vec<Placed> = Vec::new();
+        for (k, figure) in self.figures.iter().enumerate() {
+            for (l, line) in figure.lines.iter().enumerate() {
+                if let Some(extent) = Extent::of(line) {
+                    placed.push(Placed { figure: k, line: l, extent });
+                }
+            }
+        }
+        if placed.len() < 2 {
+            return;
+        }
+        self.find_ruling(&placed, &mut out);
+        self.find_dots(&placed, &mut out);
+        let paper = self.find_frames(&placed, &mut out);
+        self.find_ground(&placed, paper, &mut out);
+        self.leave_out(&out, Change::Paper);
+    }
+
+    /// Rectangles that hold all the rest, and filled ellipses under it. The largest of them, or the sheet.
+    fn find_frames(&self, placed: &[Placed], out: &mut [Vec<bool>]) -> Option<Extent> {
+        let mut order: Vec<&Placed> =
+            placed.iter().filter(|p| !out[p.figure][p.line] && self.may_be_frame(p)).collect();
+        base::sort_by(&mut order, |a, b| b.extent.area().total_cmp(&a.extent.area()));
+        let mut paper = self.sheet.map(|(lo, hi)| Extent { lo, hi });
+        let mut found = None;
+        // A page, a card with its shadow, a frame of two lines: more than that nobody stacks.
+        for p in order.into_iter().take(12) {
+            let rest: Vec<Extent> = placed
+                .iter()
+                .filter(|o| !out[o.figure][o.line] && (o.figure, o.line) != (p.figure, p.line))
+                .map(|o| o.extent)
+                .collect();
+            let slack = 0.02 * p.extent.size().max_element();
+            let sheet_like =
+                |s: Extent| p.extent.size().cmpge(s.size() * LIMITS.across).all() && p.extent.meets(s);
+            let held = rest.iter().filter(|r| p.extent.holds(**r, slack)).count();
+            #[expect(clippy::cast_precision_loss, reason = "numbers of lines")]
+            let holds = held as f64 >= LIMITS.held * rest.len() as f64;
+            let rectangle = is_rectangle(&self.figures[p.figure].lines[p.line], p.extent);
+            let enough = rest.len() >= if rectangle { 1 } else { 4 };
+            if enough && (holds || (rectangle && paper.is_some_and(sheet_like))) {
+                out[p.figure][p.line] = true;
+                found = found.or(Some(p.extent));
+            }
+        }
+        paper = found.or(paper);
+        paper
+    }
+
+    fn may_be_frame(&self, p: &Placed) -> bool {
+        let figure = &self.figures[p.figure];
+        let line = &figure.lines[p.line];
+        if !is_closed(line) {
+            return false;
+        }
+        let painted = figure.fill.is_some_and(|f| f.said) && figure.lines.len() == 1;
+        is_rectangle(line, p.extent) || (painted && p.figure < 3 && is_ellipse(line, p.extent))
+    }
+
+    /// Areas that go from one side of the paper to the other and along its upper or lower edge.
+    fn find_ground(&self, placed: &[Placed], paper: Option<Extent>, out: &mut [Vec<bool>]) {
+        let Some(paper) = paper else { return };
+        let inset = INSET * paper.size();
+        let corner = |right: bool, top: bool| {
+            let x = if right { paper.hi.x - inset.x } else { paper.lo.x + inset.x };
+            DVec2::new(x, if top { paper.hi.y - inset.y } else { paper.lo.y + inset.y })
+        };
+        for p in placed {
+            let figure = &self.figures[p.figure];
+            let wide = p.extent.size().x >= LIMITS.across * paper.size().x;
+            if figure.fill.is_none() || figure.lined || !wide || figure.lines.len() > 1 {
+                continue;
+            }
+            let points = places(&figure.lines[p.line]);
+            let fills = |top: bool| [false, true].iter().all(|r| geom::contains(&points, corner(*r, top)));
+            if fills(false) || fills(true) {
+                out[p.figure][p.line] = true;
+            }
+        }
+    }
+
+    /// Straight lines along an axis, as long as the drawing or the sheet, at even distances; and with them those across.
+    fn find_ruling(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
+        let all = placed.iter().map(|p| p.extent).reduce(Extent::with);
+        let Some(whole) = self.sheet.map(|(lo, hi)| Extent { lo, hi }).or(all) else { return };
+        let mut ruled = false;
+        let mut along: [Vec<(f64, &Placed)>; 2] = [Vec::new(), Vec::new()];
+        for p in placed {
+            let figure = &self.figures[p.figure];
+            let line = &figure.lines[p.line];
+            if !figure.lined && line.len() > 2 {
+                continue;
+            }
+            let size = p.extent.size();
+            for axis in [0, 1] {
+                let thin = size[1 - axis] <= 0.006 * size[axis];
+                let long = size[axis] >= 0.8 * whole.size()[axis];
+                if thin && long && length_of(line) < 1.05 * size[axis] {
+                    along[axis].push((p.extent.middle()[1 - axis], p));
+                }
+            }
+        }
+        for lines in &mut along {
+            base::sort_by(lines, |a, b| a.0.total_cmp(&b.0));
+            let mut gaps: Vec<f64> = lines.windows(2).map(|w| w[1].0 - w[0].0).collect();
+            base::sort_numbers(&mut gaps);
+            let Some(&usual) = gaps.get(gaps.len() / 2) else { continue };
+            let even = gaps.iter().filter(|g| (**g - usual).abs() <= 0.15 * usual).count();
+            ruled |= lines.len() >= LIMITS.ruled && usual > 0.0 && even * 10 >= gaps.len() * 7;
+        }
+        if ruled {
+            along.iter().flatten().for_each(|(_, p)| out[p.figure][p.line] = true);
+        }
+    }
+
+    /// Many equal dots in rows and columns.
+    fn find_dots(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
+        let diagonal = self.diagonal();
+        let small = |p: &&Placed| p.extent.size().max_element() <= LIMITS.dot * diagonal;
+        let dots: Vec<&Placed> = placed.iter().filter(small).collect();
+        let Some(first) = dots.first() else { return };
+        let usual = first.extent.size().max_element();
+        let alike =
+            |p: &&&Placed| (p.extent.size().max_element() - usual).abs() <= 0.05 * usual + 1e-4 * diagonal;
+        let dots: Vec<&&Placed> = dots.iter().filter(alike).collect();
+        let levels = |axis: usize| {
+            let mut at: Vec<f64> = dots.iter().map(|p| p.extent.middle()[axis]).collect();
+            base::sort_numbers(&mut at);
+            1 + at.windows(2).filter(|w| w[1] - w[0] > 2e-3 * diagonal).count()
+        };
+        let (columns, rows) = (levels(0), levels(1));
+        if columns.min(rows) >= LIMITS.ruled && columns * rows * 2 <= dots.len() * 3 {
+            dots.iter().for_each(|p| out[p.figure][p.line] = true);
+        }
+    }
+}
+
+/// Whether a closed line runs along the sides of its box, up to round corners and the tremble of a hand.
+fn is_rectangle(line: &[InkSample], extent: Extent) -> bool {
+    let size = extent.size();
+    if size.min_element() <= 0.02 * size.max_element() {
+        return false;
+    }
+    let near = 0.015 * size.max_element();
+    let on_side = |p: DVec2| (p - extent.lo).min(extent.hi - p).min_element() <= near;
+    let mut on = 0.0;
+    for w in line.windows(2) {
+        let middle = w[0].at.midpoint(w[1].at);
+        if on_side(w[0].at) && on_side(w[1].at) && on_side(middle) {
+            on += w[0].at.distance(w[1].at);
+        }
+    }
+    let around = 2.0 * (size.x + size.y);
+    let area = geom::signed_area(&places(line)).abs();
+    on >= LIMITS.on_sides * around && area >= 0.85 * extent.area()
+}
+
+/// Whether a closed line is the ellipse in its box.
+fn is_ellipse(line: &[InkSample], extent: Extent) -> bool {
+    let half = extent.size() * 0.5;
+    if half.min_element() <= 0.0 || line.len() < 12 {
+        return false;
+    }
+    line.iter().all(|s| (((s.at - extent.middle()) / half).length() - 1.0).abs() < 0.01)
+}

@@ -1,0 +1,237 @@
+//! Lines that were put down in pieces, or twice.
+
+use glam::DVec2;
+
+use super::{Change, Figure, LIMITS, Work, chord_of, is_closed, length_of, places, some_of};
+use crate::InkSample;
+
+/// Points of a line that are compared with another.
+const COMPARED: usize = 24;
+/// Lines of the same length differ by less than this share.
+const AS_LONG: f64 = 0.18;
+/// Pieces of one sub-path go on within this cosine: 45 degrees.
+const STRAIGHT_ON: f64 = 0.7;
+/// Most pieces of an outline.
+const PIECES: usize = 3;
+/// An outline of pieces has at least this area for its length squared: a leaf of 1 : 8 has 0.02.
+const ROUND: f64 = 0.018;
+
+impl Work {
+    /// Sub-paths of one figure that go the same way: programs that imitate a hand draw each line twice.
+    pub(super) fn merge_repeats(&mut self) {
+        let mut out = self.none_out();
+        for (figure, out) in self.figures.iter().zip(&mut out) {
+            if !figure.lined {
+                continue;
+            }
+            for l in 1..figure.lines.len() {
+                if !out[l - 1] && goes_along(&figure.lines[l - 1], &figure.lines[l]) {
+                    out[l] = true;
+                }
+            }
+        }
+        self.leave_out(&out, Change::DrawnTwice);
+    }
+
+    pub(super) fn join_pieces(&mut self) {
+        let diagonal = self.diagonal();
+        let mut joined = 0;
+        for figure in &mut self.figures {
+            if figure.lined && figure.lines.len() > 1 {
+                joined += join_sub_paths(&mut figure.lines, LIMITS.meet * diagonal);
+            }
+        }
+        joined += self.join_segments(diagonal);
+        joined += self.join_outlines(diagonal);
+        self.note(Change::Joined, joined);
+    }
+
+    /// Elements of two points, each of which begins where the one before ended.
+    fn join_segments(&mut self, diagonal: f64) -> usize {
+        let exact = 1e-3 * diagonal;
+        let mut joined = 0;
+        let mut figures: Vec<Figure> = Vec::with_capacity(self.figures.len());
+        let mut run: Vec<Figure> = Vec::new();
+        for figure in core::mem::take(&mut self.figures) {
+            let segment = segment_of(&figure).filter(|s| s[0].distance(s[1]) <= LIMITS.segment * diagonal);
+            let goes_on = match (run.last().and_then(segment_of), segment) {
+                (Some(before), Some(s)) => before[1].distance(s[0]) <= exact && is_like(&run[0], &figure),
+                _ => false,
+            };
+            if !goes_on {
+                joined += end_run(&mut run, &mut figures);
+            }
+            if segment.is_some() {
+                run.push(figure);
+            } else {
+                figures.push(figure);
+            }
+        }
+        joined += end_run(&mut run, &mut figures);
+        self.figures = figures;
+        joined
+    }
+
+    /// Two or three open lines after each other that make one closed outline.
+    fn join_outlines(&mut self, diagonal: f64) -> usize {
+        let mut joined = 0;
+        let mut figures: Vec<Figure> = Vec::with_capacity(self.figures.len());
+        let mut rest = core::mem::take(&mut self.figures).into_iter().peekable();
+        let mut waiting: Vec<Figure> = Vec::new();
+        loop {
+            while waiting.len() < PIECES
+                && let Some(next) = rest.next()
+            {
+                waiting.push(next);
+            }
+            if waiting.is_empty() {
+                break;
+            }
+            let found = (2..=waiting.len()).find_map(|n| Some((n, outline_of(&waiting[..n], diagonal)?)));
+            if let Some((n, outline)) = found {
+                let mut first = waiting.remove(0);
+                waiting.drain(..n - 1);
+                first.lines = vec![outline];
+                figures.push(first);
+                joined += n;
+            } else {
+                figures.push(waiting.remove(0));
+            }
+        }
+        self.figures = figures;
+        joined
+    }
+}
+
+fn is_like(a: &Figure, b: &Figure) -> bool {
+    let (s, o) = (&a.like, &b.like);
+    (s.color, s.mode, &s.layer, s.hidden) == (o.color, o.mode, &o.layer, o.hidden)
+}
+
+fn segment_of(figure: &Figure) -> Option<[DVec2; 2]> {
+    match (figure.lined, figure.lines.as_slice()) {
+        (true, [line]) => match line.as_slice() {
+            [a, b] => Some([a.at, b.at]),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn end_run(run: &mut Vec<Figure>, figures: &mut Vec<Figure>) -> usize {
+    if run.len() < LIMITS.segments {
+        figures.append(run);
+        return 0;
+    }
+    let count = run.len();
+    let mut pieces = run.drain(..);
+    if let Some(mut first) = pieces.next() {
+        for piece in pieces {
+            first.lines[0].extend(piece.lines.into_iter().flatten().skip(1));
+        }
+        figures.push(first);
+    }
+    count
+}
+
+/// Joins sub-paths that begin where the one before ends and lead on. Straight pieces need not lead on, as the sides of a
+/// polygon are drawn one by one, but then all of them must meet.
+fn join_sub_paths(lines: &mut Vec<Vec<InkSample>>, meet: f64) -> usize {
+    let exact = 0.02 * meet;
+    let polygon = lines.len() > 2
+        && lines.iter().all(|l| chord_of(l).length() >= LIMITS.straight * length_of(l))
+        && lines.windows(2).all(|w| end_to_start(&w[0], &w[1]) <= meet);
+    let before = lines.len();
+    let mut out: Vec<Vec<InkSample>> = Vec::with_capacity(before);
+    for line in lines.drain(..) {
+        match out.last_mut() {
+            Some(last)
+                if polygon
+                    || (end_to_start(last, &line) <= exact
+                        && !is_closed(last)
+                        && !is_closed(&line)
+                        && leads_on(last, &line)) =>
+            {
+                last.extend(line.into_iter().skip(1));
+            }
+            _ => out.push(line),
+        }
+    }
+    *lines = out;
+    if lines.len() < before { before - lines.len() + 1 } else { 0 }
+}
+
+fn end_to_start(a: &[InkSample], b: &[InkSample]) -> f64 {
+    match (a.last(), b.first()) {
+        (Some(a), Some(b)) => a.at.distance(b.at),
+        _ => f64::INFINITY,
+    }
+}
+
+fn leads_on(a: &[InkSample], b: &[InkSample]) -> bool {
+    let ([.., p, q], [r, s, ..]) = (a, b) else { return false };
+    let (from, to) = (q.at - p.at, s.at - r.at);
+    from.dot(to) >= STRAIGHT_ON * from.length() * to.length()
+}
+
+/// Whether two lines go the same way from end to end, or round and round.
+fn goes_along(a: &[InkSample], b: &[InkSample]) -> bool {
+    let (long, other) = (length_of(a), length_of(b));
+    if !(long > 0.0 && (long - other).abs() <= AS_LONG * long.max(other)) {
+        return false;
+    }
+    let (a, b) = (places(a), places(b));
+    let far = LIMITS.twice * long;
+    let lies_by = |from: &[DVec2], to: &[DVec2]| {
+        let away = |p: DVec2| geom::closest_on_polyline(to, p).map_or(f64::INFINITY, |c| c.point.distance(p));
+        let even = geom::resample(from, long / 24.0);
+        let all: Vec<f64> = some_of(&even, COMPARED).map(away).collect();
+        let most = all.iter().copied().fold(0.0, f64::max);
+        #[expect(clippy::cast_precision_loss, reason = "a few points")]
+        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+        most <= 1.5 * far && mean <= 0.5 * far
+    };
+    lies_by(&a, &b) && lies_by(&b, &a)
+}
+
+/// The closed outline that open lines make together, end to end in their order.
+fn outline_of(pieces: &[Figure], diagonal: f64) -> Option<Vec<InkSample>> {
+    let mut lines: Vec<&[InkSample]> = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        match piece.lines.as_slice() {
+            [line] if piece.lined && line.len() > 3 && !is_closed(line) && is_like(&pieces[0], piece) => {
+                lines.push(line);
+            }
+            _ => return None,
+        }
+    }
+    let shortest = lines.iter().map(|l| length_of(l)).fold(f64::INFINITY, f64::min);
+    let tolerance = (LIMITS.meet * diagonal).min(LIMITS.meet_share * shortest);
+    [false, true].into_iter().find_map(|turned| {
+        let mut way = oriented(lines[0], turned);
+        for line in &lines[1..] {
+            let end = way.last()?.at;
+            let turned = end.distance(line.last()?.at) < end.distance(line.first()?.at);
+            let next = oriented(line, turned);
+            if end.distance(next.first()?.at) > tolerance {
+                return None;
+            }
+            way.extend(next);
+        }
+        if chord_of(&way).length() > tolerance {
+            return None;
+        }
+        let start = *way.first()?;
+        way.push(start);
+        let length = length_of(&way);
+        (geom::signed_area(&places(&way)).abs() >= ROUND * length * length).then_some(way)
+    })
+}
+
+fn oriented(line: &[InkSample], turned: bool) -> Vec<InkSample> {
+    let mut out = line.to_vec();
+    if turned {
+        out.reverse();
+    }
+    out
+}
