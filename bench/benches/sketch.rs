@@ -9,7 +9,7 @@
 use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
 use burgeon::{Budget, CancelToken, Evaluator, Made, Run, Seed, SketchOptions, make_from_sketch};
-use burgeon_bench::{Stopwatch, TABLE1, TwoThreads, table1};
+use burgeon_bench::{Pile, Stopwatch, TABLE1, TwoThreads, table1};
 
 fn main() {
     stage_shares();
@@ -88,6 +88,13 @@ fn under_the_pen(bencher: divan::Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [1_000, 10_000, 100_000], sample_count = 3, sample_size = 1)]
 fn drawn_leaves(bencher: divan::Bencher<'_, '_>, leaves: u32) {
     let drawing = leafy(leaves);
+    bencher.bench(|| make(&drawing));
+}
+
+/// Strokes that lie on one another: the time must grow linearly here, too.
+#[divan::bench(args = Pile::ALL, consts = [1_000, 10_000, 100_000], sample_count = 3, sample_size = 1)]
+fn overlapping_ink<const STROKES: u32>(bencher: divan::Bencher<'_, '_>, pile: Pile) {
+    let drawing = pile.drawing(STROKES);
     bencher.bench(|| make(&drawing));
 }
 

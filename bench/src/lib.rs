@@ -1,4 +1,6 @@
-//! What the benchmarks share: the drawings of Table 1, an oak, and two threads.
+//! What the benchmarks share: the drawings of Table 1, very large ones, an oak, and two threads.
+
+mod piles;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -11,6 +13,8 @@ use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Clock, Executor};
 use growth::{CompetitionSpec, FoliageSpec, Grown, Method, TreeSpec, grow};
 use rayon::prelude::*;
+
+pub use piles::Pile;
 
 /// The eight drawings of the paper's Table 1.
 pub const TABLE1: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];

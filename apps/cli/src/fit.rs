@@ -193,7 +193,7 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
     let (made, fit_ms) = machine.timed(|| {
         machine.with_progress("registration", |_| {
             let settled = bloom::settle(&loaded.stages, &RegisterSpec::default(), &compute)?;
-            let law = bloom::fit_stages(&loaded.name, &settled.stages, &spec)?;
+            let law = bloom::fit_stages(&loaded.name, &settled.stages, &spec, &compute)?;
             Ok((settled, law))
         })
     });
@@ -265,8 +265,9 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
         let (days, values) = rows.into_iter().unzip();
         able.push((name, Series { days, values }));
     }
-    let (law, fit_ms) = machine.timed(|| bloom::fit_sizes(&files::stem(&args.input), &able, Offset::Auto));
-    let law = law.map_err(|e| Failure::at(&args.input, e))?;
+    let (law, fit_ms) =
+        machine.timed(|| bloom::fit_sizes(&files::stem(&args.input), &able, Offset::Auto, &machine.run()));
+    let law = law.map_err(Failure::bloom(&args.input))?;
     let (stages, poses) = (vec![], vec![]);
     Ok(Fitted { law, warnings, stages, poses, trials: None, offset_m: None, read_ms, fit_ms })
 }

@@ -297,11 +297,17 @@ impl<'a> Job<'a> {
         item.warnings.extend(written?.iter().map(ToString::to_string));
         item.timings_ms.add_io(read_ms, write_ms);
         if self.args.common.reports() {
-            item.plant = Some(plant.measure());
+            let (measured, ms) = machine.timed(|| plant.measure());
+            item.plant = Some(measured);
+            item.timings_ms.measure += ms;
         }
         if let Some(png) = &target.png {
-            let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
-            picture::write(outputs, "--png", png, &drawn)?;
+            let (drawn, ms) = machine.timed(|| -> Outcome<()> {
+                let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
+                picture::write(outputs, "--png", png, &drawn)
+            });
+            drawn?;
+            item.timings_ms.picture += ms;
         }
         item.timings_ms.total = read_ms + machine.whole_ms() - begun;
         Ok(item)

@@ -92,7 +92,7 @@ impl RawDays {
 
     /// The law by which the organs grow.
     fn law(&self, py: Python<'_>) -> PyResult<RawLaw> {
-        let law = compute(py, self.budget, |_| self.days.law(&self.name))?;
+        let law = compute(py, self.budget, |run| self.days.law(&self.name, run))?;
         let law = law.map_err(|e| unusable(py, &format!("{}: {e}", self.name)))?;
         if law.laws.is_empty() {
             return Err(unusable(py, &format!("{}: no organ is there on at least 3 days", self.name)));

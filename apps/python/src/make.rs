@@ -419,8 +419,7 @@ impl RawLaw {
     fn fit(py: Python<'_>, name: &str, organs: Vec<(String, Vec<f64>, Vec<f64>)>) -> PyResult<Self> {
         let series = organs.into_iter().map(|(organ, days, values)| (organ, Series { days, values }));
         let series: Vec<(String, Series)> = series.collect();
-        let name = name.to_owned();
-        let law = aside(py, move || burgeon::bloom::fit_sizes(&name, &series, Offset::Auto))?;
+        let law = compute(py, 1.0, |run| burgeon::bloom::fit_sizes(name, &series, Offset::Auto, run))?;
         law.map(Self).map_err(|e| unusable(py, &e))
     }
 

@@ -2288,8 +2288,14 @@ export type TimingsMs = {
   classify: number;
   /** Filling, depth, radii. */
   depth: number;
+  /** Measuring how true the plant is to its drawing. */
+  fidelity: number;
+  /** Measures and digest of the plant. */
+  measure: number;
   /** Skinning. */
   mesh: number;
+  /** Drawing the picture. */
+  picture: number;
   /** Resampling and smoothing. */
   preprocess: number;
   /** Reading the file. */

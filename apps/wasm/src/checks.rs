@@ -125,7 +125,7 @@ pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> R
         let organ = bloom::single_organ(&cloud.points, "organ", &bloom::SegmentSpec::default())?;
         stages.push(bloom::Stage { day, organs: vec![organ] });
     }
-    let law = bloom::fit_stages("stages", &stages, &bloom::LawSpec::default())?;
+    let law = bloom::fit_stages("stages", &stages, &bloom::LawSpec::default(), &Run::plain())?;
     // As the program reads it from a file.
     let law = serde_json::from_str(&serde_json::to_string(&law)?)?;
     let run = Run::plain();

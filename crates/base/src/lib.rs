@@ -53,5 +53,6 @@ pub use sort::{Set, first_of, map_of, median, set_of, sort_by, sort_by_key, sort
 pub use srgb::{byte_of_light, light_of_byte, linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,
+    map_until_cancelled,
 };
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

@@ -152,6 +152,26 @@ pub fn map_indexed<T: Send>(executor: &dyn Executor, n: usize, f: impl Fn(usize)
     values
 }
 
+/// [`map_indexed`] that looks before each job whether it is still wanted: make a job at most some ten milliseconds long.
+///
+/// # Errors
+/// [`Cancelled`]: at least one job was not done.
+///
+/// ```
+/// let (run, cancel) = (base::Run::plain(), base::CancelToken::new());
+/// let stopped = base::Run { cancel: &cancel, ..run };
+/// cancel.cancel();
+/// assert_eq!(base::map_until_cancelled(&run, 3, |i| i * i), Ok(vec![0, 1, 4]));
+/// assert_eq!(base::map_until_cancelled(&stopped, 3, |i| i * i), Err(base::Cancelled));
+/// ```
+pub fn map_until_cancelled<T: Send>(
+    run: &Run<'_>,
+    n: usize,
+    f: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    map_indexed(run.executor, n, |i| run.cancel.check().map(|()| f(i))).into_iter().collect()
+}
+
 /// Time as the shell sees it: the core reads no clock of its own.
 pub trait Clock: Sync {
     /// Milliseconds since any fixed moment.

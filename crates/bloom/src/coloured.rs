@@ -1,6 +1,6 @@
 //! Points with colours, and what their colours are between two scans.
 
-use base::{Run, map_indexed};
+use base::{Cancelled, Run, map_until_cancelled};
 use geom::KdTree;
 use glam::DVec3;
 
@@ -35,13 +35,18 @@ impl OrganPoints {
 }
 
 /// The colours of the points of another cloud that are nearest to some; none of a cloud without colours.
-pub(crate) fn nearest(points: &[DVec3], others: &[DVec3], colors: &[[u8; 3]], run: &Run<'_>) -> Vec<[u8; 3]> {
+pub(crate) fn nearest(
+    points: &[DVec3],
+    others: &[DVec3],
+    colors: &[[u8; 3]],
+    run: &Run<'_>,
+) -> Result<Vec<[u8; 3]>, Cancelled> {
     if colors.is_empty() || colors.len() != others.len() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let tree = KdTree::new(others);
     let of = |i: usize| tree.nearest(points[i], f64::INFINITY).map_or([0; 3], |k| colors[k]);
-    map_indexed(run.executor, points.len(), of)
+    map_until_cancelled(run, points.len(), of)
 }
 
 /// A mean of the light of two colours of each point, the second with this share; of points that have one on one day alone, that.

@@ -1,6 +1,6 @@
 //! Two shapes without shared vertices -> how far they are apart.
 
-use base::{Run, map_indexed};
+use base::{Run, map_indexed, map_until_cancelled};
 use geom::KdTree;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -79,11 +79,10 @@ fn one_way(
     // Neighbours one after the other find their way through the same part of the tree.
     let order: Vec<usize> = places.order().collect();
     let pieces: Vec<&[usize]> = order.chunks(4096).collect();
-    let rows = map_indexed(run.executor, pieces.len(), |k| {
+    let rows = map_until_cancelled(run, pieces.len(), |k| {
         let near = |&i: &usize| tree.nearest(from[i], f64::INFINITY).map(|k| (to[k] - from[i]).abs());
         pieces[k].iter().map(near).collect::<Vec<Option<DVec3>>>()
-    });
-    run.cancel.check()?;
+    })?;
     let mut found = vec![None; from.len()];
     order.iter().zip(rows.into_iter().flatten()).for_each(|(&i, gap)| found[i] = gap);
     let gaps: Vec<DVec3> = found.into_iter().flatten().collect();

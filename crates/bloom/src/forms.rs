@@ -4,7 +4,7 @@
 //! days cannot give three numbers and their errors for one series, but they can for several together. A and B are linear
 //! and solved for at every r and t0 (Golub and Pereyra 1973: variable projection).
 
-use base::ops;
+use base::{CancelToken, Cancelled, ops};
 use serde::{Deserialize, Serialize};
 
 /// The curve of a law.
@@ -142,18 +142,27 @@ fn cell(form: Form, level: bool, all: &[Series], r: f64, t0: f64) -> Option<Cell
 ///
 /// Each series needs 2 days or more. Guaranteed: the least sum of squares of the grid, refined until r and t0 are known
 /// to 1e-9 of themselves. Cost: about a thousand curves for each value, then a few hundred.
-pub fn fit_shared(form: Form, level: bool, all: &[Series]) -> Option<SharedFit> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn fit_shared(
+    form: Form,
+    level: bool,
+    all: &[Series],
+    cancel: &CancelToken,
+) -> Result<Option<SharedFit>, Cancelled> {
     let first = all.iter().filter_map(|s| s.days.first()).copied().fold(f64::INFINITY, f64::min);
     let last = all.iter().filter_map(|s| s.days.last()).copied().fold(f64::NEG_INFINITY, f64::max);
     let span = last - first;
     if all.is_empty() || !(span > 0.0 && span.is_finite()) {
-        return None;
+        return Ok(None);
     }
     let places = grid(form, level, first, span);
     let mut best: Option<(f64, usize)> = None;
     let mut held: Vec<Vec<(f64, Option<f64>)>> =
         all.iter().map(|s| vec![(f64::INFINITY, None); s.values.len()]).collect();
     for (at, &[r, t0]) in places.iter().enumerate() {
+        cancel.check()?;
         let Some(cell) = cell(form, level, all, r, t0) else { continue };
         if best.is_none_or(|(sse, _)| cell.total < sse) {
             best = Some((cell.total, at));
@@ -171,9 +180,9 @@ pub fn fit_shared(form: Form, level: bool, all: &[Series]) -> Option<SharedFit> 
             }
         }
     }
-    let (_, at) = best?;
-    let (r, t0) = refine(form, level, all, places[at], span)?;
-    let end = cell(form, level, all, r, t0)?;
+    let Some((_, at)) = best else { return Ok(None) };
+    let Some((r, t0)) = refine(form, level, all, (places[at], span), cancel)? else { return Ok(None) };
+    let Some(end) = cell(form, level, all, r, t0) else { return Ok(None) };
     let shared = match form {
         Form::Straight => 0,
         Form::Monomolecular if level => 1,
@@ -203,7 +212,7 @@ pub fn fit_shared(form: Form, level: bool, all: &[Series]) -> Option<SharedFit> 
     if freedom > 0 && !on_bound {
         fit.errors = errors(&fit, all, shared);
     }
-    Some(fit)
+    Ok(Some(fit))
 }
 
 /// Rates and times that are looked at first.
@@ -223,13 +232,19 @@ fn grid(form: Form, level: bool, first: f64, span: f64) -> Vec<[f64; 2]> {
 }
 
 /// A compass search within the grid's bounds: in the logarithm of r, and in t0.
-fn refine(form: Form, level: bool, all: &[Series], start: [f64; 2], span: f64) -> Option<(f64, f64)> {
+fn refine(
+    form: Form,
+    level: bool,
+    all: &[Series],
+    (start, span): ([f64; 2], f64),
+    cancel: &CancelToken,
+) -> Result<Option<(f64, f64)>, Cancelled> {
     let value = |r: f64, t0: f64| cell(form, level, all, r, t0).map(|c| c.total);
     let first = all.iter().filter_map(|s| s.days.first()).copied().fold(f64::INFINITY, f64::min);
     let [mut r, mut t0] = start;
-    let mut best = value(r, t0)?;
+    let Some(mut best) = value(r, t0) else { return Ok(None) };
     if form == Form::Straight {
-        return Some((r, t0));
+        return Ok(Some((r, t0)));
     }
     let still = form == Form::Monomolecular && level;
     let (low, high) = (RATE_RANGE[0] / span, RATE_RANGE[1] / span);
@@ -246,6 +261,7 @@ fn refine(form: Form, level: bool, all: &[Series], start: [f64; 2], span: f64) -
         [-1.0, 1.0],
     ];
     for _ in 0..400 {
+        cancel.check()?;
         let next = ways.iter().filter_map(|w| {
             let r = (r * ops::exp(w[0] * step[0])).clamp(low, high);
             let t0 = (t0 + w[1] * step[1]).clamp(first + TIME_RANGE[0] * span, first + TIME_RANGE[1] * span);
@@ -259,7 +275,7 @@ fn refine(form: Form, level: bool, all: &[Series], start: [f64; 2], span: f64) -
             break;
         }
     }
-    Some((r, t0))
+    Ok(Some((r, t0)))
 }
 
 /// Standard errors by the linearised least squares of all numbers together.
@@ -385,21 +401,27 @@ pub struct Choice {
 /// Chooses by leave-one-out among the three laws, with and without a level, and straight lines.
 ///
 /// `None` without a series of 2 days that differ.
-pub fn choose(all: &[Series]) -> Option<Choice> {
-    let straight = fit_shared(Form::Straight, true, all)?;
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn choose(all: &[Series], cancel: &CancelToken) -> Result<Option<Choice>, Cancelled> {
+    let Some(straight) = fit_shared(Form::Straight, true, all, cancel)? else { return Ok(None) };
     let straight_rmse = straight.loo_rmse();
     let still = left_out_of_means(all);
-    let fits = Form::LAWS.iter().flat_map(|&f| [false, true].map(|level| fit_shared(f, level, all)));
-    let able = fits.flatten().filter(|f| {
+    let mut fits = Vec::new();
+    for (&form, level) in Form::LAWS.iter().flat_map(|form| [(form, false), (form, true)]) {
+        fits.extend(fit_shared(form, level, all, cancel)?);
+    }
+    let able = fits.into_iter().filter(|f| {
         // A rate that is not two standard errors from 0 tells no curve from a line.
         let sure = f.errors.as_ref().is_some_and(|(_, [r, _])| f.r > 2.0 * r);
         f.freedom > 0 && !f.on_bound && sure && earns(f, &straight.left_out) && earns(f, &still)
     });
     let loo = |f: &SharedFit| f.loo_rmse().unwrap_or(f64::INFINITY);
-    Some(match able.min_by(|a, b| loo(a).total_cmp(&loo(b))) {
+    Ok(Some(match able.min_by(|a, b| loo(a).total_cmp(&loo(b))) {
         Some(fit) => Choice { fit, determined: true, straight_rmse },
         None => Choice { fit: straight, determined: false, straight_rmse },
-    })
+    }))
 }
 
 /// Each value less the mean of the others of its series: what no growth predicts.
@@ -428,6 +450,14 @@ fn earns(law: &SharedFit, rival: &[Vec<Option<f64>>]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn fit_shared(form: Form, level: bool, all: &[Series]) -> Option<SharedFit> {
+        super::fit_shared(form, level, all, &CancelToken::new()).expect("not cancelled")
+    }
+
+    fn choose(all: &[Series]) -> Option<Choice> {
+        super::choose(all, &CancelToken::new()).expect("not cancelled")
+    }
 
     fn made(
         form: Form,

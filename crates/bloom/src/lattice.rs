@@ -1,6 +1,6 @@
 //! Box and control points -> deformed points: Bernstein free-form deformation (Huai, Yang and Cai 2019, eq 5).
 
-use base::{Run, map_indexed};
+use base::{Run, map_until_cancelled};
 use glam::DVec3;
 
 use crate::kernel::{self, LANES, Stu};
@@ -136,12 +136,12 @@ impl Weights {
             .zip(self.blocks.chunks(1024))
             .map(|piece| std::sync::Mutex::new(Some(piece)))
             .collect();
-        map_indexed(run.executor, pieces.len(), |i| {
+        map_until_cancelled(run, pieces.len(), |i| {
             let piece = pieces[i].lock().ok().and_then(|mut p| p.take());
             if let Some((out, points)) = piece {
                 kernel::deform(self.counts, &steps, points, out);
             }
-        });
+        })?;
         Ok(())
     }
 

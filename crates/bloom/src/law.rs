@@ -1,11 +1,13 @@
 //! Organs at several days -> growth laws, saved, plotted, and moved to another species.
 
+use base::{CancelToken, Run};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::logistic::fit_logistic_while;
 use crate::{
     BloomError, Choice, Fit, FitError, Form, Logistic, Offset, ScanOrgan, Series, SharedFit, choose, fit_law,
-    fit_logistic, fit_shared,
+    fit_shared,
 };
 
 /// The value of [`GrowthLaw::schema`].
@@ -313,8 +315,13 @@ impl Default for LawSpec {
 ///
 /// # Errors
 /// [`FitError::TooFew`] below 3 stages, [`FitError::Order`] for days that do not increase, and for a coordinate
-/// that changes its sign where the offset is [`Offset::Zero`].
-pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<GrowthLaw, BloomError> {
+/// that changes its sign where the offset is [`Offset::Zero`]; [`BloomError::Cancelled`].
+pub fn fit_stages(
+    name: &str,
+    stages: &[Stage],
+    spec: &LawSpec,
+    run: &Run<'_>,
+) -> Result<GrowthLaw, BloomError> {
     if stages.len() < 3 {
         return Err(FitError::TooFew { got: stages.len() }.into());
     }
@@ -338,6 +345,7 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
         if there.len() < 3 {
             continue;
         }
+        run.cancel.check()?;
         let days: Vec<f64> = there.iter().map(|t| t.0).collect();
         let size = |o: &ScanOrgan| {
             o.points.iter().map(|p| p.distance(o.base)).sum::<f64>() / o.points.len().max(1) as f64
@@ -355,7 +363,7 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
         }
     }
     let span_days = stages[stages.len() - 1].day - first_day;
-    let laws = fit_rows(rows, span_days, spec.offset)?;
+    let laws = fit_rows(rows, span_days, spec.offset, run.cancel)?;
     Ok(GrowthLaw { schema: LAW_SCHEMA.into(), name: name.to_owned(), first_day, span_days, regions, laws })
 }
 
@@ -363,12 +371,18 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
 /// they determine together (`leaf-1` and `leaf-2` are leaves; `tree 3` is a tree).
 ///
 /// # Errors
-/// [`FitError`], as [`fit_logistic`], with fewer than 3 days in every series; a series of fewer is left out.
-pub fn fit_sizes(name: &str, series: &[(String, Series)], offset: Offset) -> Result<GrowthLaw, FitError> {
+/// [`FitError`], as [`fit_logistic`](crate::fit_logistic), with fewer than 3 days in every series; a series of fewer is left
+/// out. [`BloomError::Cancelled`].
+pub fn fit_sizes(
+    name: &str,
+    series: &[(String, Series)],
+    offset: Offset,
+    run: &Run<'_>,
+) -> Result<GrowthLaw, BloomError> {
     let able = || series.iter().filter(|s| s.1.days.len() >= 3);
     let Some(first_day) = able().map(|s| s.1.days[0]).reduce(f64::min) else {
         let most = series.iter().map(|s| s.1.days.len()).max().unwrap_or(0);
-        return Err(FitError::TooFew { got: most });
+        return Err(FitError::TooFew { got: most }.into());
     };
     let last = able().filter_map(|s| s.1.days.last()).fold(first_day, |a, &b| a.max(b));
     let rows = able().map(|(organ, series)| Measured {
@@ -380,7 +394,7 @@ pub fn fit_sizes(name: &str, series: &[(String, Series)], offset: Offset) -> Res
             values: series.values.clone(),
         },
     });
-    let laws = fit_rows(rows.collect(), last - first_day, offset)?;
+    let laws = fit_rows(rows.collect(), last - first_day, offset, run.cancel)?;
     let (schema, name) = (LAW_SCHEMA.into(), name.to_owned());
     Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, regions: 1, laws })
 }
@@ -404,18 +418,22 @@ pub(crate) struct Measured {
 
 /// Laws of all series, in their order. Those of one kind of organ and one axis share rate and time; where no shared law
 /// is determined, a series of 5 values or more may determine one of its own.
-pub(crate) fn fit_rows(rows: Vec<Measured>, span: f64, offset: Offset) -> Result<Vec<RegionLaw>, FitError> {
+pub(crate) fn fit_rows(
+    rows: Vec<Measured>,
+    span: f64,
+    offset: Offset,
+    cancel: &CancelToken,
+) -> Result<Vec<RegionLaw>, BloomError> {
     let group = |r: &Measured| (kind_of(&r.organ).to_owned(), r.axis);
-    let mut groups: Vec<(String, Quantity)> = rows.iter().map(group).collect();
-    base::sort_by(&mut groups, |a, b| a.cmp(b));
-    groups.dedup();
+    let groups: Vec<(String, Quantity)> = rows.iter().map(group).collect();
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    base::sort_by(&mut order, |&a, &b| groups[a].cmp(&groups[b]).then(a.cmp(&b)));
     let mut laws: Vec<Option<RegionLaw>> = vec![None; rows.len()];
-    for key in groups {
-        let mine: Vec<usize> = (0..rows.len()).filter(|&i| group(&rows[i]) == key).collect();
+    for mine in order.chunk_by(|&a, &b| groups[a] == groups[b]) {
         let series: Vec<Series> = mine.iter().map(|&i| rows[i].series.clone()).collect();
-        let choice = choose(&series);
+        let choice = choose(&series, cancel)?;
         for (k, &i) in mine.iter().enumerate() {
-            laws[i] = Some(row(&rows[i], choice.as_ref().map(|c| (c, k)), span, offset)?);
+            laws[i] = Some(row(&rows[i], choice.as_ref().map(|c| (c, k)), (span, offset), cancel)?);
         }
     }
     Ok(laws.into_iter().flatten().collect())
@@ -440,12 +458,17 @@ fn region_means(organ: &ScanOrgan, regions: usize) -> Vec<DVec3> {
 fn row(
     of: &Measured,
     choice: Option<(&Choice, usize)>,
-    span: f64,
-    offset: Offset,
-) -> Result<RegionLaw, FitError> {
+    (span, offset): (f64, Offset),
+    cancel: &CancelToken,
+) -> Result<RegionLaw, BloomError> {
     let Series { days, values } = &of.series;
     let n = values.len();
-    let fit: Fit = if n > 3 { fit_logistic(days, values, offset)? } else { fit_law(days, values, offset)? };
+    let is_wanted = || cancel.check().map_err(BloomError::from);
+    let fit: Fit = if n > 3 {
+        fit_logistic_while(days, values, offset, is_wanted)?
+    } else {
+        fit_law(days, values, offset)?
+    };
     let mut out = RegionLaw {
         organ: of.organ.clone(),
         region: of.region,
@@ -466,7 +489,7 @@ fn row(
         let rows: Vec<f64> = fit.left_out[k].iter().flatten().copied().collect();
         (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
     };
-    let line = fit_shared(Form::Straight, true, core::slice::from_ref(&of.series));
+    let line = fit_shared(Form::Straight, true, core::slice::from_ref(&of.series), cancel)?;
     out.straight_rmse = line.as_ref().and_then(|l| rms(l, 0));
     let shared = rms(&choice.fit, k);
     // Its own logistic, with errors, must be nearer than both.
@@ -526,7 +549,7 @@ mod tests {
     fn the_law_that_made_the_stages_is_found_and_drives_between() {
         let truth = Logistic { k: 0.06, p0: 0.01, r: 0.6, offset: 0.0 };
         let stages: Vec<Stage> = [0.0, 1.0, 2.0, 4.0, 6.0, 9.0].iter().map(|&d| stage(d, &truth)).collect();
-        let law = fit_stages("made", &stages, &LawSpec::default()).unwrap();
+        let law = fit_stages("made", &stages, &LawSpec::default(), &Run::plain()).unwrap();
         assert_eq!((law.laws.len(), law.first_day, law.span_days), (10, 100.0, 9.0));
         assert_eq!(law.validate().count(), 0);
         for l in law.laws.iter().filter(|l| l.axis != Quantity::Z) {
@@ -565,9 +588,24 @@ mod tests {
     fn too_few_stages_and_days_out_of_order() {
         let l = Logistic { k: 1.0, p0: 0.1, r: 1.0, offset: 0.0 };
         let two = [stage(0.0, &l), stage(1.0, &l)];
-        let fit = |s: &[Stage]| fit_stages("x", s, &LawSpec::default()).unwrap_err();
+        let fit = |s: &[Stage]| fit_stages("x", s, &LawSpec::default(), &Run::plain()).unwrap_err();
         assert_eq!(fit(&two), BloomError::Fit(FitError::TooFew { got: 2 }));
         let disorder = [stage(0.0, &l), stage(2.0, &l), stage(1.0, &l)];
         assert_eq!(fit(&disorder), BloomError::Fit(FitError::Order { day: 101.0, before: 102.0 }));
+    }
+
+    #[test]
+    fn a_fit_that_is_stopped_gives_no_law() {
+        let l = Logistic { k: 1.0, p0: 0.1, r: 1.0, offset: 0.0 };
+        let days = [0.0, 1.0, 2.0, 4.0, 6.0];
+        let stages: Vec<Stage> = days.iter().map(|&d| stage(d, &l)).collect();
+        let values = days.iter().map(|&d| l.value(d)).collect();
+        let series = [("leaf-1".to_owned(), Series { days: days.to_vec(), values })];
+        let cancel = CancelToken::new();
+        let stopped = Run { cancel: &cancel, ..Run::plain() };
+        assert!(fit_sizes("x", &series, Offset::Auto, &stopped).is_ok());
+        cancel.cancel();
+        assert_eq!(fit_stages("x", &stages, &LawSpec::default(), &stopped), Err(BloomError::Cancelled));
+        assert_eq!(fit_sizes("x", &series, Offset::Auto, &stopped), Err(BloomError::Cancelled));
     }
 }

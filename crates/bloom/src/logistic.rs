@@ -142,12 +142,23 @@ pub enum FitError {
 /// # Ok::<(), bloom::FitError>(())
 /// ```
 pub fn fit_logistic(days: &[f64], values: &[f64], offset: Offset) -> Result<Fit, FitError> {
+    fit_logistic_while(days, values, offset, || Ok(()))
+}
+
+/// [`fit_logistic`] that asks before each value that it leaves out whether it is still wanted.
+pub(crate) fn fit_logistic_while<E: From<FitError>>(
+    days: &[f64],
+    values: &[f64],
+    offset: Offset,
+    mut is_wanted: impl FnMut() -> Result<(), E>,
+) -> Result<Fit, E> {
     let mut fit = fit_law(days, values, offset)?;
     let n = days.len();
     if n >= 4 {
         let mut sum = 0.0;
         let (mut d, mut v) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for out in 0..n {
+            is_wanted()?;
             d.clear();
             v.clear();
             d.extend((0..n).filter(|&i| i != out).map(|i| days[i]));

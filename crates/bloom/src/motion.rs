@@ -156,7 +156,7 @@ impl Motion {
             self.residuals.push((organ.name.clone(), day(at), day(k), fit.residual));
             points = weights.apply(&fit.last, run)?;
             base = next.base;
-            let there = coloured::nearest(&points, &next.points, &next.colors, run);
+            let there = coloured::nearest(&points, &next.points, &next.colors, run)?;
             let colors = [core::mem::replace(&mut colors, there.clone()), there];
             segments.push(Segment { from: day(at), to: day(k), weights, fit, along, colors });
             at = k;
@@ -363,7 +363,7 @@ mod tests {
         let share = |d: f64| (truth.value(d) - 0.1) / (truth.value(6.0) - 0.1);
         let days = [0.0, 1.5, 3.0, 4.5, 6.0];
         let stages: Vec<Stage> = days.iter().map(|&d| stage(d, share(d), ops::cbrt(d).to_bits())).collect();
-        let law = crate::fit_stages("made", &stages, &crate::LawSpec::default()).unwrap();
+        let law = crate::fit_stages("made", &stages, &crate::LawSpec::default(), &Run::plain()).unwrap();
         let run = Run::plain();
         let ends = [stages[0].clone(), stages[4].clone()];
         let motion = Motion::new(&ends, law, MotionSpec::default(), &run).unwrap();

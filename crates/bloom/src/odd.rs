@@ -160,14 +160,16 @@ fn best(a: &Cloud, b: &Cloud, ups: &[DVec3], run: &Run<'_>) -> Result<Moves, Blo
             })
         })
         .collect();
-    let mut found = base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS[0]));
+    let mut found =
+        base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS[0], run.cancel));
     run.cancel.check()?;
     base::sort_by(&mut found, |x, y| x.0.total_cmp(&y.0));
     let stands = |m: &RigidMotion| (m.turn * DVec3::Y).y > STANDS;
     let (up, down): (Vec<_>, Vec<_>) = found.into_iter().map(|f| f.1).partition(stands);
     let chosen: Vec<RigidMotion> = up.iter().take(2).chain(down.iter().take(2)).copied().collect();
     let many = Pair::new(&a.many, &b.many, SAMPLES[1]);
-    let ends = base::map_indexed(run.executor, chosen.len(), |k| many.descend(chosen[k], ROUNDS[1]));
+    let ends =
+        base::map_indexed(run.executor, chosen.len(), |k| many.descend(chosen[k], ROUNDS[1], run.cancel));
     run.cancel.check()?;
     let mut out = Moves { standing: f64::INFINITY, other: (f64::INFINITY, DQuat::IDENTITY) };
     for (gap, m) in ends {

@@ -164,9 +164,9 @@ fn align(
         let roll = base::turn::about(b, base::ops::TAU * f64::from(k) / 8.0);
         let mut rigid = Rigid { from: from_base, to: to_base, turn: roll * least, scale, rod };
         for _ in 0..12 {
+            run.cancel.check()?;
             rigid = improved(&rigid, &small_from, &small_to, &grid);
         }
-        run.cancel.check()?;
         let score = mismatch(&rigid, &small_from, &small_to, &grid);
         // An organ seldom turns far between two scans: of two that fit alike the lesser turn is meant.
         let angle = 2.0 * base::ops::acos_clamped(rigid.turn.w.abs());
@@ -179,6 +179,7 @@ fn align(
     let mut rigid = best.map_or(start, |(_, r)| r);
     let grid = KdTree::new(to);
     for _ in 0..10 {
+        run.cancel.check()?;
         rigid = improved(&rigid, from, to, &grid);
     }
     Ok(rigid)

@@ -1,6 +1,6 @@
 //! Each stage left out in turn -> how far the model and its rivals are from it.
 
-use base::Run;
+use base::{CancelToken, Run};
 use geom::{KdTree, best_rotation};
 use glam::DVec3;
 
@@ -98,7 +98,7 @@ fn trial(
 ) -> Result<Trial, BloomError> {
     let day = left.day;
     let settled = settle(rest, &spec.register, run)?;
-    let fitted = if rest.len() < 3 { None } else { Some(fit_stages("", &settled.stages, law)?) };
+    let fitted = if rest.len() < 3 { None } else { Some(fit_stages("", &settled.stages, law, run)?) };
     let determined = fitted.as_ref().is_some_and(|l| l.laws.iter().any(crate::RegionLaw::is_determined));
     let fitted = fitted.filter(|l| !l.laws.is_empty());
     let even = GrowthLaw::even(rest[0].day, rest[rest.len() - 1].day);
@@ -187,13 +187,14 @@ pub fn best_move(shape: &[DVec3], scan: &[DVec3], run: &Run<'_>) -> Result<Rigid
         RigidMotion { from: few.middles[0], to: few.middles[1], turn }
     });
     let starts: Vec<RigidMotion> = turned.chain([RigidMotion::REST]).collect();
-    let mut found = base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS));
+    let mut found =
+        base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k], ROUNDS, run.cancel));
     run.cancel.check()?;
     base::sort_by(&mut found, |x, y| x.0.total_cmp(&y.0));
     // Of starts that are nearly as good the small sample cannot say which is best.
     found.truncate(3);
     let all = Pair::new(shape, scan, SAMPLES[1]);
-    let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1, ROUNDS));
+    let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1, ROUNDS, run.cancel));
     run.cancel.check()?;
     let best = ends.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
     Ok(best.map_or(RigidMotion::REST, |b| b.1))
@@ -235,12 +236,21 @@ impl Pair {
         mean(&self.tree, &self.to, &places) + mean(&back, &places, &self.to)
     }
 
-    /// Iterated nearest points both ways: the mean distances there and back, added, and the motion.
-    pub(crate) fn descend(&self, mut moved: RigidMotion, rounds: usize) -> (f64, RigidMotion) {
+    /// Iterated nearest points both ways: the mean distances there and back, added, and the motion. Of a run that was
+    /// cancelled the motion so far, which is worth nothing.
+    pub(crate) fn descend(
+        &self,
+        mut moved: RigidMotion,
+        rounds: usize,
+        cancel: &CancelToken,
+    ) -> (f64, RigidMotion) {
         // Below half a hundredth of the size a distance is the spacing of the points.
         let floor = 0.005 * self.size.max(1e-12);
         let mut gap = f64::INFINITY;
         for _ in 0..rounds {
+            if cancel.check().is_err() {
+                break;
+            }
             let places: Vec<DVec3> = self.from.iter().map(|&p| moved.apply(p)).collect();
             let back = KdTree::new(&places);
             let there = places.iter().enumerate();

@@ -136,6 +136,16 @@ impl KdTree {
         }
     }
 
+    /// Shows the points that are at most `reach` away from `p`, those of nearer leaves first, until `look` has enough: it
+    /// is given the index of each and returns how far the next may be, `None` to end.
+    ///
+    /// None are shown if `p` is not usable or `reach` is negative or NaN.
+    pub fn look(&self, p: DVec3, reach: f64, look: impl FnMut(usize) -> Option<f64>) {
+        if reach >= 0.0 {
+            self.search(p, &mut Looking { bound2: above(reach), look });
+        }
+    }
+
     /// Shows a search the leaves that are not hopeless, nearer ones first.
     fn search(&self, p: DVec3, search: &mut impl Search) {
         if !p.usable() || self.nodes.is_empty() {
@@ -225,6 +235,27 @@ impl Search for Within<'_> {
     }
 }
 
+struct Looking<F> {
+    /// Negative once enough was seen.
+    bound2: f64,
+    look: F,
+}
+
+impl<F: FnMut(usize) -> Option<f64>> Search for Looking<F> {
+    fn hopeless(&self, gap2: f64, _least: u32) -> bool {
+        gap2 > self.bound2
+    }
+
+    fn leaf(&mut self, p: DVec3, points: &[(DVec3, u32)]) {
+        for &(q, i) in points {
+            let d = p - q;
+            if Vector::dot(d, d) <= self.bound2 {
+                self.bound2 = (self.look)(i as usize).map_or(-1.0, above);
+            }
+        }
+    }
+}
+
 struct Several<'a> {
     out: &'a mut [f64],
 }
@@ -274,6 +305,11 @@ impl KdTree2 {
         self.0.nearest_distances(p.extend(0.0), out);
     }
 
+    /// As [`KdTree::look`].
+    pub fn look(&self, p: DVec2, reach: f64, look: impl FnMut(usize) -> Option<f64>) {
+        self.0.look(p.extend(0.0), reach, look);
+    }
+
     /// As [`KdTree::within`].
     pub fn within(&self, p: DVec2, r: f64, out: &mut Vec<usize>) {
         self.0.within(p.extend(0.0), r, out);
@@ -321,6 +357,20 @@ mod tests {
             let usable = p.usable();
             prop_assert_eq!(&out, &if usable { brute_within(&points, p, r) } else { vec![] });
             prop_assert_eq!(tree.nearest(p, r), if usable { brute_nearest(&points, p, r) } else { None });
+            let (mut shown, mut first) = (Vec::new(), None);
+            tree.look(p, r, |i| {
+                shown.push(i);
+                Some(r)
+            });
+            shown.sort_unstable();
+            // Rounding may show points that are a hair too far.
+            shown.retain(|&i| Vector::distance(points[i], p) <= r);
+            prop_assert_eq!(&shown, &out);
+            tree.look(p, r, |i| {
+                first = first.or(Some(i));
+                None
+            });
+            prop_assert!(first.is_some() || out.is_empty());
             let mut some = [0.0; 7];
             tree.nearest_distances(p, &mut some);
             let all = if usable { brute_within(&points, p, f64::INFINITY) } else { vec![] };

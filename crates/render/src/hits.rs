@@ -1,6 +1,6 @@
 //! What each beam of a scanner, or each pixel of a camera, meets first.
 
-use base::{Cancelled, Run, map_indexed};
+use base::{Cancelled, Run, map_until_cancelled};
 use glam::{DVec2, DVec3};
 use mesh::Model;
 
@@ -61,7 +61,7 @@ pub fn hits(model: &Model, views: &[PictureSpec], run: &Run<'_>) -> Result<Vec<V
             let camera = Camera::framing(&points, &view);
             let bins = Bins::new(&scene, &camera, view.width, view.height);
             let of_tile = |tile| of_tile(&scene, &bins, &camera, &view, tile);
-            let tiles = map_indexed(run.executor, bins.columns * bins.rows, of_tile);
+            let tiles = map_until_cancelled(run, bins.columns * bins.rows, of_tile)?;
             let mut seen: Vec<Hit> = tiles.into_iter().flatten().collect();
             seen.sort_unstable_by_key(|h| h.pixel);
             Ok(seen)

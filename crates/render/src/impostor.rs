@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Run, map_indexed};
+use base::{Cancelled, Run, map_until_cancelled};
 use glam::{DVec2, DVec3};
 use mesh::{AlphaMode, Impostor, Maps, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
@@ -49,12 +49,10 @@ pub fn impostor(model: &Model, size: u32, run: &Run<'_>) -> Result<Option<Model>
         return Ok(None);
     }
     let camera = |k: u32| Camera::of_sphere(direction(k % FRAMES, k / FRAMES), centre, radius, pixels);
-    let views = map_indexed(run.executor, (FRAMES * FRAMES) as usize, |k| {
-        run.cancel.check()?;
+    let views: Vec<View> = map_until_cancelled(run, (FRAMES * FRAMES) as usize, |k| {
         let k = u32::try_from(k).unwrap_or(0);
-        Ok(view((&scene, &sky), &camera(k), (radius, pixels)))
-    });
-    let views: Vec<View> = views.into_iter().collect::<Result<_, Cancelled>>()?;
+        view((&scene, &sky), &camera(k), (radius, pixels))
+    })?;
     let side = pixels * FRAMES;
     let atlas = |of: fn(&View) -> &[u8]| Texture::joined(views.iter().map(of), pixels, FRAMES);
     let (color, normal) = (atlas(|v| &v.color), atlas(|v| &v.normal));

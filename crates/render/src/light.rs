@@ -4,7 +4,7 @@
 //! depth map, so that occlusion is soft, has no noise, and does not depend on the view.
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "map arithmetic, clamped")]
 
-use base::{Cancelled, Draw, Run, map_indexed, ops};
+use base::{Cancelled, Draw, Run, map_until_cancelled, ops};
 use glam::{DVec2, DVec3};
 
 use crate::scene::{Scene, Triangle};
@@ -231,12 +231,9 @@ impl Sky {
             return Ok(sky);
         }
         let size = (map_size / 3).clamp(96, 256);
-        let maps = map_indexed(run.executor, SKY_LAMPS, |k| {
-            run.cancel.check().ok().map(|()| DepthMap::new(scene, directions[k], size))
-        });
-        let Some(maps) = maps.into_iter().collect::<Option<Vec<DepthMap>>>() else { return Err(Cancelled) };
+        let maps = map_until_cancelled(run, SKY_LAMPS, |k| DepthMap::new(scene, directions[k], size))?;
         const CHUNK: usize = 1024;
-        let chunks = map_indexed(run.executor, scene.vertices.len().div_ceil(CHUNK), |k| {
+        let chunks = map_until_cancelled(run, scene.vertices.len().div_ceil(CHUNK), |k| {
             let end = ((k + 1) * CHUNK).min(scene.vertices.len());
             scene.vertices[k * CHUNK..end]
                 .iter()
@@ -250,19 +247,25 @@ impl Sky {
                     both
                 })
                 .collect::<Vec<_>>()
-        });
+        })?;
         sky.vertices = chunks.into_iter().flatten().collect();
-        sky.light_ground(scene, &maps, share, run);
-        run.cancel.check().map(|()| sky)
+        sky.light_ground(scene, &maps, share, run)?;
+        Ok(sky)
     }
 
-    fn light_ground(&mut self, scene: &Scene, maps: &[DepthMap], share: f64, run: &Run<'_>) {
+    fn light_ground(
+        &mut self,
+        scene: &Scene,
+        maps: &[DepthMap],
+        share: f64,
+        run: &Run<'_>,
+    ) -> Result<(), Cancelled> {
         let centre = scene.bounds.centre();
         // Twice the model's own extent: beyond, its shade under an open sky is below one step of grey.
         let half = DVec2::splat(scene.radius() * 2.0);
         self.ground_low = DVec2::new(centre.x, centre.z) - half;
         self.ground_cell = half * 2.0 / (GROUND_CELLS - 1) as f64;
-        let rows = map_indexed(run.executor, GROUND_CELLS, |row| {
+        let rows = map_until_cancelled(run, GROUND_CELLS, |row| {
             (0..GROUND_CELLS)
                 .map(|column| {
                     let at = self.ground_low + self.ground_cell * DVec2::new(column as f64, row as f64);
@@ -273,9 +276,10 @@ impl Sky {
                         .sum::<DVec3>()
                 })
                 .collect::<Vec<DVec3>>()
-        });
+        })?;
         let raw: Vec<DVec3> = rows.into_iter().flatten().collect();
         self.ground = blurred(&blurred(&raw));
+        Ok(())
     }
 
     /// The light of sky and ground on a surface of unit normal `n` with nothing else around, as reflected by pure white. Of a sky
@@ -315,14 +319,11 @@ impl Sky {
         let centre = (right * -0.62 + toward * 0.42 + DVec3::Y * 0.95).normalize();
         let u = centre.any_orthonormal_vector();
         let v = centre.cross(u);
-        let maps = map_indexed(run.executor, SUN_LAMPS, |k| {
-            run.cancel.check().ok().map(|()| {
-                let r = SUN_RADIUS * ((k as f64 + 0.5) / SUN_LAMPS as f64).sqrt();
-                let (s, c) = ops::sin_cos(self.turn + GOLDEN_ANGLE * k as f64);
-                DepthMap::new(scene, (centre + (u * c + v * s) * r).normalize(), self.map_size)
-            })
-        });
-        maps.into_iter().collect::<Option<_>>().ok_or(Cancelled)
+        map_until_cancelled(run, SUN_LAMPS, |k| {
+            let r = SUN_RADIUS * ((k as f64 + 0.5) / SUN_LAMPS as f64).sqrt();
+            let (s, c) = ops::sin_cos(self.turn + GOLDEN_ANGLE * k as f64);
+            DepthMap::new(scene, (centre + (u * c + v * s) * r).normalize(), self.map_size)
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Colour of fragments and of the background, tile by tile.
 
-use base::{Cancelled, Run, light_of_byte, map_indexed, ops};
+use base::{Cancelled, Run, light_of_byte, map_until_cancelled, ops};
 use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
@@ -42,8 +42,7 @@ pub(crate) fn frame(
         pattern: pattern(spec.supersample),
     };
     let count = frame.bins.columns * frame.bins.rows;
-    let tiles = map_indexed(run.executor, count, |k| run.cancel.check().ok().map(|()| frame.tile(k)));
-    let Some(tiles) = tiles.into_iter().collect::<Option<Vec<Picture>>>() else { return Err(Cancelled) };
+    let tiles = map_until_cancelled(run, count, |k| frame.tile(k))?;
     let mut picture = Picture::filled(spec.width, spec.height, [0; 4]);
     for (tile, (x, y)) in tiles.iter().zip((0..count).map(|k| frame.corner(k))) {
         picture.paste(tile, x, y);

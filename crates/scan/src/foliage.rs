@@ -4,9 +4,10 @@
 //! a leaf (Vicari et al. 2019); what the ways to wood pass is wood again. Geometry says whether there are leaves at all:
 //! wood is a line or a surface at the size of a twig, a crown in leaf is neither (Wang, Momo Takoudjou and Casella 2020).
 
+use base::{CancelToken, Cancelled};
 use glam::DVec3;
 
-use crate::ways::{NONE, Ways};
+use crate::ways::{CUBES_AT_ONCE, NONE, Ways};
 
 /// Metres beyond which no leaf with its stalk reaches.
 const LEAF: f64 = 0.15;
@@ -22,9 +23,15 @@ const FLAT: f64 = 0.06;
 pub(crate) const SCATTERED: f64 = 0.36;
 /// Cubes that are looked at.
 const SAMPLE: usize = 20_000;
+/// Cubes of these between two looks whether the tree is still wanted: each has up to some thousand neighbours.
+const PLACES_AT_ONCE: usize = 64;
 
 /// Which cubes of the tree are wood.
-pub(crate) fn wood(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<bool> {
+pub(crate) fn wood(
+    ways: &Ways,
+    mine: impl Fn(usize) -> bool,
+    cancel: &CancelToken,
+) -> Result<Vec<bool>, Cancelled> {
     let beyond = beyond(ways, &mine);
     let mut wood: Vec<bool> = (0..ways.len()).map(|c| mine(c) && beyond[c] >= LEAF).collect();
     // The whole surface of the wood that the ways run along.
@@ -33,7 +40,12 @@ pub(crate) fn wood(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut aside = vec![f64::INFINITY; ways.len()];
     let mut front: std::collections::VecDeque<usize> =
         core.into_iter().inspect(|&c| aside[c] = 0.0).collect();
+    let mut done = 0_usize;
     while let Some(c) = front.pop_front() {
+        done += 1;
+        if done.is_multiple_of(CUBES_AT_ONCE) {
+            cancel.check()?;
+        }
         ways.voxels.near(c, 2, |k| {
             let step = aside[c] + ways.means[c].distance(ways.means[k]);
             if mine(k) && step < near && step < aside[k] {
@@ -45,7 +57,7 @@ pub(crate) fn wood(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<bool> {
     for (c, _) in aside.iter().enumerate().filter(|(_, a)| **a < near) {
         retrace(ways, c, &mut wood);
     }
-    wood
+    Ok(wood)
 }
 
 /// A cube and those that the way to it passes.
@@ -73,7 +85,11 @@ fn beyond(ways: &Ways, mine: impl Fn(usize) -> bool) -> Vec<f64> {
 }
 
 /// The share of cubes about which the cloud is neither a line nor a surface.
-pub(crate) fn scattered(ways: &Ways, mine: impl Fn(usize) -> bool) -> f64 {
+pub(crate) fn scattered(
+    ways: &Ways,
+    mine: impl Fn(usize) -> bool,
+    cancel: &CancelToken,
+) -> Result<f64, Cancelled> {
     let all: Vec<usize> = (0..ways.len()).filter(|&c| mine(c)).collect();
     let cell = ways.voxels.cell();
     let radius = FORM.max(3.0 * cell);
@@ -81,7 +97,10 @@ pub(crate) fn scattered(ways: &Ways, mine: impl Fn(usize) -> bool) -> f64 {
     let reach = (radius / cell).ceil().min(40.0) as i32;
     let (mut seen, mut odd) = (0_usize, 0_usize);
     let mut near: Vec<DVec3> = vec![];
-    for &c in all.iter().step_by(all.len() / SAMPLE + 1) {
+    for (done, &c) in all.iter().step_by(all.len() / SAMPLE + 1).enumerate() {
+        if done.is_multiple_of(PLACES_AT_ONCE) {
+            cancel.check()?;
+        }
         near.clear();
         ways.voxels.near(c, reach, |k| {
             if mine(k) && ways.means[k].distance(ways.means[c]) < radius {
@@ -95,5 +114,5 @@ pub(crate) fn scattered(ways: &Ways, mine: impl Fn(usize) -> bool) -> f64 {
         seen += 1;
         odd += usize::from(a - b < LINE * a && d > FLAT * (a + b + d));
     }
-    odd as f64 / seen.max(1) as f64
+    Ok(odd as f64 / seen.max(1) as f64)
 }

@@ -1,8 +1,9 @@
 //! Level sets of the ways from the foot -> the skeleton: a tree of rings (a Reeb graph; Xu, Gossett and Chen 2007).
 
+use base::{CancelToken, Cancelled};
 use glam::DVec3;
 
-use crate::ways::{NONE, Ways};
+use crate::ways::{CUBES_AT_ONCE, NONE, Ways};
 
 /// One connected piece of a level set.
 #[derive(Clone, Debug)]
@@ -32,7 +33,12 @@ pub(crate) struct Rings {
 
 impl Rings {
     /// Cuts the cubes of one plant into bands of its ways.
-    pub(crate) fn new(ways: &Ways, band: f64, mine: impl Fn(usize) -> bool) -> Self {
+    pub(crate) fn new(
+        ways: &Ways,
+        band: f64,
+        mine: impl Fn(usize) -> bool,
+        cancel: &CancelToken,
+    ) -> Result<Self, Cancelled> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -46,7 +52,10 @@ impl Rings {
         let mut ring_of = vec![NONE; ways.len()];
         let mut rings: Vec<Ring> = vec![];
         let mut stack = vec![];
-        for &(level, first) in &order {
+        for (done, &(level, first)) in order.iter().enumerate() {
+            if done.is_multiple_of(CUBES_AT_ONCE) {
+                cancel.check()?;
+            }
             if ring_of[first as usize] != NONE {
                 continue;
             }
@@ -83,7 +92,7 @@ impl Rings {
         }
         let mut all = Self { rings, band };
         all.weigh();
-        all
+        Ok(all)
     }
 
     /// Loads and reaches anew, after rings were pruned.

@@ -3,7 +3,7 @@
 //! Along an axis the logarithm of the radius is that of the pipe model plus an offset that wanders slowly. Circles are
 //! measurements of it with an error of their own; a smoother (Rauch, Tung and Striebel 1965) weighs both.
 
-use base::{Draw, Run, Seed, map_indexed, ops};
+use base::{Cancelled, Draw, Run, Seed, map_indexed, ops};
 use glam::{DVec2, DVec3};
 
 use crate::circle::{Circle, fit_circle};
@@ -39,13 +39,21 @@ pub(crate) fn measure(
     axes: &[(u32, Vec<u32>)],
     noise: f64,
     run: &Run<'_>,
-) -> Vec<Vec<Option<Measured>>> {
+) -> Result<Vec<Vec<Option<Measured>>>, Cancelled> {
     let groups = axes.len().div_ceil(GROUP);
     let found = map_indexed(run.executor, groups, |g| {
         let part = &axes[g * GROUP..((g + 1) * GROUP).min(axes.len())];
-        part.iter().map(|(_, run)| along(points, ways, rings, run, noise)).collect::<Vec<_>>()
+        let measured = part.iter().map(|(_, own)| {
+            run.cancel.check()?;
+            Ok(along(points, ways, rings, own, noise))
+        });
+        measured.collect::<Result<Vec<_>, Cancelled>>()
     });
-    found.into_iter().flatten().collect()
+    let mut all = Vec::with_capacity(axes.len());
+    for group in found {
+        all.extend(group?);
+    }
+    Ok(all)
 }
 
 fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) -> Vec<Option<Measured>> {

@@ -1,6 +1,6 @@
 //! What stands on the ground: the tree, other trees, people, walls.
 
-use base::Report;
+use base::{CancelToken, Cancelled, Report};
 use glam::DVec3;
 
 use crate::ScanTreeError;
@@ -66,14 +66,19 @@ pub(crate) struct Stems {
 }
 
 impl Stems {
-    pub(crate) fn find(ways: &Ways, site: &Site<'_>, spec: &TreeScanSpec) -> Result<Self, ScanTreeError> {
-        let (piece, sizes) = ways.pieces(2, |_| true);
+    pub(crate) fn find(
+        ways: &Ways,
+        site: &Site<'_>,
+        spec: &TreeScanSpec,
+        cancel: &CancelToken,
+    ) -> Result<Self, ScanTreeError> {
+        let (piece, sizes) = ways.pieces(2, |_| true, cancel)?;
         let solid = |k: &Contact| k.half < (0.12 * site.height).max(0.05) && k.cubes.len() >= 3;
-        let mut contacts = touching(ways, site, &piece, (f64::NEG_INFINITY, site.contact));
+        let mut contacts = touching(ways, site, &piece, (f64::NEG_INFINITY, site.contact), cancel)?;
         if !contacts.iter().any(solid) {
             // A stem that spreads into roots is slim above them.
             let under = site.contact.max(ROOTED * site.height);
-            contacts = touching(ways, site, &piece, (0.5 * under, under));
+            contacts = touching(ways, site, &piece, (0.5 * under, under), cancel)?;
         }
         // How high each piece reaches, and which contact a loose piece above belongs to: the nearest below it.
         let mut top = vec![0.0_f64; sizes.len()];
@@ -132,7 +137,13 @@ impl Stems {
 
     /// Gives every cube to what it hangs together with: plant 0 is the tree. Gaps up to `gap` are bridged; returns how
     /// many of the tree.
-    pub(crate) fn claim(&self, site: &Site<'_>, ways: &mut Ways, gap: f64) -> usize {
+    pub(crate) fn claim(
+        &self,
+        site: &Site<'_>,
+        ways: &mut Ways,
+        gap: f64,
+        cancel: &CancelToken,
+    ) -> Result<usize, Cancelled> {
         let mut front = vec![];
         for (plant, k) in self.feet.iter().map(|k| (0, k)).chain((1..).zip(&self.others)) {
             // From the lowest cubes up.
@@ -145,12 +156,12 @@ impl Stems {
                 front.push(c);
             }
         }
-        ways.spread(&front, |_| true);
+        ways.spread(&front, |_| true, cancel)?;
         // Dust stays where it is.
         let sizes = &self.sizes;
         let piece: Vec<u32> =
             self.piece.iter().map(|&p| if sizes[p as usize] >= 4 { p } else { NONE }).collect();
-        ways.bridge(gap, &piece, |c| piece[c] != NONE)
+        ways.bridge(gap, &piece, |c| piece[c] != NONE, cancel)
     }
 
     pub(crate) fn tell(&self, ways: &Ways, report: &mut Report, tally: &mut ScanTally) {
@@ -187,9 +198,15 @@ impl Stems {
 }
 
 /// What touches the ground, up to a height over it; its middle and width are those of what is above another one.
-fn touching(ways: &Ways, site: &Site<'_>, piece: &[u32], (from, under): (f64, f64)) -> Vec<Contact> {
+fn touching(
+    ways: &Ways,
+    site: &Site<'_>,
+    piece: &[u32],
+    (from, under): (f64, f64),
+    cancel: &CancelToken,
+) -> Result<Vec<Contact>, Cancelled> {
     let over = |c: usize| site.over(ways.means[c]);
-    let (contact_of, counts) = ways.pieces(2, |c| over(c) < under);
+    let (contact_of, counts) = ways.pieces(2, |c| over(c) < under, cancel)?;
     let none = Contact { cubes: vec![], middle: DVec3::ZERO, half: f64::INFINITY, piece: NONE };
     let mut contacts = vec![none; counts.len()];
     for (c, &k) in (0_u32..).zip(&contact_of) {
@@ -209,7 +226,7 @@ fn touching(ways: &Ways, site: &Site<'_>, piece: &[u32], (from, under): (f64, f6
             places.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
         k.half = 0.5 * (b - a).x.max((b - a).z);
     }
-    contacts
+    Ok(contacts)
 }
 
 /// Loose pieces count for the contact that is nearest seen from above.

@@ -1,6 +1,6 @@
 //! A cloud with one tree or several -> the plant of one tree.
 
-use base::{Report, Run};
+use base::{Cancelled, Report, Run};
 use geom::Voxels;
 use glam::DVec3;
 use plant::{AxisKind, NodeId, Plant};
@@ -56,6 +56,7 @@ pub fn find_tree(
         return Err(ScanTreeError::TooFew(all.len(), FEWEST));
     }
     let mut tally = ScanTally { points: all.len(), ..ScanTally::default() };
+    run.cancel.check()?;
     let ground = Ground::find(&all);
     run.cancel.check()?;
     let (above, height) = above_ground(&all, ground.as_ref());
@@ -66,21 +67,25 @@ pub fn find_tree(
     if above.len() < FEWEST {
         return Err(ScanTreeError::TooFew(above.len(), FEWEST));
     }
-    let cell = spec.cell_m.unwrap_or_else(|| cell_of(&above, height));
+    run.cancel.check()?;
+    let cell = match spec.cell_m {
+        Some(cell) => cell,
+        None => cell_of(&above, height, run)?,
+    };
     let mut ways = Ways::new(&above, cell);
     tally.cell_m = ways.voxels.cell();
     run.cancel.check()?;
     warn_of_ground(&all, ground.as_ref(), report);
     let site = Site::of(&above, ground.as_ref(), height, cell);
-    let stems = Stems::find(&ways, &site, spec)?;
+    let stems = Stems::find(&ways, &site, spec, run.cancel)?;
     let gap = spec.gap_m.unwrap_or((0.04 * height).clamp(0.02 * height.min(5.0), 0.6)).max(4.0 * cell);
-    tally.bridges = stems.claim(&site, &mut ways, gap);
+    tally.bridges = stems.claim(&site, &mut ways, gap, run.cancel)?;
     run.cancel.check()?;
     stems.tell(&ways, report, &mut tally);
     let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
-    tally.scattered = foliage::scattered(&ways, mine);
+    tally.scattered = foliage::scattered(&ways, mine, run.cancel)?;
     let in_leaf = tally.scattered > foliage::SCATTERED;
-    let woody = in_leaf.then(|| foliage::wood(&ways, mine));
+    let woody = if in_leaf { Some(foliage::wood(&ways, mine, run.cancel)?) } else { None };
     let is_wood = |c: usize| mine(c) && woody.as_ref().is_none_or(|w| w[c]);
     let leaves = (0..ways.len()).filter(|&c| mine(c) && !is_wood(c));
     tally.leaves = leaves.map(|c| ways.voxels.rows(c).len()).sum();
@@ -94,22 +99,21 @@ pub fn find_tree(
              the wood that was seen; a scan without leaves is truer"
         );
     }
-    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), is_wood);
+    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), is_wood, run.cancel)?;
     run.cancel.check()?;
     rings.prune(3.0);
     tally.rings = rings.rings.iter().filter(|r| r.alive).count();
     let axes = rings.axes();
-    let mut found = measure(&above, &ways, &rings, &axes, spec.noise_m, run);
-    run.cancel.check()?;
+    let mut found = measure(&above, &ways, &rings, &axes, spec.noise_m, run)?;
     centre(&mut rings, &axes, &found);
     // Along the new middles the sections are truer.
-    found = measure(&above, &ways, &rings, &axes, spec.noise_m, run);
-    run.cancel.check()?;
+    found = measure(&above, &ways, &rings, &axes, spec.noise_m, run)?;
     centre(&mut rings, &axes, &found);
     tally.circles = found.iter().flatten().flatten().count();
     for ring in rings.rings.iter().filter(|r| r.alive) {
         tally.wood += ring.cubes.iter().map(|&c| ways.voxels.rows(c as usize).len()).sum::<usize>();
     }
+    run.cancel.check()?;
     let foot = stems.foot(&site, &rings);
     let (plant, pipes) = wood(&above, &ways, &rings, &axes, &found, foot, in_leaf);
     (tally.pipe_exponent, tally.pipe_scatter) = (1.0 / pipes.b, pipes.scatter);
@@ -141,16 +145,17 @@ fn above_ground(all: &[DVec3], ground: Option<&Ground>) -> (Vec<DVec3>, f64) {
 }
 
 /// Cubes with three points or more in the mean, as far as the size of the tree allows.
-fn cell_of(points: &[DVec3], height: f64) -> f64 {
+fn cell_of(points: &[DVec3], height: f64, run: &Run<'_>) -> Result<f64, Cancelled> {
     let mut cell = height / 1200.0;
     while cell < height / 150.0 {
+        run.cancel.check()?;
         let v = Voxels::with_cell(points, cell);
         if points.len() as f64 >= 3.0 * v.len() as f64 && v.len() < 3_000_000 {
             break;
         }
         cell *= 1.25;
     }
-    cell
+    Ok(cell)
 }
 
 /// Brings another axis up.

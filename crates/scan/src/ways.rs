@@ -2,9 +2,12 @@
 
 use std::collections::BinaryHeap;
 
+use base::{CancelToken, Cancelled};
 use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
+/// Cubes that are gone through between two looks whether the tree is still wanted: some milliseconds.
+pub(crate) const CUBES_AT_ONCE: usize = 4096;
 /// No cube.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -41,10 +44,15 @@ impl Ways {
 
     /// The connected piece of each cube, and the number of cubes of each piece. Cubes for which `open` is false are in
     /// none.
-    pub(crate) fn pieces(&self, reach: i32, open: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<u32>) {
+    pub(crate) fn pieces(
+        &self,
+        reach: i32,
+        open: impl Fn(usize) -> bool,
+        cancel: &CancelToken,
+    ) -> Result<(Vec<u32>, Vec<u32>), Cancelled> {
         let mut piece = vec![NONE; self.len()];
         let mut sizes: Vec<u32> = vec![];
-        let mut stack = vec![];
+        let (mut stack, mut done) = (vec![], 0_usize);
         for first in 0..self.len() {
             if piece[first] != NONE || !open(first) {
                 continue;
@@ -56,6 +64,10 @@ impl Ways {
             stack.push(first);
             while let Some(c) = stack.pop() {
                 sizes[mark as usize] += 1;
+                done += 1;
+                if done.is_multiple_of(CUBES_AT_ONCE) {
+                    cancel.check()?;
+                }
                 self.voxels.near(c, reach, |k| {
                     if piece[k] == NONE && open(k) {
                         piece[k] = mark;
@@ -64,15 +76,24 @@ impl Ways {
                 });
             }
         }
-        (piece, sizes)
+        Ok((piece, sizes))
     }
 
     /// Shortest ways from cubes whose way is known (Dijkstra 1959), over cubes for which `open` is true.
-    pub(crate) fn spread(&mut self, from: &[u32], open: impl Fn(usize) -> bool) {
+    pub(crate) fn spread(
+        &mut self,
+        from: &[u32],
+        open: impl Fn(usize) -> bool,
+        cancel: &CancelToken,
+    ) -> Result<(), Cancelled> {
         let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c as usize], c)).collect();
-        let mut near = Vec::new();
+        let (mut near, mut done) = (Vec::new(), 0_usize);
         while let Some(Step(way, at)) = heap.pop() {
             let c = at as usize;
+            done += 1;
+            if done.is_multiple_of(CUBES_AT_ONCE) {
+                cancel.check()?;
+            }
             if way > self.way[c] {
                 continue;
             }
@@ -92,11 +113,18 @@ impl Ways {
                 }
             }
         }
+        Ok(())
     }
 
     /// Bridges gaps of at most `gap` from what is reached to the pieces that are not, the shortest of each piece at a
     /// time, until none is left; the number of bridges.
-    pub(crate) fn bridge(&mut self, gap: f64, piece: &[u32], open: impl Fn(usize) -> bool) -> usize {
+    pub(crate) fn bridge(
+        &mut self,
+        gap: f64,
+        piece: &[u32],
+        open: impl Fn(usize) -> bool,
+        cancel: &CancelToken,
+    ) -> Result<usize, Cancelled> {
         let mut bridges = 0;
         // Each round reaches what is near; pieces behind pieces need several.
         for _ in 0..24 {
@@ -108,7 +136,10 @@ impl Ways {
             let places: Vec<DVec3> = reached.iter().map(|&c| self.means[c as usize]).collect();
             let tree = KdTree::new(&places);
             let mut best = base::LiteMap::<u32, (f64, u32, u32)>::new();
-            for &c in &lost {
+            for (done, &c) in lost.iter().enumerate() {
+                if done.is_multiple_of(CUBES_AT_ONCE) {
+                    cancel.check()?;
+                }
                 let p = piece[c as usize];
                 let known = best.get(&p).map_or(gap, |b| b.0);
                 let Some(k) = tree.nearest(self.means[c as usize], known) else { continue };
@@ -128,9 +159,9 @@ impl Ways {
                 front.push(to);
                 bridges += 1;
             }
-            self.spread(&front, &open);
+            self.spread(&front, &open, cancel)?;
         }
-        bridges
+        Ok(bridges)
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "cubes are u32")]

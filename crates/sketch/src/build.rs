@@ -110,10 +110,12 @@ pub fn build_again(
     let leaves = leaf_shapes(&mut plant, &scene, reading);
     let templates: Vec<(ShapeId, Option<u32>)> = leaves.iter().map(|l| (l.shape, l.leaf.source)).collect();
     for leaf in leaves.iter().filter(|l| !crowned.holds(l.leaf.root)) {
+        run.cancel.check()?;
         place_leaf(&mut plant, &scene, leaf.leaf, (leaf.shape, &leaf.local), leaf.key, None);
     }
     run.cancel.check()?;
     for (i, flower) in reading.flowers.iter().enumerate().filter(|(_, f)| !crowned.holds(f.centre)) {
+        run.cancel.check()?;
         place_flower(&mut plant, &scene, i, flower, None);
     }
     for (i, thorn) in reading.thorns.iter().enumerate() {

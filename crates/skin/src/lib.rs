@@ -169,7 +169,7 @@ pub fn skin_laid_out(
     let wood = meshes.iter().map(|(_, m, _): &(Slot, TriMesh, _)| m.triangles.len()).sum();
     meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
-    Ok(parts::model(plant, meshes, spec, pictures, run.executor))
+    Ok(parts::model(plant, meshes, spec, pictures, run)?)
 }
 
 /// The vertices of each shape of a plant as [`skin()`] draws it, at scale 1; none of a shape that nothing uses.

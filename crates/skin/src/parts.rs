@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use base::Executor;
+use base::{Cancelled, Executor, Run};
 use glam::DVec2;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use plant::{Blade, Lift, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
@@ -180,7 +180,13 @@ impl Slot {
     }
 
     /// Its colour with relief; none for what has none. `old`: the plant has old bark, so that young bark is of twigs.
-    fn surface(self, spec: &SkinSpec, plant: &Plant, old: bool, executor: &dyn Executor) -> Option<Surface> {
+    fn surface(
+        self,
+        spec: &SkinSpec,
+        plant: &Plant,
+        old: bool,
+        run: &Run<'_>,
+    ) -> Result<Option<Surface>, Cancelled> {
         let size = spec.texture_size.clamp(64, 4096);
         let leaves = |inks: &LeafInks, needled: bool| {
             let venation = if needled { Some(VeinPattern::Needle) } else { spec.venation };
@@ -196,29 +202,28 @@ impl Slot {
                     inks,
                     wood: spec.bark.unwrap_or_default().of(true).1.srgb(),
                 };
-                return atlas(&what, size, executor);
+                return atlas(&what, size, run);
             }
             match venation {
-                Some(venation) => {
-                    leaf(venation, &own.cloned().unwrap_or_else(any_blade), inks, size, executor)
-                }
-                None => leaf(VeinPattern::Pinnate, &veined(plant), inks, size, executor),
+                Some(venation) => leaf(venation, &own.cloned().unwrap_or_else(any_blade), inks, size, run),
+                None => leaf(VeinPattern::Pinnate, &veined(plant), inks, size, run),
             }
         };
-        Some(match self {
+        let painted = match self {
             Self::Bark | Self::YoungBark => {
                 let twig = old && self == Self::YoungBark;
                 let (kind, colour) = spec.bark.unwrap_or_default().of(twig);
-                bark(kind, colour.srgb(), if twig { size / 2 } else { size }, executor)
+                bark(kind, colour.srgb(), if twig { size / 2 } else { size }, run)
             }
             Self::Leaf(Coat::Natural) => leaves(&GREEN, false),
             Self::Leaf(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN, false),
             Self::Needles(Coat::Natural) => leaves(&GREEN, true),
             Self::Needles(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN, true),
-            Self::Petal(Coat::Natural, color) => petals(&petal_inks(color), size / 2, executor),
-            Self::Petal(Coat::Tinted | Coat::Drawn, _) => petals(&PALE_PETAL, size / 2, executor),
-            _ => return None,
-        })
+            Self::Petal(Coat::Natural, color) => petals(&petal_inks(color), size / 2, run),
+            Self::Petal(Coat::Tinted | Coat::Drawn, _) => petals(&PALE_PETAL, size / 2, run),
+            _ => return Ok(None),
+        };
+        painted.map(Some)
     }
 
     /// Linear colour that stands for the texture where none is wanted: its mean.
@@ -275,18 +280,18 @@ impl Slot {
         (spec, pictures): (&SkinSpec, SurfacePictures<'_>),
         plant: &Plant,
         old: bool,
-        executor: &dyn Executor,
-    ) -> Material {
-        let textures = spec.textures.then_some(executor);
+        run: &Run<'_>,
+    ) -> Result<Material, Cancelled> {
+        let textures = spec.textures.then_some(run.executor);
         let (kind, known) = (self.kind(), self.known_color(plant, spec, old));
         let mut m = Material::plain(self.names(&spec.worn).1, kind, [1.0; 3]);
         m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
         if let Self::Worn(_, row) = self {
             let painted = spec.textures || spec.worn.always;
             if let Some(cloth) = spec.worn.cloths.get(row) {
-                cloth.dress(&mut m, painted, executor);
+                cloth.dress(&mut m, painted, run.executor);
             }
-            return m;
+            return Ok(m);
         }
         m.texture = match self {
             Self::Traced(_) => pictures.traced.map(|t| Arc::clone(&t.texture)),
@@ -294,7 +299,7 @@ impl Slot {
             _ if known.is_some() => None,
             _ => textures.zip(self.motif()).map(|(executor, motif)| motif.texture(executor)),
         };
-        let relief = textures.and_then(|executor| self.surface(spec, plant, old, executor));
+        let relief = if spec.textures { self.surface(spec, plant, old, run)? } else { None };
         if m.texture.is_none() {
             m.base_color = known.unwrap_or_else(|| self.plain_color());
         }
@@ -322,7 +327,7 @@ impl Slot {
                 m.alpha = AlphaMode::Mask;
             }
         }
-        m
+        Ok(m)
     }
 }
 
@@ -384,15 +389,15 @@ fn mean(texture: &Texture) -> [f32; 3] {
     [0, 1, 2].map(|k| (seen().map(|p| base::light_of_byte(p[k])).sum::<f64>() / count) as f32)
 }
 
-/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `executor`, if wanted. Also
+/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted if they are wanted. Also
 /// what lies where in the parts.
 pub(crate) fn model(
     plant: &Plant,
     mut meshes: Vec<(Slot, TriMesh, Vec<Piece>)>,
     spec: &SkinSpec,
     pictures: SurfacePictures<'_>,
-    executor: &dyn Executor,
-) -> (Model, Layout) {
+    run: &Run<'_>,
+) -> Result<(Model, Layout), Cancelled> {
     let mut model = Model { name: plant.name.clone(), ..Model::default() };
     let mut layout = Layout::default();
     meshes.retain(|(_, m, _)| !m.triangles.is_empty());
@@ -404,16 +409,17 @@ pub(crate) fn model(
         let n = rest.iter().take_while(|(s, ..)| *s == slot).count();
         let (these, after) = rest.split_at(n);
         rest = after;
+        run.cancel.check()?;
         let mesh = match these {
             [_] => first.clone(),
             _ => joined(these),
         };
         let material = MaterialId::new(model.materials.len());
-        model.materials.push(slot.material((spec, pictures), plant, old, executor));
+        model.materials.push(slot.material((spec, pictures), plant, old, run)?);
         layout.push(these.iter().flat_map(|(_, _, pieces)| pieces));
         model.parts.push(Part { name: slot.names(&spec.worn).0.into_owned(), material, mesh });
     }
-    (model, layout)
+    Ok((model, layout))
 }
 
 fn joined(meshes: &[(Slot, TriMesh, Vec<Piece>)]) -> TriMesh {

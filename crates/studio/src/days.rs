@@ -99,8 +99,8 @@ impl ScannedDays {
     ///
     /// # Errors
     /// As [`bloom::fit_stages`].
-    pub fn law(&self, name: &str) -> Result<GrowthLaw, BloomError> {
-        bloom::fit_stages(name, &self.settled.stages, &LawSpec::default())
+    pub fn law(&self, name: &str, run: &Run<'_>) -> Result<GrowthLaw, BloomError> {
+        bloom::fit_stages(name, &self.settled.stages, &LawSpec::default(), run)
     }
 
     /// The organs of a day, each with its points and their colours, in the frame of the plant; without a law everything goes at an even pace.

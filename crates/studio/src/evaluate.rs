@@ -200,7 +200,7 @@ impl Evaluator {
             photo.place.opacity = 1.0;
         }
         self.mesh(&options.skin, photo, &mut stages, run)?;
-        Ok(self.item(&drawing.name, stages))
+        Ok(self.item(&drawing.name, stages, run))
     }
 
     /// For a preview: classes of strokes that are as they were.
@@ -293,8 +293,13 @@ impl Evaluator {
         // Another leaf is not what was drawn: then it has to be measured before that.
         let later = self.later && leaf.is_none() && strokes.value.0.strokes.len() > MANY;
         let wanted = !self.preview && !later;
-        let fidelity = wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run).into());
-        run.cancel.check()?;
+        let start = run.clock.now_ms();
+        let fidelity = if wanted {
+            Some(sketch::fidelity(&built, &reading.value, &strokes.value.0, run)?.into())
+        } else {
+            None
+        };
+        stages.push(Stage { name: "fidelity", ms: run.clock.now_ms() - start });
         // After the measure against the drawing: the user's leaf is not what was drawn.
         if let Some(leaf) = leaf {
             let count = leaf.apply(&mut built.plant);
@@ -324,8 +329,7 @@ impl Evaluator {
         if self.preview || fidelity.is_some() {
             return Ok(None);
         }
-        let found = sketch::fidelity(built, &reading.value, &strokes.value.0, run).into();
-        run.cancel.check()?;
+        let found = sketch::fidelity(built, &reading.value, &strokes.value.0, run)?.into();
         *fidelity = Some(found);
         Ok(Some(found))
     }
@@ -421,7 +425,8 @@ impl Evaluator {
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }
 
-    fn item(&self, name: &str, stages: Vec<Stage>) -> ItemReport {
+    fn item(&self, name: &str, stages: Vec<Stage>, run: &Run<'_>) -> ItemReport {
+        let start = run.clock.now_ms();
         let mut report = Report::default();
         stages.iter().for_each(|s| report.book(s.name, s.ms));
         let (Some(strokes), Some(reading), Some(plant), Some(model), Some(shown)) =
@@ -445,6 +450,8 @@ impl Evaluator {
         let mut counts = Counts::of_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
+        let digest = if self.preview || self.previewing { String::new() } else { shown.digest_hex() };
+        report.book("measure", run.clock.now_ms() - start);
         let mut item = ItemReport {
             name: name.to_owned(),
             output: String::new(),
@@ -453,7 +460,7 @@ impl Evaluator {
             timings_ms: TimingsMs::from_report(&report),
             fidelity: plant.value.1.unwrap_or_default(),
             readings: ReadingReport::of(&reading.value),
-            digest: if self.preview || self.previewing { String::new() } else { shown.digest_hex() },
+            digest,
             edits: told.to_vec(),
             ..ItemReport::default()
         }

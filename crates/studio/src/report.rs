@@ -301,8 +301,17 @@ pub struct TimingsMs {
     pub structure: f64,
     /// Filling, depth, radii.
     pub depth: f64,
+    /// Measuring how true the plant is to its drawing.
+    #[serde(default)]
+    pub fidelity: f64,
     /// Skinning.
     pub mesh: f64,
+    /// Measures and digest of the plant.
+    #[serde(default)]
+    pub measure: f64,
+    /// Drawing the picture.
+    #[serde(default)]
+    pub picture: f64,
     /// Writing the model.
     pub write: f64,
     /// From the command's start to its last file but the report: reading, computing, pictures and writing. Of a batch:
@@ -320,7 +329,10 @@ impl TimingsMs {
             classify: of("classify"),
             structure: of("structure"),
             depth: of("depth"),
+            fidelity: of("fidelity"),
             mesh: of("mesh"),
+            measure: of("measure"),
+            picture: of("picture"),
             write: of("write"),
             total: report.stages.iter().map(|s| s.ms).sum(),
         }

@@ -57,7 +57,8 @@ fn sketch_writes_model_picture_and_report() {
         assert!(item["counts"][key].is_u64(), "{key}");
     }
     assert!(item["counts"]["triangles"].as_u64().unwrap() > 100);
-    for key in ["read", "preprocess", "classify", "structure", "depth", "mesh", "write", "total"] {
+    let stages = ["preprocess", "classify", "structure", "depth", "fidelity", "mesh", "measure"];
+    for key in ["read", "write", "picture", "total"].iter().chain(&stages) {
         assert!(item["timings_ms"][key].as_f64().unwrap() >= 0.0, "{key}");
     }
     for key in ["reprojection_mean", "reprojection_p95", "excess_mean", "excess_p95", "compared"] {

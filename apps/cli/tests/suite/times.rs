@@ -7,6 +7,34 @@ use std::time::Instant;
 
 use serde_json::Value;
 
+/// Strokes that lie on one another, as InkML: what no stage timed took nine tenths of the time.
+#[test]
+fn the_stages_of_a_drawing_are_its_whole_time() {
+    let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stages");
+    let _ = fs::remove_dir_all(&at);
+    fs::create_dir_all(&at).unwrap();
+    let points: Vec<String> = (0..40).map(|i| format!("{} {}", 100 + (i % 7), 100 + 5 * i)).collect();
+    let trace = format!("<trace>{}</trace>\n", points.join(", "));
+    let ink = format!("<ink xmlns=\"http://www.w3.org/2003/InkML\">\n{}</ink>\n", trace.repeat(700));
+    fs::write(at.join("pile.inkml"), ink).unwrap();
+    let options = ["--png", "p.png", "--size", "800x600", "--json"];
+    let run = Command::new(env!("CARGO_BIN_EXE_burgeon"));
+    let out = { run }
+        .args(["sketch", "pile.inkml", "-o", "pile.glb"])
+        .args(options)
+        .current_dir(&at)
+        .output()
+        .unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let report: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let times = report["items"][0]["timings_ms"].as_object().unwrap();
+    let ms = |of: &dyn Fn(&str) -> bool| -> f64 {
+        times.iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms.as_f64().unwrap()).sum()
+    };
+    let (stages, total) = (ms(&|name| name != "total"), ms(&|name| name == "total"));
+    assert!(stages >= 0.95 * total && stages <= 1.001 * total, "{stages:.0} of {total:.0} ms: {times:?}");
+}
+
 #[test]
 fn the_total_is_the_whole_command() {
     let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join("times");

@@ -90,7 +90,7 @@ fn the_series_is_split_alike_and_every_day_is_predicted() {
         let names: Vec<&str> = s.organs.iter().map(|o| o.name.as_str()).collect();
         assert!(["stem", "leaf-1", "leaf-2"].iter().all(|n| names.contains(n)), "{names:?}");
     }
-    let law = fit_stages("tomato", &stages, &LawSpec::default()).unwrap();
+    let law = fit_stages("tomato", &stages, &LawSpec::default(), &Run::plain()).unwrap();
     for l in &law.laws {
         println!(
             "{} {} {}: K {:.2} p0 {:.2} r {:.3} offset {:.2} R2 {:.3} values {:.2?}",
@@ -148,7 +148,7 @@ fn the_plant_was_turned_and_moved_and_its_organs_with_it() {
         assert!(back.zip(all(stage)).all(|(a, b)| a.distance(b) < 1e-9), "day {}", stage.day);
     }
     // The three days determine no law of a leaf's place: it swings more than it grows.
-    let law = fit_stages("tomato", &settled.stages, &LawSpec::default()).unwrap();
+    let law = fit_stages("tomato", &settled.stages, &LawSpec::default(), &Run::plain()).unwrap();
     for l in law.laws.iter().filter(|l| l.is_determined()) {
         let (law, line) = (l.loo_rmse.unwrap(), l.straight_rmse.unwrap());
         assert!(law < line, "{} {} {}: {law} {line}", l.organ, l.region, l.axis.word());

@@ -54,7 +54,7 @@ fn a_flower_that_opens_by_a_law_gives_its_pace_back() {
         let days: Vec<f64> = days.iter().map(|d| d * last).collect();
         let made = stages(&days, &law, 1e-4);
         let settled = settle(&made, &MotionSpec::default().register, &run).unwrap();
-        let got = fit_stages("lily", &settled.stages, &LawSpec::default()).unwrap();
+        let got = fit_stages("lily", &settled.stages, &LawSpec::default(), &Run::plain()).unwrap();
         let able = got.laws.iter().filter(|l| l.is_determined()).count();
         let mut worst = 0.0_f64;
         for k in 1..10 {

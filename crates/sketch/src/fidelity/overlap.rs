@@ -4,7 +4,7 @@
 
 use core::ops::Range;
 
-use base::map_indexed;
+use base::{Cancelled, LiteMap, map_until_cancelled};
 use geom::contains_along;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Plant, Shape};
@@ -24,19 +24,19 @@ const ACROSS: u32 = 1393;
 ///
 /// Seen from the front. Gaps between leaves up to an eighth of the contour's inradius count as covered, between bare
 /// twigs up to half of it: a person, too, sees one crown.
-pub(super) fn overlap(built: &Built, run: &base::Run<'_>) -> Option<f64> {
-    let shares = map_indexed(run.executor, built.grown.len(), |i| {
+pub(super) fn overlap(built: &Built, run: &base::Run<'_>) -> Result<Option<f64>, Cancelled> {
+    let shares = map_until_cancelled(run, built.grown.len(), |i| {
         let grown = &built.grown[i];
         let mut grid = Grid::new(&grown.outline)?;
         grid.cover(&built.plant, grown);
         Some(grid.shared(grown))
-    });
+    })?;
     let (mut both, mut either) = (0.0, 0.0);
     for (b, e) in shares.into_iter().flatten() {
         both += b;
         either += e;
     }
-    (either > 0.0).then(|| both / either)
+    Ok((either > 0.0).then(|| both / either))
 }
 
 struct Grid {
@@ -83,14 +83,11 @@ impl Grid {
             line.windows(2).for_each(|w| self.line(w[0].truncate(), w[1].truncate()));
         }
         // One surface for each shape: a crown's leaves share a few.
-        let blades: Vec<Option<Vec<DVec3>>> = (plant.shapes.iter())
-            .map(|shape| match shape {
-                Shape::Blade(blade) => Some(blade.surface().points(&blade.outline)),
-                _ => None,
-            })
-            .collect();
+        let mut blades: LiteMap<usize, Vec<DVec3>> = LiteMap::new();
         for organ in &plant.organs[grown.organs.clone()] {
-            let Some(Some(blade)) = blades.get(organ.shape.index()) else { continue };
+            let Some(Shape::Blade(shape)) = plant.shapes.get(organ.shape.index()) else { continue };
+            let blade =
+                blades.entry(organ.shape.index()).or_insert_with(|| shape.surface().points(&shape.outline));
             let ring: Vec<DVec2> =
                 blade.iter().map(|&p| organ.frame.place(p, organ.scale).truncate()).collect();
             self.polygon(&ring);

@@ -2,6 +2,8 @@
 //!
 //! `Built + Reading -> ShownLine`
 
+use core::ops::Range;
+
 use base::ops;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Organ, OrganKind, Plant, Shape};
@@ -25,12 +27,12 @@ pub(super) struct ShownLine {
 pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
     let plant = &built.plant;
     let seen = |p: DVec3| built.map.ink_from_plant(p.truncate());
-    let grown_axis = |i: usize| built.grown.iter().any(|g| g.axes.contains(&i));
-    let grown_organ = |i: usize| built.grown.iter().any(|g| g.organs.contains(&i));
+    let grown_axis = rows_within(plant.axes.len(), built.grown.iter().map(|g| g.axes.clone()));
+    let grown_organ = rows_within(plant.organs.len(), built.grown.iter().map(|g| g.organs.clone()));
     let drawn_thick = reading.axes.iter().filter(|a| !a.half_width.is_empty());
     let thick = base::set_of(drawn_thick.filter_map(|a| a.source));
     let mut lines = Vec::new();
-    for (i, axis) in plant.axes.iter().enumerate().filter(|&(i, _)| !grown_axis(i)) {
+    for (i, axis) in plant.axes.iter().enumerate().filter(|&(i, _)| !grown_axis[i]) {
         let id = AxisId::new(i);
         let middle: Vec<DVec2> = plant.axis_points(id).iter().map(|&p| seen(p)).collect();
         let drawn_thick = axis.source.is_some_and(|s| thick.contains_key(&s));
@@ -38,10 +40,19 @@ pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
             if drawn_thick { edges(&middle, plant.axis_radii(id), built.map.metres_per_ink) } else { middle };
         lines.push(ShownLine { points, outline: true });
     }
-    for (_, organ) in plant.organs.iter().enumerate().filter(|&(i, o)| !grown_organ(i) && lies_as_drawn(o)) {
+    for (_, organ) in plant.organs.iter().enumerate().filter(|&(i, o)| !grown_organ[i] && lies_as_drawn(o)) {
         organ_lines(plant, organ, seen, &mut lines);
     }
     lines
+}
+
+/// Of so many rows, which lie in one of the ranges.
+fn rows_within(count: usize, ranges: impl Iterator<Item = Range<usize>>) -> Vec<bool> {
+    let mut within = vec![false; count];
+    for range in ranges {
+        within[range.start.min(count)..range.end.min(count)].fill(true);
+    }
+    within
 }
 
 /// Whether the front view of an organ is meant to be its drawing.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Digest, Executor, map_indexed, ops};
+use base::{Cancelled, Digest, Run, map_until_cancelled, ops};
 use glam::DVec2;
 use mesh::{Maps, Texture};
 use plant::{Blade, SeenNeedle};
@@ -28,7 +28,7 @@ pub(crate) struct Leafage<'a> {
 
 /// The atlas with cells of `size` pixels a side: the leaf, then the shoots. Where nothing is, alpha is 0 and the colour that of
 /// leaves, so that coarser copies have no seams.
-pub(crate) fn atlas(what: &Leafage<'_>, size: u32, executor: &dyn Executor) -> Surface {
+pub(crate) fn atlas(what: &Leafage<'_>, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content.add("atlas").add(&(what.venation as u32)).add(&size);
     content.add(&what.leaf.outline).add(&what.leaf.midrib).add(&what.leaf.veins);
@@ -42,14 +42,14 @@ pub(crate) fn atlas(what: &Leafage<'_>, size: u32, executor: &dyn Executor) -> S
         shoots.digest(&mut content);
     }
     Surface::kept(content, || {
-        let plan = Plan::new(what.venation, what.leaf, executor);
+        let plan = Plan::new(what.venation, what.leaf, run.executor);
         let cut = Cut::new(what.leaf);
         let tiles = what.shoots.map_or(&[][..], |s| &s.tiles);
         let cells: Vec<Surface> = core::iter::once(None)
             .chain(tiles.iter().map(Some))
-            .map(|tile| Cell::new(what, (&plan, &cut), tile).painted(size, executor))
-            .collect();
-        joined(&cells, size)
+            .map(|tile| Cell::new(what, (&plan, &cut), tile).painted(size, run))
+            .collect::<Result<_, Cancelled>>()?;
+        Ok(joined(&cells, size))
     })
 }
 
@@ -145,7 +145,7 @@ impl<'a> Cell<'a> {
         if between { GAP } else { 0.0 }
     }
 
-    fn painted(&self, size: u32, executor: &dyn Executor) -> Surface {
+    fn painted(&self, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
         let sheet = Sheet {
             size: (size, size),
             extent: (self.extent.x, self.extent.y),
@@ -153,9 +153,9 @@ impl<'a> Cell<'a> {
             tiles: false,
             mean: None,
         };
-        let Surface { color, maps } = surface(executor, &sheet, true, &|u, v| self.at(u, v).spot);
+        let Surface { color, maps } = surface(run, &sheet, true, &|u, v| self.at(u, v).spot)?;
         let pixel = 1.0 / f64::from(size);
-        let rows = map_indexed(executor, size as usize, |j| {
+        let rows = map_until_cancelled(run, size as usize, |j| {
             let v = j as f64 * pixel;
             let mut row = Vec::with_capacity(size as usize);
             for i in 0..size {
@@ -169,7 +169,7 @@ impl<'a> Cell<'a> {
                 row.push((byte(alpha), self.at(u + 0.5 * pixel, v + 0.5 * pixel).tilt));
             }
             row
-        });
+        })?;
         let places: Vec<(u8, DVec2)> = rows.concat();
         let mut color = Arc::unwrap_or_clone(color);
         for (rgba, (alpha, _)) in color.pixels.chunks_exact_mut(4).zip(&places) {
@@ -182,7 +182,7 @@ impl<'a> Cell<'a> {
             }
             Arc::new(normal)
         });
-        Surface { color: Arc::new(color), maps: Maps { normal, ..maps } }
+        Ok(Surface { color: Arc::new(color), maps: Maps { normal, ..maps } })
     }
 }
 

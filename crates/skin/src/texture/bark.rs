@@ -1,7 +1,7 @@
 //! Bark: a relief with its colours, which repeats in both directions; v runs up the trunk. A tile is a third of the way
 //! around the thickest branch.
 
-use base::{Digest, Executor, ops};
+use base::{Cancelled, Digest, Run, ops};
 
 use super::noise::{Plates, gradient, octaves, strokes};
 use super::relief::{Sheet, Spot, Surface, surface};
@@ -11,13 +11,13 @@ use crate::natural::BarkKind;
 /// A bark and its colour on the whole (sRGB, 0 to 1); of birch that of its white.
 ///
 /// `size` pixels square, 64 to 4096. Painted once for each content.
-pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, executor: &dyn Executor) -> Surface {
+pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content.add("bark").add(&(kind as u32)).add(&colour).add(&size);
     Surface::kept(content, || {
         let mean = (kind != BarkKind::Birch).then_some(colour);
         let sheet = Sheet { size: (size, size), extent: (1.0, 1.0), depth: kind.depth(), tiles: true, mean };
-        let paint = |at: &(dyn Fn(f64, f64) -> Spot + Sync)| surface(executor, &sheet, false, at);
+        let paint = |at: &(dyn Fn(f64, f64) -> Spot + Sync)| surface(run, &sheet, false, at);
         match kind {
             BarkKind::Furrowed => paint(&furrowed(colour)),
             BarkKind::Plated => paint(&plated(colour)),
@@ -331,13 +331,12 @@ fn twig(colour: Paint, u: f64, v: f64) -> Spot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::Serial;
 
     #[test]
     fn every_bark_has_its_colour_no_seam_and_sound_normals() {
         let colour = [0.50, 0.44, 0.38];
         for kind in BarkKind::ALL {
-            let s = bark(kind, colour, 128, &Serial);
+            let s = bark(kind, colour, 128, &Run::plain()).expect("not cancelled");
             let mean = |t: &mesh::Texture, k: usize| {
                 let sum: u64 = t.pixels.chunks_exact(4).map(|p| u64::from(p[k])).sum();
                 sum / u64::from(t.width * t.height)
@@ -375,9 +374,22 @@ mod tests {
 
     #[test]
     fn a_surface_is_painted_once_for_each_content() {
-        let twice = [1, 2].map(|_| bark(BarkKind::Twig, [0.4, 0.3, 0.2], 64, &Serial).color);
+        let twice = [1, 2]
+            .map(|_| bark(BarkKind::Twig, [0.4, 0.3, 0.2], 64, &Run::plain()).expect("not cancelled").color);
         assert!(std::sync::Arc::ptr_eq(&twice[0], &twice[1]), "kept");
-        let other = bark(BarkKind::Twig, [0.4, 0.3, 0.3], 64, &Serial).color;
+        let other = bark(BarkKind::Twig, [0.4, 0.3, 0.3], 64, &Run::plain()).expect("not cancelled").color;
         assert!(!std::sync::Arc::ptr_eq(&twice[0], &other), "another colour is another surface");
+    }
+
+    #[test]
+    fn what_is_stopped_is_not_kept() {
+        let (plain, cancel) = (Run::plain(), base::CancelToken::new());
+        let stopped = Run { cancel: &cancel, ..plain };
+        cancel.cancel();
+        // A colour that no other test has.
+        let paint = |run: &Run<'_>| bark(BarkKind::Twig, [0.41, 0.32, 0.23], 64, run);
+        assert!(paint(&stopped).is_err());
+        assert_eq!(paint(&plain).expect("not cancelled").color.pixels.len(), 4 * 64 * 64);
+        assert!(paint(&stopped).is_ok(), "what was painted to its end is known");
     }
 }

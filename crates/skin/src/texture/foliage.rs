@@ -1,7 +1,7 @@
 //! Leaves with the veins of their kind, and petals: colour, relief and what light comes through. u across with the midrib
 //! at one half, v from the tip (0) down to the root (1), as in [`BladeChart`].
 
-use base::{Digest, Executor, map_indexed, ops};
+use base::{Cancelled, Digest, Executor, Run, map_indexed, ops};
 use glam::DVec2;
 use plant::{Blade, BladeVein};
 
@@ -24,8 +24,8 @@ pub(crate) fn leaf(
     blade: &Blade,
     inks: &LeafInks,
     size: u32,
-    executor: &dyn Executor,
-) -> Surface {
+    run: &Run<'_>,
+) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content
         .add("leaf")
@@ -36,7 +36,7 @@ pub(crate) fn leaf(
         .add(&blade.veins);
     content.add(&inks.dark).add(&inks.light).add(&inks.vein);
     Surface::kept(content, || {
-        let plan = Plan::new(venation, blade, executor);
+        let plan = Plan::new(venation, blade, run.executor);
         let width = match plan.extent.x / plan.extent.y {
             wide if wide > 0.7 => size,
             wide if wide > 0.3 => size / 2,
@@ -49,7 +49,7 @@ pub(crate) fn leaf(
             tiles: false,
             mean: None,
         };
-        surface(executor, &sheet, true, &|u, v| plan.spot(inks, u, v))
+        surface(run, &sheet, true, &|u, v| plan.spot(inks, u, v))
     })
 }
 
@@ -470,7 +470,7 @@ fn at_share(points: &[DVec2], share: f64) -> DVec2 {
 }
 
 /// The surface of a petal, twice as long as it is wide; `size` pixels long.
-pub(crate) fn petals(inks: &PetalInks, size: u32, executor: &dyn Executor) -> Surface {
+pub(crate) fn petals(inks: &PetalInks, size: u32, run: &Run<'_>) -> Result<Surface, Cancelled> {
     let mut content = Digest::new();
     content.add("petal").add(&size);
     inks.each().iter().for_each(|ink| {
@@ -479,7 +479,7 @@ pub(crate) fn petals(inks: &PetalInks, size: u32, executor: &dyn Executor) -> Su
     Surface::kept(content, || {
         let sheet =
             Sheet { size: (size / 2, size), extent: (0.6, 1.0), depth: 0.006, tiles: false, mean: None };
-        surface(executor, &sheet, true, &|u, v| {
+        surface(run, &sheet, true, &|u, v| {
             let (paint, vein) = petal(inks, u, v);
             // Cells of the skin stand up: velvet.
             let skin = gradient(97.0 * u, 193.0 * v, (97, 193), 81);
@@ -503,7 +503,7 @@ mod tests {
     #[test]
     fn a_midrib_is_pale_and_thick_but_on_needles() {
         for venation in VeinPattern::ALL {
-            let s = leaf(venation, &any_blade(), &GREEN, 256, &Serial);
+            let s = leaf(venation, &any_blade(), &GREEN, 256, &Run::plain()).expect("not cancelled");
             let (width, height) = (s.color.width, s.color.height);
             let column = |t: &mesh::Texture, x: u32, k: usize| {
                 let sum = (height / 4..height * 3 / 4)

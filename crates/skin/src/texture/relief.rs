@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use base::{Digest, Executor, map_indexed};
+use base::{Cancelled, Digest, Run, map_until_cancelled};
 use mesh::{Maps, Texture};
 
 use super::{Paint, byte};
@@ -44,23 +44,27 @@ pub(crate) struct Surface {
 const KEPT: usize = 96 << 20;
 
 impl Surface {
-    /// The surface of this content, painted once and kept; the oldest go where there are too many.
-    pub(crate) fn kept(content: Digest, paint: impl FnOnce() -> Self) -> Self {
+    /// The surface of this content, painted once and kept, if it was painted to its end; the oldest go where there are too
+    /// many.
+    pub(crate) fn kept(
+        content: Digest,
+        paint: impl FnOnce() -> Result<Self, Cancelled>,
+    ) -> Result<Self, Cancelled> {
         static KNOWN: Mutex<Vec<(String, Surface)>> = Mutex::new(Vec::new());
         let key = content.hex();
         let lock = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, surface)) = lock().iter().find(|(k, _)| *k == key) {
-            return surface.clone();
+            return Ok(surface.clone());
         }
         // Not under the lock: the executor may paint other plants meanwhile.
-        let surface = paint();
+        let surface = paint()?;
         let mut known = lock();
         known.push((key, surface.clone()));
         let bytes = |known: &[(String, Self)]| known.iter().map(|(_, s)| s.bytes()).sum::<usize>();
         while known.len() > 1 && bytes(&known) > KEPT {
             known.remove(0);
         }
-        surface
+        Ok(surface)
     }
 
     fn bytes(&self) -> usize {
@@ -74,13 +78,13 @@ const ROWS: u32 = 8;
 /// Paints a surface; `at(u, v)` says what it is like, u to the right and v down, 0 to 1 each. The same bits for any
 /// executor. `thin`: light goes through it.
 pub(super) fn surface(
-    executor: &dyn Executor,
+    run: &Run<'_>,
     sheet: &Sheet,
     thin: bool,
     at: &(dyn Fn(f64, f64) -> Spot + Sync),
-) -> Surface {
+) -> Result<Surface, Cancelled> {
     let (width, height) = sheet.size;
-    let bands = map_indexed(executor, height.div_ceil(ROWS) as usize, |band| {
+    let bands = map_until_cancelled(run, height.div_ceil(ROWS) as usize, |band| {
         let first = ROWS * u32::try_from(band).unwrap_or(u32::MAX);
         let mut spots = Vec::with_capacity((width * ROWS) as usize);
         for j in first..height.min(first.saturating_add(ROWS)) {
@@ -88,11 +92,11 @@ pub(super) fn surface(
             spots.extend((0..width).map(|i| Seen::of(at((f64::from(i) + 0.5) / f64::from(width), v))));
         }
         spots
-    });
+    })?;
     let spots = bands.concat();
     let color = colored(&spots, sheet);
     let heights = Heights::new(&spots, sheet);
-    let bands = map_indexed(executor, height.div_ceil(ROWS) as usize, |band| {
+    let bands = map_until_cancelled(run, height.div_ceil(ROWS) as usize, |band| {
         let first = ROWS as usize * band;
         let last = (first + ROWS as usize).min(height as usize);
         let mut both = (Vec::new(), Vec::new());
@@ -105,7 +109,7 @@ pub(super) fn surface(
             }
         }
         both
-    });
+    })?;
     let texture = |pixels| Some(Arc::new(Texture { width, height, pixels }));
     let part = |k: usize| -> Vec<u8> {
         bands.iter().flat_map(|b| if k == 0 { b.0.iter() } else { b.1.iter() }).copied().collect()
@@ -124,7 +128,7 @@ pub(super) fn surface(
             None
         },
     };
-    Surface { color: Arc::new(Texture { width, height, pixels: color }), maps }
+    Ok(Surface { color: Arc::new(Texture { width, height, pixels: color }), maps })
 }
 
 /// A place as it is kept between the two passes.

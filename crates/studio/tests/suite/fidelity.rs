@@ -122,7 +122,7 @@ fn case(drawing: &Drawing) -> Case {
     let reading = reading::read(&ink, &classes, &mut report);
     let spec = SketchSpec::default();
     let built = sketch::build(&reading, &spec, Seed::new(1), &run, &mut report).expect("not cancelled");
-    let said = sketch::fidelity(&built, &reading, &ink, &run);
+    let said = sketch::fidelity(&built, &reading, &ink, &run).expect("not cancelled");
     Case { ink, reading, built, said }
 }
 
