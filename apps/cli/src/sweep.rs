@@ -155,7 +155,7 @@ fn finish(own: &Lease, list: &Path) -> io::Result<bool> {
     let may = |place: &Path, draft: &fs::Metadata| {
         draft.is_file()
             && own.owns(draft)
-            && !FileId::of(place).is_some_and(|id| inputs::read_as(&id).is_some())
+            && FileId::of(place).is_none_or(|id| inputs::read_as(&id).is_none())
     };
     if !rest.iter().all(|(_, place, _, draft)| may(place, draft)) {
         return Ok(false);

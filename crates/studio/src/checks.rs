@@ -28,7 +28,7 @@ pub struct PlausibilityLimits {
     /// The length of a leaf that is measured, metres: less than a millimetre is a unit that is wrong.
     pub blade_least_m: f64,
     /// The height of a stem over that at which a column of wood as thick as its foot would buckle under its own weight
-    /// (McMahon 1973; trees have a quarter of it). Culms are hollow: reeds of 4 m with 1 cm have 1.1.
+    /// (`McMahon` 1973; trees have a quarter of it). Culms are hollow: reeds of 4 m with 1 cm have 1.1.
     pub slender_most: f64,
     /// The volume of the shoot over the cube of the plant's longest side: a cactus that is a ball has 0.52.
     pub volume_most: f64,
@@ -92,7 +92,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
 };
 
 /// A column of green wood as thick as `d` metres buckles at this times d^(2/3) metres: 0.792 (E/w)^(1/3) with 1.05e6 m for
-/// its stiffness over its weight (McMahon 1973).
+/// its stiffness over its weight (`McMahon` 1973).
 const BUCKLING: f64 = 80.5;
 
 /// The names of all checks, which are the codes of their warnings.
@@ -141,7 +141,7 @@ impl Figure {
         let size = value.abs();
         match size {
             _ if size == 0.0 => format!("0{unit}"),
-            _ if size >= 1e6 || size < 1e-4 => format!("{value:.1e}{unit}"),
+            _ if !(1e-4..1e6).contains(&size) => format!("{value:.1e}{unit}"),
             _ if size >= 100.0 => format!("{value:.0}{unit}"),
             _ if size >= 1.0 => format!("{}{unit}", (value * 10.0).round() / 10.0),
             _ => format!("{}{unit}", (value * 1e4).round() / 1e4),

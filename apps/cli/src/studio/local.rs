@@ -66,10 +66,10 @@ impl Opener {
         let opener = Self(path);
         // A link is made of what needs no escape in HTML but `&`.
         let link = link.replace('&', "&amp;");
-        write!(
+        writeln!(
             file,
             "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>\
-             <meta http-equiv=refresh content=\"0;url={link}\"><title>Burgeon Studio</title><a href=\"{link}\">Burgeon Studio</a>\n"
+             <meta http-equiv=refresh content=\"0;url={link}\"><title>Burgeon Studio</title><a href=\"{link}\">Burgeon Studio</a>"
         )?;
         Ok(opener)
     }

@@ -1,5 +1,4 @@
 //! The built binary as other programs call it.
-#![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 use crate::tools;
 use std::fs;

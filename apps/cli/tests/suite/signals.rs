@@ -80,7 +80,7 @@ fn inputs(dir: &Path) {
     }
     fs::write(dir.join("hands.json"), replay::record(12)).unwrap();
     good(dir, &["grow", "hazel", "-o", "tree.glb", "-q"]);
-    assert!(Command::new("mkfifo").arg(dir.join("pipe.stl")).status().unwrap().success());
+    assert!(Command::new("mkfifo").arg(dir.join("pipe.stl")).status().unwrap().success(), "mkfifo");
     let mut points = String::new();
     // A stem and four limbs.
     for k in 0..24_000_u32 {
@@ -131,7 +131,7 @@ fn ended(child: &mut Child) -> (ExitStatus, Duration) {
 fn whole(dir: &Path, args: &[&str]) -> (Duration, BTreeMap<String, u64>) {
     let mut child = start(dir, args);
     let begun = Instant::now();
-    let waits = args[0] == "studio" || args[1] == "-" || args.iter().any(|a| *a == "in/pipe.stl");
+    let waits = args[0] == "studio" || args[1] == "-" || args.contains(&"in/pipe.stl");
     if waits {
         std::thread::sleep(LATEST / 3);
         assert_eq!(child.try_wait().unwrap(), None, "{args:?} waits");

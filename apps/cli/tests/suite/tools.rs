@@ -1,5 +1,5 @@
 //! The binary and folders to run it in.
-#![allow(dead_code, reason = "not every test uses every tool")]
+#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! A reader of MTG text that shares nothing with the writer. It knows what digitised plants use: `^`, several entities
 //! on a line, ranges (`E1<<E9`) and changes of scale.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 use std::collections::BTreeMap;
 

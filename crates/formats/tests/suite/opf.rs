@@ -1,5 +1,5 @@
 //! OPF files read back, and those of other people read by the same reader.
-#![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
+#![expect(clippy::unwrap_used, reason = "tests")]
 
 use crate::missing;
 use crate::opf_reader;

@@ -1,4 +1,5 @@
 //! A reader of OPF 2.0, as `PlantGeom` reads it: reference meshes, shapes, and the tree with a matrix for each node.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 use glam::{DMat3, DVec3};
 use roxmltree::Node as Xml;

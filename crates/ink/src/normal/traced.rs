@@ -289,11 +289,7 @@ fn steps_up(ring: &[bool; 8]) -> usize {
 fn is_peeled(ring: &[bool; 8], odd: bool) -> bool {
     let count = ring.iter().filter(|n| **n).count();
     let [up, _, right, _, down, _, left, _] = *ring;
-    let open = if odd {
-        !(up && right && left) && !(up && down && left)
-    } else {
-        !(up && right && down) && !(right && down && left)
-    };
+    let open = if odd { !(up && left && (right || down)) } else { !(right && down && (up || left)) };
     (2..=6).contains(&count) && steps_up(ring) == 1 && open
 }
 

@@ -169,7 +169,8 @@ mod tests {
 
     #[test]
     fn a_question_looks_at_no_more_points_however_many_lie_on_one_another() {
-        let families: [fn(u32) -> Vec<Vec<DVec2>>; 3] = [|n| pile(n, 0.0), |n| pile(n, 0.004), crossing];
+        type Family = fn(u32) -> Vec<Vec<DVec2>>;
+        let families: [Family; 3] = [|n| pile(n, 0.0), |n| pile(n, 0.004), crossing];
         for make in families {
             let looks = |count: u32| {
                 let lines = make(count);
