@@ -482,7 +482,10 @@ fn odd(veins: u32, most: u32) -> Outcome<u32> {
 fn failure(args: &LeafArgs, error: LeafError) -> Failure {
     match error {
         LeafError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(args.inputs.first().map_or(Path::new("leaf"), PathBuf::as_path), other),
+        other => Failure::at(
+            args.inputs.first().map_or(Path::new("leaf"), PathBuf::as_path),
+            format_args!("{other}{}", leaf_data::way_out(&other)),
+        ),
     }
 }
 

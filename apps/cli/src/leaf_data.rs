@@ -265,7 +265,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     };
     let failed = |e| match e {
         LeafError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(path, other),
+        other => Failure::at(path, format_args!("{other}{}", way_out(&other))),
     };
     let read = asked.read(path, input)?;
     let mut options = LeafOptions::default();
@@ -288,5 +288,13 @@ impl From<ThicknessWord> for ThicknessRule {
             ThicknessWord::Diameter => Self::Diameter,
             ThicknessWord::Radius => Self::Radius,
         }
+    }
+}
+
+/// The command that helps where a leaf could not be made; empty where none does.
+pub(crate) const fn way_out(error: &LeafError) -> &'static str {
+    match error {
+        LeafError::Several(_) => "; `burgeon bloom run SCAN --plant` makes all of it",
+        _ => "",
     }
 }

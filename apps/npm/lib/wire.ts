@@ -129,7 +129,7 @@ export type GrowthReport = {
 export type ItemReport = {
   /** Of `shape --list`: the branches that were asked for. */
   branches?: Json[];
-  /** What was checked of it: whether a person would accept it. Those that failed are among the warnings. */
+  /** What was checked of it: whether a person would accept it. */
   checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;

@@ -942,7 +942,7 @@ export type HandEdit =
 export type ItemReport = {
   /** Of `shape --list`: the branches that were asked for. */
   branches?: Json[];
-  /** What was checked of it: whether a person would accept it. Those that failed are among the warnings. */
+  /** What was checked of it: whether a person would accept it. */
   checks: CheckReport[];
   /** Numbers of things. */
   counts: Counts;
@@ -1795,13 +1795,6 @@ export type SeverityWord =
   | /** Nobody would accept the result. */
   "error";
 
-/** Which side of a bound is plausible. */
-export type SideWord =
-  | /** The bound or more. */
-  "at_least"
-  | /** The bound or less. */
-  "at_most";
-
 /** What came of an input. */
 export type ShapeAnswer = {
   /** What is shown of the plant is out of date. */
@@ -1956,6 +1949,13 @@ export type ShapeStep =
   "bearer"
   | /** The first that it bears. */
   "borne";
+
+/** Which side of a bound is plausible. */
+export type SideWord =
+  | /** The bound or more. */
+  "at_least"
+  | /** The bound or less. */
+  "at_most";
 
 /** What can be asked of a sketch. */
 export type SketchCommand =

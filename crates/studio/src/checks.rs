@@ -322,7 +322,9 @@ pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
         check_extent(extent, "the plant has {value} of the drawing's extent", report);
     }
     let score = ReadingReport::of(made.reading).first().map(|r| r.score);
-    if let Some(score) = score.filter(|_| made.is_guessed) {
+    // A line by itself is a stem by rule, and no kind was weighed against another.
+    let is_weighed = made.is_guessed && made.reading.strokes.len() > 1;
+    if let Some(score) = score.filter(|_| is_weighed) {
         Test {
             name: "reading-unsure",
             value: score,

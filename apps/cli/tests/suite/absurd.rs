@@ -318,9 +318,21 @@ const FAMILIES: [Family; 23] = [
         content: scan_in_kilometres,
         ends: &[Refused],
     },
-    Family { name: "two trees", args: SCAN, file: "in.xyz", content: two_trees, ends: &[Doubted, Plausible] },
+    Family {
+        name: "two trees",
+        args: SCAN,
+        file: "in.xyz",
+        content: two_trees,
+        ends: &[Doubted, Warned, Plausible],
+    },
     Family { name: "a scanned plane", args: SCAN, file: "in.xyz", content: scanned_plane, ends: &[Refused] },
-    Family { name: "a ball of noise", args: SCAN, file: "in.xyz", content: ball_of_noise, ends: &[Doubted] },
+    Family {
+        name: "a ball of noise",
+        args: SCAN,
+        file: "in.xyz",
+        content: ball_of_noise,
+        ends: &[Doubted, Refused],
+    },
     Family {
         name: "crossing marks",
         args: MARKS,

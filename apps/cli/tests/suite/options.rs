@@ -12,8 +12,8 @@ use serde_json::Value;
 use tools::{FLOWER, folder, good, status};
 
 /// Steer how a command runs or talks, whatever it makes; -o is in each use.
-const RUNNING: [&str; 9] =
-    ["help", "version", "threads", "quiet", "seed", "report", "json", "output", "budget"];
+const RUNNING: [&str; 10] =
+    ["help", "version", "threads", "quiet", "seed", "report", "json", "output", "budget", "strict"];
 
 /// A value that is not the default, for each option that takes one.
 const VALUES: &[(&str, &str)] = &[
@@ -158,6 +158,8 @@ const USES: &[&[&str]] = &[
 /// beside the stem, one plant, veins as thick as the sides of the finest need.
 const NOTHING_TO_STEER: &[(&str, &[&str])] = &[
     ("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"]),
+    // From the front at eye level the ground, and a shadow on it, is a line.
+    ("--view", &["no-shadow"]),
     // The scan is of a bare stem.
     ("--plant", &["materials"]),
     // A stem is bare and has no gap, and a trunk its sides by its girth.

@@ -52,7 +52,7 @@ const COMMANDS: [&[&str]; 19] = [
     &["convert", "in/tree.glb", "-o", "out/t.obj", "--report", "out/t.json"],
     &["info", "in/tree.glb", "--report", "out/i.json"],
     &["bloom", "run", "tulip", "-o", "out", "--frames", "6", "--report", "out/b.json"],
-    &["bloom", "fit", "in/logistic.csv", "-o", "out/f.json", "--plot", "out/f.svg", "--report", "out/r.json"],
+    &["bloom", "fit", "in/growth.csv", "-o", "out/f.json", "--plot", "out/f.svg", "--report", "out/r.json"],
     &["studio", "in/sample.svg", "--folder", "in/page", "--no-open"],
     &["presets", "--show", "oak"],
     &["man", "out"],
@@ -67,11 +67,8 @@ fn inputs(dir: &Path) {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
     fs::create_dir_all(dir.join("page")).unwrap();
     fs::write(dir.join("page/index.html"), "<!doctype html>page").unwrap();
-    let copies = [
-        ("sketches/sample.svg", "sample.svg"),
-        ("leaves/leaf1.csv", "leaf.csv"),
-        ("bloom/logistic.csv", "logistic.csv"),
-    ];
+    let copies = [("sketches/sample.svg", "sample.svg"), ("leaves/leaf1.csv", "leaf.csv")];
+    fs::write(dir.join("growth.csv"), "day,size\n0,0.1\n3,0.3\n6,0.8\n9,1.4\n12,1.7\n15,1.8\n").unwrap();
     let drawings =
         ["a", "b", "c", "d", "e"].map(|n| (format!("sketches/table1/{n}.svg"), format!("{n}.svg")));
     let copies = copies.map(|(from, to)| (from.to_owned(), to.to_owned())).into_iter().chain(drawings);

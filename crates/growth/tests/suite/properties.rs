@@ -218,12 +218,13 @@ proptest! {
         let mut report = Report::default();
         let grown = match grow(&spec, None, Seed::new(seed), &Run::plain(), &mut report) {
             Ok(grown) => grown,
-            // A root in an obstacle, an envelope that obstacles fill, a plane's normal without a length.
+            // A root in an obstacle, an envelope that obstacles fill, a plane's normal without a length, an age beyond life.
             Err(
                 GrowthError::RootInObstacle { .. }
                 | GrowthError::NoRoom { .. }
                 | GrowthError::Nothing { .. }
-                | GrowthError::Obstacle { .. },
+                | GrowthError::Obstacle { .. }
+                | GrowthError::BeyondLife { .. },
             ) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };

@@ -11,6 +11,9 @@ const COMPARED: usize = 24;
 const AS_LONG: f64 = 0.18;
 /// Pieces of one sub-path go on within this cosine: 45 degrees.
 const STRAIGHT_ON: f64 = 0.7;
+/// Segments of a polyline meet within this share of the drawing's diagonal, and of the shorter segment's length.
+const MEET_EXACTLY: f64 = 1e-3;
+const MEET_SEGMENT: f64 = 0.1;
 /// Most pieces of an outline.
 const PIECES: usize = 3;
 /// An outline of pieces has at least this area for its length squared: a leaf of 1 : 8 has 0.02.
@@ -48,14 +51,17 @@ impl Work {
 
     /// Elements of two points, each of which begins where the one before ended.
     fn join_segments(&mut self, diagonal: f64) -> usize {
-        let exact = 1e-3 * diagonal;
         let mut joined = 0;
         let mut figures: Vec<Figure> = Vec::with_capacity(self.figures.len());
         let mut run: Vec<Figure> = Vec::new();
         for figure in core::mem::take(&mut self.figures) {
             let segment = segment_of(&figure).filter(|s| s[0].distance(s[1]) <= LIMITS.segment * diagonal);
             let goes_on = match (run.last().and_then(segment_of), segment) {
-                (Some(before), Some(s)) => before[1].distance(s[0]) <= exact && is_like(&run[0], &figure),
+                (Some(before), Some(s)) => {
+                    let shorter = before[0].distance(before[1]).min(s[0].distance(s[1]));
+                    let meet = (MEET_EXACTLY * diagonal).min(MEET_SEGMENT * shorter);
+                    before[1].distance(s[0]) <= meet && is_like(&run[0], &figure)
+                }
                 _ => false,
             };
             if !goes_on {

@@ -60,8 +60,8 @@ mod tests {
     use base::ops;
 
     fn arc(from: f64, to: f64) -> Vec<DVec2> {
-        (0..=40)
-            .map(|k| from + (to - from) * f64::from(k) / 40.0)
+        (0..=200)
+            .map(|k| from + (to - from) * f64::from(k) / 200.0)
             .map(|a| DVec2::new(ops::cos(a), ops::sin(a)))
             .collect()
     }

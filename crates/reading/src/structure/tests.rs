@@ -30,7 +30,7 @@ fn arcs(count: u32, radius: f64, height: f64, phase: f64) -> Vec<Vec<DVec2>> {
 fn rosette() -> Vec<Vec<DVec2>> {
     let disc = (0..=60).map(|k| at(TAU * f64::from(k) / 60.0, 0.2)).collect();
     let mut lines = vec![disc];
-    lines.extend(arcs(8, 0.2, 0.25, 0.0));
+    lines.extend(arcs(8, 0.2, 0.12, 0.0));
     lines
 }
 

@@ -104,7 +104,11 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> R
         let weight = strokes[i].length / points.len().max(1) as f64;
         let outside = |p: DVec2| !wanted.contour(strokes[i].index, p);
         let own = distances(&points, outside, &model, run.cancel)?;
-        let in_contours = points.len() - own.len();
+        // Where nothing is shown, no point has a distance, wherever it lies.
+        let in_contours = match shown.is_empty() {
+            true => points.iter().filter(|p| !outside(**p)).count(),
+            false => points.len() - own.len(),
+        };
         Ok::<_, Cancelled>((own, weight, in_contours))
     })?;
     let (mut drawn, mut compared, mut told) = (Weighed::default(), 0.0, Vec::new());

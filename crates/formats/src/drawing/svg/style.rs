@@ -287,12 +287,20 @@ struct Rule {
     selector: Vec<Compound>,
     /// Ids, classes, tags.
     weight: [usize; 3],
+    /// At most one for each property that concerns us: a later rule of the same selector replaces it.
+    wanted: Vec<Declared>,
+}
+
+/// A property, its value, and the place of its rule in the sheet.
+#[derive(Clone, Debug)]
+struct Declared {
+    name: String,
+    value: String,
     order: usize,
-    wanted: Vec<(String, String)>,
 }
 
 /// Simple selectors that one element has to meet, and whether the one before it is its parent.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, PartialEq)]
 struct Compound {
     simple: Vec<String>,
     child: bool,
@@ -300,6 +308,8 @@ struct Compound {
 
 /// More rules than any drawing has: the rest is not looked at.
 const MAX_RULES: usize = 20_000;
+/// More selectors that end in one name than any drawing has: each element of that name is compared with all of them.
+const MAX_SELECTORS_OF_NAME: usize = 256;
 /// More simple selectors in a row than any drawing has.
 const MAX_SIMPLE: usize = 16;
 
@@ -324,15 +334,29 @@ impl Sheet {
                     self.ignored += 1;
                     continue;
                 };
-                let simple = || selector.iter().flat_map(|c| &c.simple);
-                let count = |first: char| simple().filter(|s| s.starts_with(first)).count();
-                let (ids, classes) = (count('#'), count('.'));
-                let weight = [ids, classes, simple().filter(|s| *s != "*").count() - ids - classes];
-                let key = selector.last().and_then(|c| c.simple.last()).cloned().unwrap_or_default();
                 self.count += 1;
-                let rule = Rule { selector, weight, order: self.count, wanted: wanted.clone() };
-                self.rules.entry(key).or_default().push(rule);
+                self.add_rule(selector, &wanted);
             }
+        }
+    }
+
+    /// Adds a rule, or its declarations to the rule of the same selector.
+    fn add_rule(&mut self, selector: Vec<Compound>, wanted: &[(String, String)]) {
+        let order = self.count;
+        let key = selector.last().and_then(|c| c.simple.last()).cloned().unwrap_or_default();
+        let rules = self.rules.entry(key).or_default();
+        let known = rules.iter().position(|rule| rule.selector == selector);
+        let Some(row) = known.or((rules.len() < MAX_SELECTORS_OF_NAME).then_some(rules.len())) else {
+            self.ignored += 1;
+            return;
+        };
+        if row == rules.len() {
+            let weight = weight_of(&selector);
+            rules.push(Rule { selector, weight, wanted: Vec::new() });
+        }
+        for (name, value) in wanted {
+            rules[row].wanted.retain(|d| d.name != *name);
+            rules[row].wanted.push(Declared { name: name.clone(), value: value.clone(), order });
         }
     }
 
@@ -360,16 +384,26 @@ impl Sheet {
         let classes = node.attribute("class").unwrap_or_default();
         keys.extend(classes.split_ascii_whitespace().take(64).map(|class| format!(".{class}")));
         keys.extend(node.attribute("id").map(|id| format!("#{id}")));
-        let mut found: Vec<&Rule> = Vec::new();
+        let mut found: Vec<([usize; 3], &Declared)> = Vec::new();
         for key in &keys {
             let rules = self.rules.get(key.as_str()).into_iter().flatten();
-            found.extend(rules.filter(|rule| meets(node, &rule.selector)));
+            for rule in rules.filter(|rule| meets(node, &rule.selector)) {
+                found.extend(rule.wanted.iter().map(|declared| (rule.weight, declared)));
+            }
         }
-        base::sort_by(&mut found, |a, b| a.weight.cmp(&b.weight).then(a.order.cmp(&b.order)));
-        for (name, value) in found.into_iter().flat_map(|rule| &rule.wanted) {
-            set(name, value);
+        base::sort_by(&mut found, |a, b| a.0.cmp(&b.0).then(a.1.order.cmp(&b.1.order)));
+        for (_, declared) in found {
+            set(&declared.name, &declared.value);
         }
     }
+}
+
+/// How many ids, classes and tags a selector names: the more, the weightier.
+fn weight_of(selector: &[Compound]) -> [usize; 3] {
+    let simple = || selector.iter().flat_map(|c| &c.simple);
+    let count = |first: char| simple().filter(|s| s.starts_with(first)).count();
+    let (ids, classes) = (count('#'), count('.'));
+    [ids, classes, simple().filter(|s| *s != "*").count() - ids - classes]
 }
 
 /// The properties that concern us.
