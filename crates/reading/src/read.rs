@@ -278,7 +278,6 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         kind = Kind::of(&tried);
         (reading, said, taken, structure) = (tried, again, None, Some(says));
     }
-    let is_structural = structure.is_some();
     if asked.kind.is_none()
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
@@ -296,11 +295,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
             (reading, said, kind) = (tried, again, was);
         }
     }
-    if is_structural {
-        believe_structure(kind, &mut scores);
-    } else {
-        scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);
-    }
+    scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);
     report.warnings.append(&mut said.warnings);
     if asked.kind.is_none() && no_plant > NO_PLANT {
         report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
@@ -321,15 +316,6 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let word = glance::word(kind, &words);
     reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, word, readings }];
     reading
-}
-
-/// The model of kinds learnt from doodles, and says nothing of a drawing that structure explains: that reading gets its own
-/// share, and the others what is left.
-fn believe_structure(kind: Kind, scores: &mut Vec<Scored>) {
-    let others: f64 = scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).sum();
-    scores.retain(|s| !s.kind.is_like(kind));
-    let odds = structure::LIMITS.right / (1.0 - structure::LIMITS.right);
-    scores.push(Scored { kind, score: odds * others.max(f64::MIN_POSITIVE) });
 }
 
 /// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood is a tree, bare or

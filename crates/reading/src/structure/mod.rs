@@ -58,8 +58,6 @@ pub(crate) struct StructureLimits {
     pub(crate) believed: f64,
     /// What the share of the kind of plant (0 to 1) adds to the score of a reading of that kind.
     pub(crate) weight_of_kind: f64,
-    /// The share of structural readings that are at least acceptable: 8 of 13, looked at one by one from the front.
-    pub(crate) right: f64,
     /// The structural reading replaces another one only if its score is better by more than this.
     pub(crate) clearly_better: f64,
 }
@@ -83,7 +81,6 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     small_area: 0.0015,
     believed: 0.5,
     weight_of_kind: 0.02,
-    right: 0.6,
     clearly_better: 0.02,
 };
 
