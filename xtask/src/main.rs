@@ -120,7 +120,7 @@ fn laboratory(args: &[String]) -> Outcome {
 /// A check of the sources, by the program that can parse them. Named as a program and not as a package it stands on what
 /// the tests have compiled.
 fn checks(args: &[String]) -> Outcome {
-    let program = ["run", "--quiet", "--workspace", "--bin", "xtask-checks", "--"];
+    let program = ["run", "--quiet", "--bin", "xtask-checks", "--"];
     cargo(&program.into_iter().chain(args.iter().map(String::as_str)).collect::<Vec<_>>())
 }
 

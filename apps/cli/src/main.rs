@@ -18,6 +18,7 @@ mod info;
 mod inputs;
 mod leaf;
 mod leaf_data;
+mod lease;
 mod levels;
 mod machine;
 mod manual;

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use burgeon::formats::WriteError;
 
 use crate::disk;
-use crate::draft::{self, Draft};
+use crate::draft::Draft;
 use crate::failure::{Failure, Outcome};
 use crate::inputs::{self, FileId};
+use crate::lease;
 use crate::names::folded;
 use crate::placing::{Move, Refused, put_all};
 use crate::signals::Stoppable;
@@ -145,7 +146,7 @@ impl Outputs {
         }
         let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
         let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
-        missing.iter().rev().for_each(|folder| draft::is_made(folder));
+        missing.iter().rev().for_each(|folder| lease::is_made(folder));
         self.made.extend(missing.into_iter().rev());
         fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "created", &e))?;
         Draft::create(folder).map(drop).map_err(|e| Failure::io(folder, "written", &e))

@@ -11,7 +11,8 @@ use std::sync::{PoisonError, RwLock, TryLockError};
 use std::time::{Duration, Instant};
 
 use crate::disk;
-use crate::draft::{self, Draft, Role};
+use crate::draft::Draft;
+use crate::lease::{self, Role};
 use crate::sweep::{Entry, Set, Stamp};
 
 /// Held while names are given: to read by those who give them, to write by the one who ends the program.
@@ -171,9 +172,9 @@ pub(crate) fn leave_nothing() {
         match PLACING.try_write() {
             Ok(guard) => {
                 std::mem::forget(guard);
-                return draft::remove_all();
+                return lease::remove_all();
             }
-            Err(TryLockError::Poisoned(_)) => return draft::remove_all(),
+            Err(TryLockError::Poisoned(_)) => return lease::remove_all(),
             Err(TryLockError::WouldBlock) if Instant::now() < end => std::thread::sleep(GLANCE),
             Err(TryLockError::WouldBlock) => return,
         }
@@ -184,7 +185,7 @@ pub(crate) fn leave_nothing() {
 pub(crate) fn abandon() {
     if let Ok(guard) = PLACING.try_write() {
         std::mem::forget(guard);
-        draft::abandon_all();
+        lease::abandon_all();
     }
 }
 
@@ -196,7 +197,7 @@ mod tests {
     use std::time::{Duration, SystemTime};
 
     use crate::disk::faults::{self, Fault};
-    use crate::draft::{Lease, Role};
+    use crate::lease::{Lease, Role};
     use crate::output::Outputs;
     use crate::sweep;
 
@@ -240,7 +241,7 @@ mod tests {
         /// What the next command finds that writes into these folders.
         fn sweep(&self, folders: &[&str]) {
             for folder in folders {
-                let lease = Lease::of(&self.0.join(folder)).expect("a lock");
+                let (lease, _) = Lease::of(&self.0.join(folder)).expect("a lock");
                 sweep::sweep(&lease);
             }
         }

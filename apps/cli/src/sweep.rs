@@ -10,8 +10,8 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use crate::disk;
-use crate::draft::{Holder, Lease, Role};
 use crate::inputs::{self, FileId};
+use crate::lease::{Holder, Lease, Role};
 
 /// Where no lock tells whether a process is gone: what nobody wrote to for so long was left by one that was killed.
 const STALE: Duration = Duration::from_secs(24 * 60 * 60);

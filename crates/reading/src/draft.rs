@@ -13,7 +13,7 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::kept::{Drawn, alike};
 use crate::steady::steady;
-use crate::structure::Hidden;
+use crate::structure::{Hidden, STRUCTURE, Structure};
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
@@ -148,6 +148,20 @@ impl<'a> Draft<'a> {
             one_go: LiteMap::new(),
             hidden: LiteMap::new(),
         }
+    }
+
+    /// Takes what the structure of the drawing says: no later rule changes it.
+    pub(crate) fn settle(&mut self, structure: &Structure) {
+        for (k, class) in structure.classes().iter().enumerate() {
+            if let Some(class) = *class {
+                if self.class[k] != class {
+                    self.rule[k] = Some(STRUCTURE);
+                }
+                self.class[k] = class;
+                self.settled[k] = true;
+            }
+        }
+        self.hidden = structure.hidden().clone();
     }
 
     /// The whole is taken for a tree: what stands is its trunk, and what leaves that are branches.

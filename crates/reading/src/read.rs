@@ -515,7 +515,7 @@ fn attempt(
         rules::take_for(&mut draft, kind);
     }
     if let Some(structure) = &proposal.structure {
-        structure.settle(&mut draft);
+        draft.settle(structure);
     }
     rules::apply(&mut draft, off);
     draft.contours();

@@ -7,10 +7,9 @@ use ink::{Classified, Source, StrokeClass};
 use super::LIMITS;
 use super::hidden::hidden_root;
 use super::sheet::{Facts, Form, Outline, Sheet};
-use crate::draft::Draft;
 
 /// The rule that what a stroke is follows from what it encloses, what covers it and what it lies in.
-const STRUCTURE: &str = "structure";
+pub(crate) const STRUCTURE: &str = "structure";
 
 /// An outline that goes on behind others.
 #[derive(Clone, Debug)]
@@ -50,29 +49,19 @@ impl Structure {
     }
 
     /// The class of each stroke of which the structure says one.
-    #[cfg(test)]
     pub(crate) fn classes(&self) -> &[Option<StrokeClass>] {
         &self.classes
+    }
+
+    /// Completed outlines of blades, by rows.
+    pub(crate) const fn hidden(&self) -> &LiteMap<usize, Hidden> {
+        &self.hidden
     }
 
     /// Whether it says anything that the classifier does not.
     pub(crate) fn differs(&self, classes: &[Classified]) -> bool {
         !self.hidden.is_empty()
             || self.classes.iter().zip(classes).any(|(own, said)| own.is_some_and(|own| own != said.class))
-    }
-
-    /// Puts it into a draft: no later rule changes what it says.
-    pub(crate) fn settle(&self, draft: &mut Draft<'_>) {
-        for (k, class) in self.classes.iter().enumerate() {
-            if let Some(class) = *class {
-                if draft.class[k] != class {
-                    draft.rule[k] = Some(STRUCTURE);
-                }
-                draft.class[k] = class;
-                draft.settled[k] = true;
-            }
-        }
-        draft.hidden = self.hidden.clone();
     }
 }
 

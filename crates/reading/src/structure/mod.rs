@@ -15,7 +15,7 @@ mod hidden;
 mod score;
 mod sheet;
 
-pub(crate) use classes::{Hidden, Structure};
+pub(crate) use classes::{Hidden, STRUCTURE, Structure};
 pub(crate) use score::score;
 pub(crate) use sheet::Sheet;
 
