@@ -12,7 +12,8 @@ import { dialog, download, el, note } from './ui';
 
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
-const ACCEPT = '.burgeon,.svg,.svgz,.excalidraw,.tldr,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
+const ACCEPT =
+  '.burgeon,.svg,.svgz,.excalidraw,.tldr,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
 /** How a zip begins: PK. */
 const ZIP = [0x50, 0x4b] as const;
 const TYPES: Record<string, string> = {
@@ -168,7 +169,7 @@ export class Files {
   private async openUrl(name: string, url: string, offered = false): Promise<void> {
     try {
       const answer = await fetch(url);
-      if (answer.status === 401) throw new Error(t('note.locked'));
+      if (answer.status === 401) throw new Error(t('note.file.locked'));
       if (!answer.ok) throw new Error(`${answer.status}`);
       await this.open(name, new Uint8Array(await answer.arrayBuffer()));
       if (offered) this.events.offered(name, answer.headers.get('ETag'));

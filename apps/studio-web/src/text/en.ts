@@ -251,7 +251,8 @@ export const en = {
   'fault.image': 'this is no picture that the browser reads; give a PNG, JPEG or WebP',
   'fault.film': 'this browser writes no such film',
   'note.unreadable': '{name} cannot be opened: {why}',
-  'note.locked': 'it is given only to a browser that came by the whole link which the terminal shows; open that link',
+  'note.file.locked':
+    'it is given only to a browser that came by the whole link which the terminal shows; open that link',
   'note.large': 'it is larger than {limit} MB',
   'note.refused': 'Not done: {why}',
   'note.fault': 'The plant maker had a fault and was started again. Your drawing is complete.',

@@ -256,29 +256,42 @@ export const zhWords: Record<string, string> = {
 
 /** What was not as one might expect of a plant, by its code; the core's own words follow, with its numbers. */
 export const zhWarnings: Record<string, string> = {
-  'nothing-made': '植物里没有任何枝条或器官（{value}，至少应有 {bound}）：请画出或测量一根茎或一片叶，给生长留出空间和点，或撤销删去一切的修改',
+  'nothing-made':
+    '植物里没有任何枝条或器官（{value}，至少应有 {bound}）：请画出或测量一根茎或一片叶，给生长留出空间和点，或撤销删去一切的修改',
   'size-large': '植物大到 {value}（最多 {bound}）：请检查输入的单位，或设定高度',
   'size-small': '植物只有 {value}（至少 {bound}）：请检查输入的单位，或设定高度',
   'leaf-long': '最长的叶有 {value}（最多 {bound}）：请检查输入的单位，或设定长度',
   'blade-long': '叶片有 {value} 长（最多 {bound}）：请检查输入的单位，或设定长度',
   'tree-small': '这棵树只有 {value} 高（至少 {bound}）：请检查扫描的单位；幼苗请按叶或器官来做',
   'blade-short': '叶片只有 {value} 长（至少 {bound}）：请检查输入的单位，或设定长度',
-  'leaf-area-large': '叶的总面积是以植物大小为边的正方形的 {value} 倍（最多 {bound}）：请减少叶片，或改小叶片',
+  'leaf-area-large':
+    '叶的总面积是以植物大小为边的正方形的 {value} 倍（最多 {bound}）：请减少叶片，或改小叶片',
   'stem-slender': '主茎的高度是其承受自重极限的 {value} 倍（最多 {bound}）：茎太细，请检查半径，或设定高度',
-  'volume-large': '茎的体积是以植物大小为边的立方体的 {value} 倍（最多 {bound}）：茎太粗，请检查单位和半径，或设定高度',
-  'ink-unexplained': '按长度算，有 {value} 的笔迹不属于植物（最多 {bound}）：请指明这些笔画是什么，或只画植物',
-  'extent-small': '植物只有输入范围的 {value}（至少 {bound}）：输入的大部分没有用上，请去掉离植物远的部分，或指明它是什么',
+  'volume-large':
+    '茎的体积是以植物大小为边的立方体的 {value} 倍（最多 {bound}）：茎太粗，请检查单位和半径，或设定高度',
+  'ink-unexplained':
+    '按长度算，有 {value} 的笔迹不属于植物（最多 {bound}）：请指明这些笔画是什么，或只画植物',
+  'extent-small':
+    '植物只有输入范围的 {value}（至少 {bound}）：输入的大部分没有用上，请去掉离植物远的部分，或指明它是什么',
   'extent-large': '植物是输入范围的 {value}（最多 {bound}）：超出了输入，请指明末端的笔画是什么，或补充笔画',
-  'reading-unsure': '这样理解画稿的得分只有 {value}（至少 {bound}），多半不对：请指明植物的种类，或笔画是什么',
-  'growth-unused': '引导生长的点有 {value} 从未到达（最多 {bound}）：请把根移近，加大感知距离，或把障碍物移出树冠',
-  'margin-crossed': '叶缘自相交叉 {value} 处（最多 {bound}）：请检查标记的顺序：从叶尖到叶基，每行从一侧到另一侧',
-  'marks-unexplained': '测得的点有 {value} 离叶片超过 2 毫米（最多 {bound}）：请检查单位，并确认是一片展开的叶',
-  'scan-unused': '地面以上的点有 {value} 不属于这棵树（最多 {bound}）：请把树裁出来，指明它的位置，或允许跨过更大的空隙',
-  'scan-radii-unseen': '树的截面只有 {value} 显出半径（至少 {bound}）：半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
-  'pipe-exponent-on-bound': '管道模型的指数是 {value}，在拟合的边界上（{bound}）：细枝的半径和体积不可信，请靠近或在无叶时扫描',
+  'reading-unsure':
+    '这样理解画稿的得分只有 {value}（至少 {bound}），多半不对：请指明植物的种类，或笔画是什么',
+  'growth-unused':
+    '引导生长的点有 {value} 从未到达（最多 {bound}）：请把根移近，加大感知距离，或把障碍物移出树冠',
+  'margin-crossed':
+    '叶缘自相交叉 {value} 处（最多 {bound}）：请检查标记的顺序：从叶尖到叶基，每行从一侧到另一侧',
+  'marks-unexplained':
+    '测得的点有 {value} 离叶片超过 2 毫米（最多 {bound}）：请检查单位，并确认是一片展开的叶',
+  'scan-unused':
+    '地面以上的点有 {value} 不属于这棵树（最多 {bound}）：请把树裁出来，指明它的位置，或允许跨过更大的空隙',
+  'scan-radii-unseen':
+    '树的截面只有 {value} 显出半径（至少 {bound}）：半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
+  'pipe-exponent-on-bound':
+    '管道模型的指数是 {value}，在拟合的边界上（{bound}）：细枝的半径和体积不可信，请靠近或在无叶时扫描',
   'one-organ': '一个器官占了所有点的 {value}（最多 {bound}）：器官没有分开，请手工标注',
   'laws-undetermined': '生长规律有 {value} 不能由这些天确定（最多 {bound}）：请从生长开始到结束多测几天',
-  'laws-shrink': '最后一天的大小只有最初的 {value}（至少 {bound}）：器官不会越长越小，请检查表中的日期、顺序和单位',
+  'laws-shrink':
+    '最后一天的大小只有最初的 {value}（至少 {bound}）：器官不会越长越小，请检查表中的日期、顺序和单位',
   'unlike-a-plant': '这看起来不像植物：已按最接近的植物生成',
   'left-out': '植物旁边有 {count} 笔看起来不像植物，已略去',
   scribble: '第 {stroke} 笔是涂鸦：已当作树冠',

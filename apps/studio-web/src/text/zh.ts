@@ -251,7 +251,7 @@ export const zh: Record<TextKey, string> = {
   'fault.image': '浏览器无法读取这张图片，请提供 PNG、JPEG 或 WebP',
   'fault.film': '这个浏览器不能生成这种影片',
   'note.unreadable': '无法打开 {name}：{why}',
-  'note.locked': '该文件只提供给通过终端所示完整链接进入的浏览器；请打开那个链接',
+  'note.file.locked': '该文件只提供给通过终端所示完整链接进入的浏览器；请打开那个链接',
   'note.large': '文件超过 {limit} MB',
   'note.refused': '未执行：{why}',
   'note.fault': '植物生成器出错，已重新启动。你的画完好无损。',
