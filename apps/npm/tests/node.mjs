@@ -269,7 +269,7 @@ test('what is wrong is named: field, value and range', async () => {
     range: FLOWERS.join(', ').slice(0, 20),
   });
   // What is too much is said before it is made, and the core goes on.
-  const much = await grow('oak', { detail: 8, fields: { age: 200 } }).then(
+  const much = await grow('oak', { detail: 8, fields: { age: 40 } }).then(
     () => 'made',
     (e) => e.code,
   );
@@ -376,7 +376,7 @@ test('a plant is made beside the program: timers go on, and a signal stops it', 
   clearInterval(timer);
   assert.ok(tree.report && ticks > Math.max(2, took / 100), `${ticks} ticks in ${took} ms`);
   // One that takes much longer than it is given; the one that waits goes to another thread.
-  const long = { seed: 2, detail: 8, fields: { age: 60 } };
+  const long = { seed: 2, detail: 8, fields: { age: 40 } };
   const stopped = new AbortController();
   const first = grow('oak', { ...long, signal: stopped.signal });
   const second = grow('hazel', { detail: 0.1, textures: false, wind: false });
@@ -414,7 +414,7 @@ test('no option is ignored: it changes what comes out, or is refused by its name
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 40"><path d="M4 39C5 20 3 12 4 1" stroke="#000"/></svg>',
   );
   const common = { wind: false, lods: 1, files: ['glb'], measures: true };
-  const skin = { detail: 0.3, sides: 5, textures: false, texture_size: 64 };
+  const skin = { detail: 0.3, sides: 9, textures: false, texture_size: 64 };
   const uses = [
     [(o) => grow('hazel', { fields: { age: 3 }, ...o }), { ...common, ...skin, height_m: 1 }],
     [(o) => grow('hazel', { fields: { age: 3 }, textures: false, ...o }), { texture_size: 64 }],
