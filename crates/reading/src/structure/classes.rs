@@ -128,15 +128,10 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
 /// What outlines alike are: small round ones are fruits or florets, others blades.
 fn class_of_repeated(sheet: &Sheet, alike: &[usize]) -> StrokeClass {
     let outlines = || alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref());
-    let is_round = median(outlines().map(|o| o.roundness)) > LIMITS.round
-        && median(outlines().map(|o| o.slenderness)) > LIMITS.plump
-        && median(outlines().map(|o| o.area)) < LIMITS.small_area;
+    let middle =
+        |measure: fn(&Outline) -> f64| base::median(outlines().map(measure).collect()).unwrap_or(0.0);
+    let is_round = middle(|o| o.roundness) > LIMITS.round
+        && middle(|o| o.slenderness) > LIMITS.plump
+        && middle(|o| o.area) < LIMITS.small_area;
     if is_round { StrokeClass::Fruit } else { StrokeClass::Blade }
-}
-
-/// The middle one of some numbers, the upper of two; 0 of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    base::sort_by(&mut values, f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

@@ -1,6 +1,7 @@
 //! The facts of each stroke: form, outline, what holds it, what it holds.
 
-use geom::{bounds, contains, distance_to_polyline, polyline_length, signed_area};
+use base::ops;
+use geom::{bounds, contains, distance_to_polyline, pca2, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Ink, InkStroke, StrokeMode};
 
@@ -43,7 +44,7 @@ impl Outline {
         let area = signed_area(&points).abs();
         let closing = points.first()?.distance(*points.last()?);
         let perimeter = polyline_length(&points) + closing;
-        let roundness = 4.0 * std::f64::consts::PI * area / (perimeter * perimeter).max(f64::MIN_POSITIVE);
+        let roundness = 4.0 * ops::PI * area / (perimeter * perimeter).max(f64::MIN_POSITIVE);
         let slenderness = slenderness(&points);
         Some(Self { points, low, high, area, roundness, slenderness })
     }
@@ -169,14 +170,6 @@ fn holder(ink: &Ink, facts: &[Facts], k: usize) -> Option<usize> {
 
 /// Width over length of a set of points: the square root of the ratio of their second moments.
 fn slenderness(points: &[DVec2]) -> f64 {
-    let count = points.len().max(1) as f64;
-    let mean = points.iter().copied().sum::<DVec2>() / count;
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for p in points {
-        let d = *p - mean;
-        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
-    }
-    let half = 0.5 * (xx + yy);
-    let root = (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
-    if half + root > 0.0 { ((half - root).max(0.0) / (half + root)).sqrt() } else { 1.0 }
+    let [long, wide] = pca2(points).map_or([0.0; 2], |p| p.lambda);
+    if long > 0.0 { (wide / long).sqrt() } else { 1.0 }
 }
