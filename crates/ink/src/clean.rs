@@ -128,6 +128,22 @@ pub struct Ink {
 }
 
 impl Ink {
+    /// Other lines on the same sheet as if they were the whole drawing, each with the colour of its stroke: parts of
+    /// strokes, or outlines that several strokes make together. `lines`: points in ink coordinates and the row of a stroke.
+    ///
+    /// Their indices are their places in `lines`. Lines of rows that are not there have no colour.
+    pub fn with_lines(&self, lines: &[(Vec<DVec2>, usize)]) -> Self {
+        let stroke = |(index, (points, row)): (u32, &(Vec<DVec2>, usize))| InkStroke {
+            index,
+            raw: points.clone(),
+            color: self.strokes.get(*row).and_then(|s| s.color),
+            ..InkStroke::default()
+        };
+        let strokes: Vec<InkStroke> = (0_u32..).zip(lines).map(stroke).collect();
+        let rows: Vec<usize> = (0..strokes.len()).collect();
+        Self { strokes, map: self.map, ..Self::default() }.part(&rows)
+    }
+
     /// Some of the strokes, by their rows, as if they were the whole drawing: their box has diagonal 1.
     ///
     /// They keep their indices. Rows that are not there are left out; where the strokes have no extent, nothing is left.

@@ -45,6 +45,7 @@ mod near;
 mod outlines;
 mod overlap;
 mod pressed;
+mod raster;
 mod read;
 mod rings;
 mod rows;

@@ -10,7 +10,7 @@ use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::silhouette::{Drawn, Shaping, Silhouette};
-use crate::structure::{Sheet, Structure};
+use crate::structure::{Composed, Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
@@ -149,6 +149,10 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
     if !ink.subjects.is_parted() {
         return one(asked, ink, classes, First::of(asked, ink, classes), report);
     }
+    let leaflets = |p: &structure::readers::Proposal| p.kind == Kind::Leaf;
+    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(leaflets) {
+        return one(asked, ink, classes, First::of(asked, ink, classes), report);
+    }
     let parts = several::parts(ink, classes);
     let several = parts.len() > 1;
     let mut firsts: Vec<First> = parts.iter().map(|p| First::of(asked, &p.ink, &p.classes)).collect();
@@ -278,7 +282,13 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         kind = Kind::of(&tried);
         (reading, said, taken, structure) = (tried, again, None, Some(says));
     }
+    let mut sure = None;
+    if free && let Some((composed, proposed, score)) = by_readers(asked, ink) {
+        (reading, said, kind) = (composed, Report::default(), proposed);
+        sure = Some(score);
+    }
     if asked.kind.is_none()
+        && sure.is_none()
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
         let mut again = Report::default();
@@ -295,12 +305,15 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
             (reading, said, kind) = (tried, again, was);
         }
     }
-    scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);
+    match sure {
+        Some(score) => decide_for(&mut scores, kind, score),
+        None => scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT),
+    }
     report.warnings.append(&mut said.warnings);
-    if asked.kind.is_none() && no_plant > NO_PLANT {
+    if asked.kind.is_none() && sure.is_none() && no_plant > NO_PLANT {
         report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
     }
-    if asked.kind.is_none() {
+    if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
     if kind == Kind::Vegetable && free {
@@ -491,6 +504,28 @@ fn by_structure(
     let by_user = classes.iter().any(|c| c.source == Source::User);
     let margin = if by_user { 0.0 } else { structure::LIMITS.clearly_better };
     (score(&tried) >= score(reading) + margin).then_some((tried, report, says))
+}
+
+/// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure the reader is; of the kind
+/// that was asked for, if one was.
+fn by_readers(asked: &Asked<'_>, ink: &Ink) -> Option<(Reading, Kind, f64)> {
+    let proposals = structure::readers::propose(ink);
+    let wanted = |kind: Kind| asked.kind.is_none_or(|asked| asked == kind);
+    let proposal = proposals.into_iter().find(|p| wanted(p.kind))?;
+    let composed = Composed::new(ink, &proposal);
+    let kept = RefCell::default();
+    let own = Asked { kind: Some(proposal.kind), off: asked.off, kept: &kept };
+    let how = Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()) };
+    let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
+    Some((composed.back(ink, &proposal, parts), proposal.kind, proposal.score))
+}
+
+/// Gives a kind the score of its reader; the others share the rest.
+fn decide_for(scores: &mut [Scored], kind: Kind, score: f64) {
+    let rest: f64 = scores.iter().filter(|s| s.kind != kind).map(|s| s.score).sum();
+    for s in scores {
+        s.score = if s.kind == kind { score } else { s.score / rest.max(f64::MIN_POSITIVE) * (1.0 - score) };
+    }
 }
 
 /// How one reading of a plant is to come about: taken for a kind, or by structure, or by whatever its strokes say.

@@ -111,9 +111,9 @@ impl<'a> Collected<'a> {
 }
 
 /// From the ink of one plant to that of the whole drawing.
-struct Back {
-    whole: InkMap,
-    part: InkMap,
+pub(crate) struct Back {
+    pub(crate) whole: InkMap,
+    pub(crate) part: InkMap,
 }
 
 impl Back {
@@ -144,7 +144,7 @@ impl Back {
     }
 
     /// Adds one plant's reading to that of all.
-    fn add(&self, all: &mut Reading, mut one: Reading) {
+    pub(crate) fn add(&self, all: &mut Reading, mut one: Reading) {
         let first = all.axes.len();
         for axis in &mut one.axes {
             self.line(&mut axis.points);

@@ -48,6 +48,11 @@ impl Structure {
         Self { classes, hidden }
     }
 
+    /// What a reader says of the strokes that it made of the drawing: the class of each, and where blades are attached.
+    pub(crate) fn of_parts(classes: Vec<StrokeClass>, hidden: LiteMap<usize, Hidden>) -> Self {
+        Self { classes: classes.into_iter().map(Some).collect(), hidden }
+    }
+
     /// The class of each stroke of which the structure says one.
     pub(crate) fn classes(&self) -> &[Option<StrokeClass>] {
         &self.classes

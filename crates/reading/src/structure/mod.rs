@@ -9,13 +9,21 @@
 //! | `hidden` | outlines completed behind what covers them |
 //! | `classes` | what strokes are by these facts |
 //! | `score` | how well a reading explains the drawing |
+//! | `faces`, `shape` | what lines enclose together, and the form of outlines |
+//! | `readers` | plants that are known by the arrangement of their faces and lines |
+//! | `compose` | from the parts that a reader proposes to a reading |
 
 mod classes;
+mod compose;
+mod faces;
+mod shape;
 mod hidden;
+pub(crate) mod readers;
 mod score;
 mod sheet;
 
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
+pub(crate) use compose::Composed;
 pub(crate) use score::score;
 pub(crate) use sheet::Sheet;
 

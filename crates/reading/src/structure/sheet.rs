@@ -169,7 +169,7 @@ fn holder(ink: &Ink, facts: &[Facts], k: usize) -> Option<usize> {
 }
 
 /// Width over length of a set of points: the square root of the ratio of their second moments.
-fn slenderness(points: &[DVec2]) -> f64 {
+pub(crate) fn slenderness(points: &[DVec2]) -> f64 {
     let [long, wide] = pca2(points).map_or([0.0; 2], |p| p.lambda);
     if long > 0.0 { (wide / long).sqrt() } else { 1.0 }
 }

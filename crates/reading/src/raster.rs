@@ -1,0 +1,154 @@
+//! A drawing as a picture of square cells, and what can be found in one: `lines -> cells -> pieces and their outlines`.
+
+use geom::bounds;
+use glam::DVec2;
+
+/// A picture of square cells with a margin in which the ball has room.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells {
+    pub(crate) wide: usize,
+    pub(crate) tall: usize,
+    /// Size of a cell, in the unit of the lines.
+    pub(crate) size: f64,
+    corner: DVec2,
+}
+
+impl Cells {
+    /// `along`: cells of the longer side of the box of the lines; `margin`: cells round that box. `None` for lines without an
+    /// extent.
+    pub(crate) fn new(lines: &[&[DVec2]], along: usize, margin: impl Fn(f64) -> f64) -> Option<Self> {
+        let (lo, hi) = lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let size = (hi - lo).max_element() / along as f64;
+        if !(size.is_finite() && size > 0.0) {
+            return None;
+        }
+        let margin = margin(size);
+        let count = |length: f64| whole((length / size).ceil() + 2.0 * margin + 1.0);
+        let corner = lo - DVec2::splat(margin * size);
+        Some(Self { wide: count(hi.x - lo.x), tall: count(hi.y - lo.y), size, corner })
+    }
+
+    /// How many there are.
+    pub(crate) const fn count(&self) -> usize {
+        self.wide * self.tall
+    }
+
+    /// The cell in which a point lies; the nearest one of a point beyond.
+    pub(crate) fn place(&self, p: DVec2) -> usize {
+        let q = (p - self.corner) / self.size;
+        self.row(q.y, self.tall) * self.wide + self.row(q.x, self.wide)
+    }
+
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the cells")]
+    fn row(&self, v: f64, n: usize) -> usize {
+        (v.max(0.0) as usize).min(n - 1)
+    }
+
+    /// Steps from a cell to all cells within a ball, and those beside it.
+    pub(crate) fn around(&self, at: usize, ball: &[(isize, isize)]) -> impl Iterator<Item = usize> {
+        let (x, y, wide, tall) = (at % self.wide, at / self.wide, self.wide, self.tall);
+        ball.iter().filter_map(move |&(dx, dy)| {
+            let (x, y) = (x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
+            (x < wide && y < tall).then_some(y * wide + x)
+        })
+    }
+}
+
+/// Steps to the cells beside, above and below.
+pub(crate) const BESIDE: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+/// All cells that a ball covers in some cell.
+pub(crate) fn grown(cells: &Cells, from: &[bool], ball: &[(isize, isize)]) -> Vec<bool> {
+    let mut all = from.to_vec();
+    let rim = |k: usize| cells.around(k, &BESIDE).any(|b| !from[b]);
+    for at in (0..from.len()).filter(|&k| from[k] && rim(k)) {
+        cells.around(at, ball).for_each(|k| all[k] = true);
+    }
+    all
+}
+
+/// The largest piece of cells that hangs together.
+pub(crate) fn largest(cells: &Cells, is: &dyn Fn(usize) -> bool) -> Option<Vec<bool>> {
+    let mut seen = vec![false; cells.count()];
+    let mut best: (usize, Option<Vec<bool>>) = (0, None);
+    for k in 0..seen.len() {
+        if !seen[k] && is(k) {
+            let piece = flood(cells, k, is);
+            seen.iter_mut().zip(&piece).for_each(|(s, p)| *s |= p);
+            let area = piece.iter().filter(|p| **p).count();
+            if area > best.0 {
+                best = (area, Some(piece));
+            }
+        }
+    }
+    best.1
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
+fn whole(x: f64) -> usize {
+    x.max(0.0) as usize
+}
+
+/// Steps to all cells within a reach, in cells.
+pub(crate) fn ball(reach: f64) -> Vec<(isize, isize)> {
+    let n = whole(reach.ceil()).cast_signed();
+    let square = (-n..=n).flat_map(|y| (-n..=n).map(move |x| (x, y)));
+    square.filter(|&(x, y)| ((x * x + y * y) as f64) <= reach * reach).collect()
+}
+
+/// Cells through which lines run.
+pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
+    let mut drawn = vec![false; cells.count()];
+    for pair in lines.iter().flat_map(|l| l.windows(2)) {
+        let steps = whole((pair[0].distance(pair[1]) / (0.5 * cells.size)).ceil()).clamp(1, 4 * (cells.wide + cells.tall));
+        (0..=steps).for_each(|i| drawn[cells.place(pair[0].lerp(pair[1], i as f64 / steps as f64))] = true);
+    }
+    drawn
+}
+
+/// What hangs together with a cell.
+pub(crate) fn flood(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool) -> Vec<bool> {
+    let mut found = vec![false; cells.count()];
+    let mut ahead = vec![from];
+    found[from] = true;
+    while let Some(at) = ahead.pop() {
+        for k in cells.around(at, &BESIDE) {
+            if !found[k] && is(k) {
+                found[k] = true;
+                ahead.push(k);
+            }
+        }
+    }
+    found
+}
+
+/// The middles of the cells at the rim of a piece, counter-clockwise: lines run through them.
+pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
+    let first = piece.iter().position(|p| *p)?;
+    let has = |(x, y): (isize, isize)| {
+        let cell = usize::try_from(y).ok().zip(usize::try_from(x).ok());
+        cell.is_some_and(|(y, x)| x < cells.wide && y < cells.tall && piece[y * cells.wide + x])
+    };
+    // The cells to the left and to the right of the side that leaves a corner in each direction.
+    let left = |(x, y): (isize, isize), way: usize| [(x, y), (x - 1, y), (x - 1, y - 1), (x, y - 1)][way];
+    let right = |(x, y): (isize, isize), way: usize| [(x, y - 1), (x, y), (x - 1, y), (x - 1, y - 1)][way];
+    // The lowest row of the piece: below its first cell there is nothing.
+    let start = ((first % cells.wide).cast_signed(), (first / cells.wide).cast_signed());
+    let (mut at, mut way) = (start, 0_usize);
+    let mut line: Vec<DVec2> = Vec::new();
+    loop {
+        let (x, y) = left(at, way);
+        let middle = cells.corner + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * cells.size;
+        if line.last() != Some(&middle) {
+            line.push(middle);
+        }
+        at = (at.0 + BESIDE[way].0, at.1 + BESIDE[way].1);
+        // To the left, straight on, to the right: where the piece is on the left and nothing on the right.
+        let turns = [way + 1, way, way + 3].map(|w| w % BESIDE.len());
+        way = turns.into_iter().find(|&w| has(left(at, w)) && !has(right(at, w)))?;
+        if (at, way) == (start, 0) {
+            return Some(line);
+        }
+    }
+}
+

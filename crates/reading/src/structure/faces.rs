@@ -1,0 +1,386 @@
+//! What lines enclose together: the faces of a drawing, and how each line runs between them.
+//!
+//! `strokes -> bridged gaps -> faces, runs`
+//!
+//! A pen does not close what it draws: an outline ends where another begins, a petal stops behind its neighbour, a vein leaves
+//! a leaf through the gap at its base. The faces are found in a picture of square cells (gaps are bridged first); their outlines
+//! run along the drawn lines themselves.
+
+use base::LiteMap;
+use geom::{polyline_length, simple_outline, simplify};
+use glam::DVec2;
+use ink::{Ink, StrokeMode};
+
+use super::shape::Shape;
+use crate::near::Near;
+use crate::raster::{BESIDE, Cells, around};
+
+/// When gaps are bridged, and what is too small to count. Lengths are in ink units (the drawing's diagonal is 1).
+struct FaceLimits {
+    /// Cells along the longer side of the drawing.
+    along: usize,
+    /// Ends nearer than this share of the stroke's length close it.
+    closed: f64,
+    /// An end nearer than this to another stroke lies on it.
+    junction: f64,
+    /// Two free ends nearer than this, and nearest to one another, belong together: the width of the pen of an icon.
+    ends: f64,
+    /// ... and nearer than this share of the shorter of their strokes.
+    ends_share: f64,
+    /// A free end nearer than this to the side of a stroke belongs to it.
+    side: f64,
+    /// Faces of fewer cells are ink that ran together.
+    dirt: usize,
+    /// Runs of a line shorter than this are of the run before.
+    run: f64,
+    /// What lies on either side of a line is looked for at these distances, in cells.
+    sides: [f64; 3],
+    /// Two faces are one that a vein divides if their outlines have at least this share of the shorter one in common,
+    vein: f64,
+    /// the smaller has at least this share of the other's area,
+    vein_area: f64,
+    /// and both together are as convex as this (area over that of the hull).
+    vein_convex: f64,
+    /// More faces are no veins: nothing is united.
+    most_united: usize,
+}
+
+const LIMITS: FaceLimits = FaceLimits {
+    along: 256,
+    closed: 0.03,
+    junction: 0.0075,
+    ends: 0.08,
+    ends_share: 0.35,
+    side: 0.03,
+    dirt: 24,
+    run: 0.02,
+    sides: [1.6, 2.6, 3.6],
+    vein: 0.2,
+    vein_area: 0.25,
+    vein_convex: 0.92,
+    most_united: 48,
+};
+
+/// Labels of cells: ink, and the outside; faces follow.
+const INK: u32 = u32::MAX;
+const OUTSIDE: u32 = 0;
+
+/// What lines enclose.
+#[derive(Clone, Debug)]
+pub(crate) struct Face {
+    /// Along the lines, simple, counter-clockwise.
+    pub(crate) outline: Vec<DVec2>,
+    pub(crate) shape: Shape,
+    /// The strokes along which its outline runs, the longest part first.
+    pub(crate) strokes: Vec<usize>,
+}
+
+/// Where a part of a line runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// The outside lies on both sides of it.
+    Outside,
+    /// The same face lies on both sides of it.
+    Within(usize),
+    /// It parts two faces, or a face from the outside.
+    Between,
+}
+
+/// A part of a stroke that runs in one place.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub(crate) stroke: usize,
+    pub(crate) place: Place,
+    pub(crate) points: Vec<DVec2>,
+}
+
+/// The faces of a drawing and the runs of its lines.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Faces {
+    pub(crate) faces: Vec<Face>,
+    pub(crate) runs: Vec<Run>,
+}
+
+/// One stroke's way through a cell.
+#[derive(Clone, Copy)]
+struct Mark {
+    stroke: usize,
+    at: DVec2,
+}
+
+/// The picture: what each cell belongs to, and where a line runs through it.
+struct Picture {
+    cells: Cells,
+    label: Vec<u32>,
+    marks: Vec<Option<Mark>>,
+}
+
+impl Faces {
+    /// The faces of all strokes drawn as parts. Cost: the cells of a picture of fixed size, and linear in points; asked for
+    /// drawings of at most some hundred strokes.
+    pub(crate) fn new(ink: &Ink) -> Self {
+        let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
+        let Some(cells) = Cells::new(&lines, LIMITS.along, |_| 3.0) else { return Self::default() };
+        let count = cells.count();
+        let mut picture = Picture { cells, label: vec![OUTSIDE; count], marks: vec![None; count] };
+        for (k, stroke) in ink.strokes.iter().enumerate() {
+            if stroke.mode == StrokeMode::Parts {
+                picture.draw(&stroke.points, k);
+            }
+        }
+        for (line, stroke) in bridges(ink) {
+            picture.draw(&line, stroke);
+        }
+        let found = picture.flood();
+        let united = picture.unite(found);
+        let faces: Vec<Option<Face>> = (1..=united).map(|label| picture.face(&[label])).collect();
+        let mut rows = vec![None; faces.len()];
+        let mut kept = Vec::new();
+        for (label, face) in faces.into_iter().enumerate() {
+            if let Some(face) = face {
+                rows[label] = Some(kept.len());
+                kept.push(face);
+            }
+        }
+        let runs = (0..ink.strokes.len()).flat_map(|k| picture.runs(k, &ink.strokes[k].points, &rows)).collect();
+        Self { faces: kept, runs }
+    }
+}
+
+impl Picture {
+    fn draw(&mut self, line: &[DVec2], stroke: usize) {
+        for pair in line.windows(2) {
+            let steps = (pair[0].distance(pair[1]) / (0.5 * self.cells.size)).ceil().clamp(1.0, 4096.0);
+            let mut step = 0.0;
+            while step <= steps {
+                let at = pair[0].lerp(pair[1], step / steps);
+                let cell = self.cells.place(at);
+                self.label[cell] = INK;
+                self.marks[cell].get_or_insert(Mark { stroke, at });
+                step += 1.0;
+            }
+        }
+    }
+
+    /// Labels what lines enclose, 1 and up; returns the last label.
+    fn flood(&mut self) -> u32 {
+        const FREE: u32 = u32::MAX - 1;
+        self.label.iter_mut().filter(|l| **l != INK).for_each(|l| *l = FREE);
+        let mut next = OUTSIDE;
+        for from in 0..self.label.len() {
+            if self.label[from] != FREE {
+                continue;
+            }
+            let mut piece = vec![from];
+            self.label[from] = next;
+            let mut k = 0;
+            while let Some(&at) = piece.get(k) {
+                k += 1;
+                for beside in self.cells.around(at, &BESIDE) {
+                    if self.label[beside] == FREE {
+                        self.label[beside] = next;
+                        piece.push(beside);
+                    }
+                }
+            }
+            if next != OUTSIDE && piece.len() < LIMITS.dirt {
+                piece.into_iter().for_each(|at| self.label[at] = INK);
+            } else {
+                next += 1;
+            }
+        }
+        next.saturating_sub(1)
+    }
+
+    /// The outline around all cells of some labels, along the ink.
+    fn face(&self, labels: &[u32]) -> Option<Face> {
+        let own: Vec<bool> = self.label.iter().map(|l| labels.contains(l)).collect();
+        let square: Vec<(isize, isize)> = (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y))).collect();
+        let mut mask = own.clone();
+        for at in (0..own.len()).filter(|&at| own[at]) {
+            self.cells.around(at, &square).filter(|&b| self.label[b] == INK).for_each(|b| mask[b] = true);
+        }
+        let rim = around(&self.cells, &mask)?;
+        let mut owners: LiteMap<usize, usize> = LiteMap::new();
+        let along = |p: DVec2| {
+            let mark = self.marks[self.cells.place(p)]?;
+            *owners.entry(mark.stroke).or_insert(0) += 1;
+            Some(mark.at)
+        };
+        let line: Vec<DVec2> = rim.into_iter().filter_map(along).collect();
+        let outline = simple_outline(&simplify(&line, 0.3 * self.cells.size))?;
+        let shape = Shape::new(&outline)?;
+        let mut strokes: Vec<(usize, usize)> = owners.iter().map(|(k, n)| (*k, *n)).collect();
+        base::sort_by_key(&mut strokes, |(k, n)| (core::cmp::Reverse(*n), *k));
+        Some(Face { outline, shape, strokes: strokes.into_iter().map(|(k, _)| k).collect() })
+    }
+
+    /// Gives the halves of a leaf that its midrib divides one label; returns the last label.
+    fn unite(&mut self, last: u32) -> u32 {
+        if last as usize > LIMITS.most_united {
+            return last;
+        }
+        let mut last = last;
+        while let Some((keep, give)) = self.halves(last) {
+            // The last label fills the gap.
+            for label in &mut self.label {
+                if *label == give {
+                    *label = keep;
+                } else if *label == last && give != last {
+                    *label = give;
+                }
+            }
+            // Ink between the halves is of the line that divides them: it stays ink.
+            last -= 1;
+        }
+        last
+    }
+
+    /// Two faces that are halves of one, if there are such.
+    fn halves(&self, last: u32) -> Option<(u32, u32)> {
+        let common = self.common();
+        let faces: Vec<Option<Face>> = (1..=last).map(|l| self.face(&[l])).collect();
+        let length = |l: u32| faces[l as usize - 1].as_ref().map_or(0.0, |f| f.shape.perimeter);
+        let area = |l: u32| faces[l as usize - 1].as_ref().map_or(0.0, |f| f.shape.area);
+        common.iter().find_map(|(&(a, b), &cells)| {
+            let shared = cells as f64 * self.cells.size;
+            let (small, large) = (area(a).min(area(b)), area(a).max(area(b)));
+            let near = shared > LIMITS.vein * length(a).min(length(b)) && small > LIMITS.vein_area * large;
+            let whole = if near { self.face(&[a, b]) } else { None };
+            whole.filter(|f| f.shape.convexity > LIMITS.vein_convex).map(|_| (a, b))
+        })
+    }
+
+    /// How many cells of ink part two faces.
+    fn common(&self) -> LiteMap<(u32, u32), usize> {
+        let mut common = LiteMap::new();
+        for at in (0..self.label.len()).filter(|&at| self.label[at] == INK) {
+            let mut labels: Vec<u32> = self
+                .cells
+                .around(at, &BESIDE)
+                .map(|b| self.label[b])
+                .filter(|l| *l != INK && *l != OUTSIDE)
+                .collect();
+            labels.sort_unstable();
+            labels.dedup();
+            if let [a, b] = labels[..] {
+                *common.entry((a, b)).or_insert(0) += 1;
+            }
+        }
+        common
+    }
+
+    /// The label on one side of a line; `None` where ink lies all the way.
+    fn beside(&self, p: DVec2, out: DVec2) -> Option<u32> {
+        let look = |d: &f64| self.label[self.cells.place(p + out * (d * self.cells.size))];
+        LIMITS.sides.iter().map(look).find(|l| *l != INK)
+    }
+
+    fn runs(&self, stroke: usize, points: &[DVec2], rows: &[Option<usize>]) -> Vec<Run> {
+        let n = points.len();
+        let face = |label: u32| rows.get((label as usize).wrapping_sub(1)).copied().flatten();
+        let place = |k: usize| {
+            let out = (points[(k + 1).min(n - 1)] - points[k.saturating_sub(1)]).normalize_or_zero().perp();
+            match (self.beside(points[k], out), self.beside(points[k], -out)) {
+                (Some(OUTSIDE), Some(OUTSIDE)) => Some(Place::Outside),
+                (Some(a), Some(b)) if a == b => face(a).map(Place::Within),
+                (Some(_), Some(_)) => Some(Place::Between),
+                _ => None,
+            }
+        };
+        let mut places: Vec<Option<Place>> = (0..n).map(place).collect();
+        // Unknown where lines run together: as before it, or as after it.
+        for k in 1..n {
+            places[k] = places[k].or(places[k - 1]);
+        }
+        for k in (0..n.saturating_sub(1)).rev() {
+            places[k] = places[k].or(places[k + 1]);
+        }
+        let mut runs: Vec<(Place, usize, usize)> = Vec::new();
+        for (k, place) in places.into_iter().enumerate() {
+            let place = place.unwrap_or(Place::Between);
+            match runs.last_mut() {
+                Some((before, _, end)) if *before == place => *end = k,
+                _ => runs.push((place, k, k)),
+            }
+        }
+        let length = |&(_, a, b): &(Place, usize, usize)| polyline_length(&points[a..=b]);
+        while runs.len() > 1 {
+            let Some(short) = (0..runs.len()).find(|&i| length(&runs[i]) < LIMITS.run) else { break };
+            let (_, from, to) = runs.remove(short);
+            if short > 0 {
+                runs[short - 1].2 = to;
+            } else {
+                runs[0].1 = from;
+            }
+            let mut whole: Vec<(Place, usize, usize)> = Vec::new();
+            for run in runs.drain(..) {
+                match whole.last_mut() {
+                    Some(before) if before.0 == run.0 => before.2 = run.2,
+                    _ => whole.push(run),
+                }
+            }
+            runs = whole;
+        }
+        runs.into_iter()
+            .map(|(place, from, to)| {
+                // The step to the next run is of this one.
+                Run { stroke, place, points: points[from..=(to + 1).min(n - 1)].to_vec() }
+            })
+            .filter(|run| run.points.len() > 1)
+            .collect()
+    }
+}
+
+/// Short lines over the gaps between free ends, and from free ends to the sides of strokes; each with a stroke that it belongs to.
+fn bridges(ink: &Ink) -> Vec<(Vec<DVec2>, usize)> {
+    let mut near = Near::new(LIMITS.side);
+    let parts = || ink.strokes.iter().enumerate().filter(|(_, s)| s.mode == StrokeMode::Parts);
+    parts().for_each(|(k, s)| near.add_line(k, &s.points));
+    let mut fine = Near::new(LIMITS.junction);
+    parts().for_each(|(k, s)| fine.add_line(k, &s.points));
+    let mut free: Vec<(DVec2, usize)> = Vec::new();
+    for (k, stroke) in parts() {
+        let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
+        if start.distance(end) < LIMITS.closed * stroke.length {
+            continue;
+        }
+        let lies_on = |p: DVec2| fine.nearest(p, LIMITS.junction, |owner| owner != k).is_some();
+        free.extend([start, end].into_iter().filter(|&p| !lies_on(p)).map(|p| (p, k)));
+    }
+    let nearest = |i: usize| {
+        let (p, k) = free[i];
+        let others = (0..free.len()).filter(|&j| j != i).map(|j| {
+            let (q, other) = free[j];
+            let short = ink.strokes[k].length.min(ink.strokes[other].length);
+            (p.distance(q), j, short)
+        });
+        let close = |&(d, _, short): &(f64, usize, f64)| d < LIMITS.ends && d < LIMITS.ends_share * short;
+        others.filter(close).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j, _)| j)
+    };
+    let partner: Vec<Option<usize>> = (0..free.len()).map(nearest).collect();
+    let mut lines = Vec::new();
+    for (i, &(p, k)) in free.iter().enumerate() {
+        match partner[i] {
+            Some(j) if partner[j] == Some(i) => {
+                if i < j {
+                    lines.push((vec![p, free[j].0], k));
+                }
+            }
+            _ => {
+                if let Some((entry, _)) = near.nearest(p, LIMITS.side, |owner| owner != k) {
+                    lines.push((vec![p, entry.point], k));
+                }
+            }
+        }
+    }
+    // A stroke that overlaps its own beginning closes by itself; one that stops short of its own side is left open.
+    for (k, stroke) in parts() {
+        let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
+        let gap = start.distance(end);
+        if gap > 0.0 && gap < LIMITS.closed * stroke.length {
+            lines.push((vec![start, end], k));
+        }
+    }
+    lines
+}

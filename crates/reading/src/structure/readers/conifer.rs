@@ -1,0 +1,110 @@
+//! A conifer in outline: a crown with its apex in the middle, widest at its foot, over a trunk.
+
+use geom::{bounds, polyline_length};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::Face;
+use super::{Part, Proposal, Scene};
+use crate::Kind;
+use crate::contour::runs_at;
+
+/// What a conifer must have. Shares of the crown's height or width.
+struct ConiferLimits {
+    /// The crown covers more than this share of all that is enclosed.
+    whole: f64,
+    /// Its apex lies within this share of its width from its middle,
+    centred: f64,
+    /// and is narrower than this at a tenth of the height below the top.
+    pointed: f64,
+    /// It is widest below this height.
+    widest: f64,
+    /// At each level, left and right of the apex differ by less than this share of the width.
+    lopsided: f64,
+    /// Its height is at least this share of its width.
+    tall: f64,
+    /// It has no level narrower than this share of the widest of those above: tiers, no necks.
+    tiers: f64,
+    /// Levels at which it is measured.
+    levels: usize,
+    /// A triangle fills this much of its box; more than that is a dome.
+    full: f64,
+    score: f64,
+}
+
+const CONIFER: ConiferLimits = ConiferLimits {
+    whole: 0.7,
+    centred: 0.12,
+    pointed: 0.42,
+    widest: 0.45,
+    lopsided: 0.22,
+    tall: 0.75,
+    tiers: 0.45,
+    levels: 16,
+    full: 0.68,
+    score: 0.9,
+};
+
+pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
+    let crown = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > CONIFER.whole * total)?;
+    let face = &scene.faces[crown];
+    if !is_crown(face) {
+        return None;
+    }
+    let (low, high) = bounds(&face.outline)?;
+    // The trunk: lines or a face below the crown, in its middle.
+    let below = |p: DVec2| {
+        p.y < low.y + 0.3 * (high.y - low.y) && (p.x - low.midpoint(high).x).abs() < 0.3 * (high.x - low.x)
+    };
+    let stands = |points: &[DVec2]| bounds(points).is_some_and(|(a, b)| a.y < low.y - 0.02 && below(a.midpoint(b)));
+    let trunk_face = (0..scene.faces.len()).find(|&k| k != crown && stands(&scene.faces[k].outline));
+    let lines: Vec<_> = scene.lines.iter().filter(|l| stands(&l.points)).collect();
+    if trunk_face.is_none() && lines.is_empty() {
+        return None;
+    }
+    if scene.lines.iter().any(|l| polyline_length(&l.points) > 0.6 * (high.y - low.y)) {
+        return None;
+    }
+    let mut parts = vec![Part::of_face(face, StrokeClass::Crown, None)];
+    match trunk_face {
+        Some(k) => parts.push(Part::of_face(&scene.faces[k], StrokeClass::TrunkOutline, None)),
+        None => {
+            let class = if lines.len() > 1 { StrokeClass::TrunkOutline } else { StrokeClass::Axis };
+            parts.extend(lines.iter().map(|l| Part::of_run(l, class)));
+        }
+    }
+    Some(Proposal { kind: Kind::Conifer, parts, score: CONIFER.score })
+}
+
+/// Whether an outline is the crown of a conifer.
+fn is_crown(face: &Face) -> bool {
+    let outline = &face.outline;
+    let Some((low, high)) = bounds(outline) else { return false };
+    let size = high - low;
+    let Some(apex) = outline.iter().max_by(|a, b| a.y.total_cmp(&b.y)) else { return false };
+    let centred = (apex.x - low.midpoint(high).x).abs() < CONIFER.centred * size.x;
+    let level = |k: usize| {
+        let y = high.y - (k as f64 + 0.5) / CONIFER.levels as f64 * size.y;
+        let runs = runs_at(outline, y);
+        Some((runs.first()?.0, runs.last()?.1))
+    };
+    let Some(levels) = (0..CONIFER.levels).map(level).collect::<Option<Vec<(f64, f64)>>>() else { return false };
+    let widths: Vec<f64> = levels.iter().map(|(a, b)| b - a).collect();
+    let even = levels.iter().all(|(a, b)| ((b - apex.x) - (apex.x - a)).abs() < CONIFER.lopsided * size.x);
+    let most = widths.iter().copied().fold(0.0, f64::max);
+    let widest = widths.iter().position(|w| *w == most).unwrap_or(0);
+    let mut before: f64 = 0.0;
+    let tiered = widths.iter().all(|&w| {
+        let ok = w > CONIFER.tiers * before;
+        before = before.max(w);
+        ok
+    });
+    centred
+        && even
+        && tiered
+        && widths[1] < CONIFER.pointed * most
+        && widest as f64 > (1.0 - CONIFER.widest) * CONIFER.levels as f64
+        && size.y > CONIFER.tall * size.x
+        && face.shape.area < CONIFER.full * size.x * size.y
+}

@@ -1,0 +1,89 @@
+//! One simple leaf: an outline with a tip, and a midrib or a petiole at the other end.
+
+use geom::polyline_length;
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::{Face, Run};
+use super::{LIMITS, Part, Proposal, Scene, is_leaf_from, length_of};
+use crate::Kind;
+use crate::blade::nearest_on_ring;
+
+/// What a leaf must have.
+struct LeafLimits {
+    /// It covers more than this share of all that is enclosed.
+    whole: f64,
+    /// Its midrib is at least this share of its length,
+    rib: f64,
+    /// leads from base to tip within this angle (the cosine),
+    rib_along: f64,
+    /// and begins this near to its base, a share of its length.
+    rib_base: f64,
+    /// Its petiole is at most this share of its length, and all lines outside together.
+    petiole: f64,
+    /// Without a midrib it is more slender than this.
+    without_rib: f64,
+    /// How sure the reader is of a leaf with a midrib, and of one with a petiole alone.
+    score: [f64; 2],
+}
+
+const LEAF: LeafLimits = LeafLimits {
+    whole: 0.9,
+    rib: 0.3,
+    rib_along: 0.8,
+    rib_base: 0.22,
+    petiole: 1.1,
+    without_rib: 0.8,
+    score: [0.95, 0.75],
+};
+
+pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
+    let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > LEAF.whole * total)?;
+    let face = &scene.faces[row];
+    let length = face.shape.length();
+    if length_of(scene.lines.iter()) > LEAF.petiole * length {
+        return None;
+    }
+    let petioles: Vec<(&Run, DVec2)> =
+        scene.lines.iter().filter_map(|l| Some((l, scene.touching_end(l, row)?))).collect();
+    if petioles.len() < scene.lines.len() || petioles.len() > 2 {
+        return None;
+    }
+    let petiole = petioles.iter().max_by(|a, b| reach(a.0).total_cmp(&reach(b.0)));
+    let ribs: Vec<(&Run, DVec2)> =
+        scene.marks_of(row).filter_map(|mark| Some((mark, rib_base(face, mark)?))).collect();
+    let rib = ribs.iter().max_by(|a, b| reach(a.0).total_cmp(&reach(b.0)));
+    let root = match (petiole, rib) {
+        (Some(&(_, root)), _) | (None, Some(&(_, root))) => root,
+        (None, None) => return None,
+    };
+    if !is_leaf_from(face, root) || petioles.iter().any(|(_, at)| at.distance(root) > LEAF.rib_base * length) {
+        return None;
+    }
+    let has_rib = rib.is_some_and(|(_, base)| base.distance(root) < LEAF.rib_base * length);
+    let score = match has_rib {
+        true => LEAF.score[0],
+        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => LEAF.score[1],
+        false => return None,
+    };
+    let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
+    parts.extend(scene.marks_of(row).map(|mark| Part::of_run(mark, StrokeClass::Vein)));
+    parts.extend(petioles.iter().map(|(line, _)| Part::of_run(line, StrokeClass::Axis)));
+    Some(Proposal { kind: Kind::Leaf, parts, score })
+}
+
+fn reach(run: &Run) -> f64 {
+    polyline_length(&run.points)
+}
+
+/// Where a line within a leaf begins, if it is the midrib: at the margin, from where it leads to the tip.
+fn rib_base(face: &Face, mark: &Run) -> Option<DVec2> {
+    let (a, b) = (mark.points[0], mark.points[mark.points.len() - 1]);
+    let off = |p: DVec2| nearest_on_ring(&face.outline, p).1;
+    let (base, head) = if off(a) < off(b) { (a, b) } else { (b, a) };
+    let tip = face.shape.tip_from(base)?;
+    let along = (head - base).normalize_or_zero().dot((tip - base).normalize_or_zero());
+    (off(base) < LIMITS.touch && base.distance(head) > LEAF.rib * face.shape.length() && along > LEAF.rib_along)
+        .then_some(base)
+}
