@@ -116,6 +116,10 @@ pub(crate) struct Draft<'a> {
     pub(crate) one_go: LiteMap<usize, OneGo>,
     /// Blades that go on behind others: their completed outlines.
     pub(crate) hidden: LiteMap<usize, Hidden>,
+    /// Petals of flowers that are known as a whole, by the strokes of each.
+    pub(crate) heads: Vec<Vec<usize>>,
+    /// Its strokes are the parts of a plant already: none is cut in two.
+    pub(crate) is_cut: bool,
 }
 
 impl<'a> Draft<'a> {
@@ -147,6 +151,8 @@ impl<'a> Draft<'a> {
             rings: Vec::new(),
             one_go: LiteMap::new(),
             hidden: LiteMap::new(),
+            heads: Vec::new(),
+            is_cut: false,
         }
     }
 
@@ -162,6 +168,7 @@ impl<'a> Draft<'a> {
             }
         }
         self.hidden = structure.hidden().clone();
+        self.heads = structure.heads().to_vec();
     }
 
     /// The whole is taken for a tree: what stands is its trunk, and what leaves that are branches.

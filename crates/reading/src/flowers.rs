@@ -303,6 +303,7 @@ pub(crate) fn gather(
     let mut taken: Vec<bool> = draft.blades.iter().map(|b| b.leaf).collect();
     let usual = base::median(draft.blades.iter().map(|b| b.size).collect()).unwrap_or(0.1);
 
+    known_heads(draft, &mut flowers, &mut roots, &mut taken);
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     off_disc(draft, &mut flowers, &mut roots, &mut taken);
     on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
@@ -332,6 +333,27 @@ pub(crate) fn gather(
         }
     }
     (flowers, roots)
+}
+
+/// Flowers of which the petals are known.
+fn known_heads(
+    draft: &Draft<'_>,
+    flowers: &mut Vec<FlowerDraft>,
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    for head in &draft.heads {
+        let petals: Vec<usize> =
+            (0..draft.blades.len()).filter(|&i| head.contains(&draft.blades[i].stroke)).collect();
+        for &i in &petals {
+            taken[i] = true;
+            roots[i] = Some(roots[i].unwrap_or(draft.blades[i].gap));
+        }
+        if !petals.is_empty() {
+            let centre = mean(petals.iter().filter_map(|&i| roots[i]));
+            flowers.push(FlowerDraft { centre, petals, ..FlowerDraft::default() });
+        }
+    }
 }
 
 /// Petals whose outline comes near a drawn disc; a disc with none stays a flower of its own.

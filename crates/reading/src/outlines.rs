@@ -64,7 +64,7 @@ const THORN: f64 = 0.3;
 /// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or what hangs below the crown.
 pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
     // Where the trunk has two lines of its own, what hangs below is a second round of the crown.
-    if draft.trunk {
+    if draft.trunk || draft.is_cut {
         return;
     }
     let ink = draft.ink;
@@ -259,6 +259,7 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
         let stroke = ring.parts.first().map_or(0, |&p| strokes[p]);
         if draft.bodies.len() < MOST_BODIES
             && draft.kind != Some(Kind::Bush)
+            && !draft.is_cut
             && let Some((trunk, crown)) = neck(&outline, is_tree)
         {
             let source = Some(draft.ink.strokes[stroke].index);

@@ -283,7 +283,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         (reading, said, taken, structure) = (tried, again, None, Some(says));
     }
     let mut sure = None;
-    if free && let Some((composed, proposed, score)) = by_readers(asked, ink) {
+    if free && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores) {
         (reading, said, kind) = (composed, Report::default(), proposed);
         sure = Some(score);
     }
@@ -292,7 +292,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
         let mut again = Report::default();
-        let proposal = Proposal { kind: taken, structure };
+        let proposal = Proposal { kind: taken, structure, is_cut: false };
         let mut tried = attempt(asked, &proposal, ink, &shown, &mut again);
         let was = Kind::of(&tried);
         let before = || {
@@ -436,7 +436,7 @@ const fn bears_no_flower(kind: Kind) -> bool {
 /// One reading of one plant that is taken for a kind; of a tree that came apart by its silhouette, if no class was set by hand.
 fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -> (Reading, Report) {
     let mut report = Report::default();
-    let proposal = Proposal { kind: Some(kind), structure: None };
+    let proposal = Proposal { kind: Some(kind), ..Proposal::default() };
     let reading = attempt(asked, &proposal, ink, classes, &mut report);
     if kind.is_like(Kind::Tree)
         && asked.is_free(ink, classes)
@@ -495,7 +495,7 @@ fn by_structure(
         return None;
     }
     let mut report = Report::default();
-    let proposal = Proposal { kind: None, structure: Some(says.clone()) };
+    let proposal = Proposal { structure: Some(says.clone()), ..Proposal::default() };
     let tried = attempt(asked, &proposal, ink, classes, &mut report);
     let score = |r: &Reading| {
         structure::score(ink, &sheet, r) + structure::LIMITS.weight_of_kind * likely(Kind::of(r))
@@ -506,18 +506,32 @@ fn by_structure(
     (score(&tried) >= score(reading) + margin).then_some((tried, report, says))
 }
 
-/// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure the reader is; of the kind
-/// that was asked for, if one was.
-fn by_readers(asked: &Asked<'_>, ink: &Ink) -> Option<(Reading, Kind, f64)> {
+/// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure that is; of the kind that was
+/// asked for, if one was.
+///
+/// `scores`: how likely each kind is otherwise. A reading stands where it is likelier than the likeliest of the others (Bayes): the
+/// share of its kind times the likelihood of the arrangement.
+fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Reading, Kind, f64)> {
+    let share = |kind: Kind| scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum::<f64>();
+    let best_other = |kind: Kind| {
+        scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).fold(0.0, f64::max)
+    };
+    let odds = |p: &structure::readers::Proposal| {
+        p.likelihood * share(p.kind) / best_other(p.kind).max(f64::MIN_POSITIVE)
+    };
     let proposals = structure::readers::propose(ink);
-    let wanted = |kind: Kind| asked.kind.is_none_or(|asked| asked == kind);
-    let proposal = proposals.into_iter().find(|p| wanted(p.kind))?;
-    let composed = Composed::new(ink, &proposal);
+    if std::env::var_os("DEBUG_READERS").is_some() { for p in &proposals { eprintln!("PRIOR {:?} L {} own {:.6} best {:.4} odds {:.4}", p.kind, p.likelihood, share(p.kind), best_other(p.kind), odds(p)); } }
+    let proposals = proposals.into_iter();
+    let chosen = proposals.filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
+    let proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
+    let score = odds(&proposal) / (1.0 + odds(&proposal));
+    let composed = Composed::new(ink, &proposal, score);
     let kept = RefCell::default();
     let own = Asked { kind: Some(proposal.kind), off: asked.off, kept: &kept };
-    let how = Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()) };
+    let how =
+        Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
-    Some((composed.back(ink, &proposal, parts), proposal.kind, proposal.score))
+    Some((composed.back(ink, &proposal, parts), proposal.kind, score))
 }
 
 /// Gives a kind the score of its reader; the others share the rest.
@@ -533,6 +547,8 @@ fn decide_for(scores: &mut [Scored], kind: Kind, score: f64) {
 struct Proposal {
     kind: Option<Kind>,
     structure: Option<Structure>,
+    /// The strokes are parts already that a reader cut.
+    is_cut: bool,
 }
 
 /// One reading of one plant.
@@ -552,6 +568,7 @@ fn attempt(
     if let Some(structure) = &proposal.structure {
         draft.settle(structure);
     }
+    draft.is_cut = proposal.is_cut;
     rules::apply(&mut draft, off);
     draft.contours();
     draft.find_soil();

@@ -26,6 +26,8 @@ pub(crate) struct Structure {
     classes: Vec<Option<StrokeClass>>,
     /// Completed outlines, by rows.
     hidden: LiteMap<usize, Hidden>,
+    /// Petals of one flower, by rows.
+    heads: Vec<Vec<usize>>,
 }
 
 impl Structure {
@@ -45,12 +47,16 @@ impl Structure {
                 hidden.insert(k, Hidden { outline: points.clone(), root: hidden_root(points) });
             }
         }
-        Self { classes, hidden }
+        Self { classes, hidden, heads: Vec::new() }
     }
 
     /// What a reader says of the strokes that it made of the drawing: the class of each, and where blades are attached.
-    pub(crate) fn of_parts(classes: Vec<StrokeClass>, hidden: LiteMap<usize, Hidden>) -> Self {
-        Self { classes: classes.into_iter().map(Some).collect(), hidden }
+    pub(crate) fn of_parts(
+        classes: Vec<StrokeClass>,
+        hidden: LiteMap<usize, Hidden>,
+        heads: Vec<Vec<usize>>,
+    ) -> Self {
+        Self { classes: classes.into_iter().map(Some).collect(), hidden, heads }
     }
 
     /// The class of each stroke of which the structure says one.
@@ -61,6 +67,11 @@ impl Structure {
     /// Completed outlines of blades, by rows.
     pub(crate) const fn hidden(&self) -> &LiteMap<usize, Hidden> {
         &self.hidden
+    }
+
+    /// Rows of the petals of each flower that is known as a whole.
+    pub(crate) fn heads(&self) -> &[Vec<usize>] {
+        &self.heads
     }
 
     /// Whether it says anything that the classifier does not.

@@ -3,8 +3,8 @@
 use base::LiteMap;
 use ink::{Classified, Ink, Source, StrokeClass};
 
-use super::classes::{Hidden, STRUCTURE, Structure};
-use super::readers::Proposal;
+use super::classes::{Hidden, Structure};
+use super::readers::{ARRANGEMENT, Proposal};
 use crate::several::Back;
 use crate::{OrganWord, Reading, StrokeReading};
 
@@ -16,7 +16,8 @@ pub(crate) struct Composed {
 }
 
 impl Composed {
-    pub(crate) fn new(ink: &Ink, proposal: &Proposal) -> Self {
+    /// `score`: how sure the proposal is, 0 to 1.
+    pub(crate) fn new(ink: &Ink, proposal: &Proposal, score: f64) -> Self {
         let main = |strokes: &[usize]| strokes.first().copied().unwrap_or(0);
         let lines: Vec<_> = proposal.parts.iter().map(|p| (p.points.clone(), main(&p.strokes))).collect();
         let own = ink.with_lines(&lines);
@@ -30,11 +31,11 @@ impl Composed {
         }
         let classes: Vec<StrokeClass> = proposal.parts.iter().map(|p| p.class).collect();
         let said = |&class: &StrokeClass| {
-            let shares = StrokeClass::ALL.map(|c| if c == class { proposal.score } else { 0.0 });
-            let source = Source::Rule(STRUCTURE);
-            Classified { class, confidence: proposal.score, source, shares, shown: None }
+            let shares = StrokeClass::ALL.map(|c| if c == class { score } else { 0.0 });
+            let source = Source::Rule(ARRANGEMENT);
+            Classified { class, confidence: score, source, shares, shown: None }
         };
-        Self { classes: classes.iter().map(said).collect(), structure: Structure::of_parts(classes, hidden), ink: own }
+        Self { classes: classes.iter().map(said).collect(), structure: Structure::of_parts(classes, hidden, proposal.heads.clone()), ink: own }
     }
 
     /// What was read of the parts, as a reading of the drawing: in its coordinates, with its strokes.

@@ -29,6 +29,14 @@ struct FaceLimits {
     ends_share: f64,
     /// A free end nearer than this to the side of a stroke belongs to it.
     side: f64,
+    /// Another free end goes straight on, as it did over this last part of its way, to ink nearer than this,
+    heading: f64,
+    ahead: f64,
+    /// and nearer than this share of its stroke; its own ink is behind it after so many cells.
+    ahead_share: f64,
+    clear: f64,
+    /// Faces hang together over ink of so many cells to either side.
+    seam: isize,
     /// Faces of fewer cells are ink that ran together.
     dirt: usize,
     /// Runs of a line shorter than this are of the run before.
@@ -47,11 +55,16 @@ struct FaceLimits {
 
 const LIMITS: FaceLimits = FaceLimits {
     along: 256,
-    closed: 0.03,
+    closed: 0.13,
     junction: 0.0075,
     ends: 0.08,
     ends_share: 0.35,
     side: 0.03,
+    heading: 0.03,
+    ahead: 0.2,
+    ahead_share: 0.25,
+    clear: 4.0,
+    seam: 3,
     dirt: 24,
     run: 0.02,
     sides: [1.6, 2.6, 3.6],
@@ -73,6 +86,8 @@ pub(crate) struct Face {
     pub(crate) shape: Shape,
     /// The strokes along which its outline runs, the longest part first.
     pub(crate) strokes: Vec<usize>,
+    /// Its cells in the picture.
+    labels: Vec<u32>,
 }
 
 /// Where a part of a line runs.
@@ -95,20 +110,22 @@ pub(crate) struct Run {
 }
 
 /// The faces of a drawing and the runs of its lines.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Faces {
     pub(crate) faces: Vec<Face>,
     pub(crate) runs: Vec<Run>,
+    picture: Picture,
 }
 
 /// One stroke's way through a cell.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Mark {
     stroke: usize,
     at: DVec2,
 }
 
 /// The picture: what each cell belongs to, and where a line runs through it.
+#[derive(Clone, Debug)]
 struct Picture {
     cells: Cells,
     label: Vec<u32>,
@@ -118,9 +135,9 @@ struct Picture {
 impl Faces {
     /// The faces of all strokes drawn as parts. Cost: the cells of a picture of fixed size, and linear in points; asked for
     /// drawings of at most some hundred strokes.
-    pub(crate) fn new(ink: &Ink) -> Self {
+    pub(crate) fn new(ink: &Ink) -> Option<Self> {
         let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
-        let Some(cells) = Cells::new(&lines, LIMITS.along, |_| 3.0) else { return Self::default() };
+        let cells = Cells::new(&lines, LIMITS.along, |_| 3.0)?;
         let count = cells.count();
         let mut picture = Picture { cells, label: vec![OUTSIDE; count], marks: vec![None; count] };
         for (k, stroke) in ink.strokes.iter().enumerate() {
@@ -128,8 +145,14 @@ impl Faces {
                 picture.draw(&stroke.points, k);
             }
         }
-        for (line, stroke) in bridges(ink) {
+        let (bridges, free) = bridges(ink);
+        for (line, stroke) in bridges {
             picture.draw(&line, stroke);
+        }
+        for (points, stroke) in free {
+            if let Some(hit) = picture.ahead(&points) {
+                picture.draw(&[points[points.len() - 1], hit], stroke);
+            }
         }
         let found = picture.flood();
         let united = picture.unite(found);
@@ -143,9 +166,20 @@ impl Faces {
             }
         }
         let runs = (0..ink.strokes.len()).flat_map(|k| picture.runs(k, &ink.strokes[k].points, &rows)).collect();
-        Self { faces: kept, runs }
+        Some(Self { faces: kept, runs, picture })
+    }
+
+    /// Several faces as one: what their outlines enclose together. `None` where they do not hang together by their ink.
+    pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
+        let labels: Vec<u32> = faces.iter().flat_map(|f| f.labels.iter().copied()).collect();
+        let whole = self.picture.face(&labels)?;
+        let parts: f64 = faces.iter().map(|f| f.shape.area).sum();
+        (whole.shape.area > WHOLE * parts).then_some(whole)
     }
 }
+
+/// The outline around several faces has at least this share of their area, or it is that of one of them.
+const WHOLE: f64 = 0.9;
 
 impl Picture {
     fn draw(&mut self, line: &[DVec2], stroke: usize) {
@@ -160,6 +194,25 @@ impl Picture {
                 step += 1.0;
             }
         }
+    }
+
+    /// Where a line that stops short would have gone on to: the first ink ahead of its end, if it is near.
+    fn ahead(&self, points: &[DVec2]) -> Option<DVec2> {
+        let end = *points.last()?;
+        let length = polyline_length(points);
+        let before = geom::point_at(points, (length - LIMITS.heading).max(0.0))?;
+        let way = (end - before).normalize_or_zero();
+        let reach = LIMITS.ahead.min(LIMITS.ahead_share * length);
+        let mut step = LIMITS.clear * self.cells.size;
+        while step < reach {
+            let at = end + way * step;
+            let cell = self.cells.place(at);
+            if self.label[cell] == INK {
+                return self.marks[cell].map(|m| m.at);
+            }
+            step += 0.5 * self.cells.size;
+        }
+        None
     }
 
     /// Labels what lines enclose, 1 and up; returns the last label.
@@ -195,7 +248,10 @@ impl Picture {
     /// The outline around all cells of some labels, along the ink.
     fn face(&self, labels: &[u32]) -> Option<Face> {
         let own: Vec<bool> = self.label.iter().map(|l| labels.contains(l)).collect();
-        let square: Vec<(isize, isize)> = (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y))).collect();
+        // Between two faces several lines may run side by side.
+        let reach = if labels.len() > 1 { LIMITS.seam } else { 1 };
+        let square: Vec<(isize, isize)> =
+            (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y))).collect();
         let mut mask = own.clone();
         for at in (0..own.len()).filter(|&at| own[at]) {
             self.cells.around(at, &square).filter(|&b| self.label[b] == INK).for_each(|b| mask[b] = true);
@@ -212,7 +268,8 @@ impl Picture {
         let shape = Shape::new(&outline)?;
         let mut strokes: Vec<(usize, usize)> = owners.iter().map(|(k, n)| (*k, *n)).collect();
         base::sort_by_key(&mut strokes, |(k, n)| (core::cmp::Reverse(*n), *k));
-        Some(Face { outline, shape, strokes: strokes.into_iter().map(|(k, _)| k).collect() })
+        let strokes = strokes.into_iter().map(|(k, _)| k).collect();
+        Some(Face { outline, shape, strokes, labels: labels.to_vec() })
     }
 
     /// Gives the halves of a leaf that its midrib divides one label; returns the last label.
@@ -332,8 +389,12 @@ impl Picture {
     }
 }
 
-/// Short lines over the gaps between free ends, and from free ends to the sides of strokes; each with a stroke that it belongs to.
-fn bridges(ink: &Ink) -> Vec<(Vec<DVec2>, usize)> {
+/// A line with the stroke that it belongs to.
+type Owned = (Vec<DVec2>, usize);
+
+/// Short lines over the gaps between free ends, and from free ends to the sides of strokes; and strokes whose last point is an
+/// end that stays free.
+fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
     let mut near = Near::new(LIMITS.side);
     let parts = || ink.strokes.iter().enumerate().filter(|(_, s)| s.mode == StrokeMode::Parts);
     parts().for_each(|(k, s)| near.add_line(k, &s.points));
@@ -359,7 +420,7 @@ fn bridges(ink: &Ink) -> Vec<(Vec<DVec2>, usize)> {
         others.filter(close).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j, _)| j)
     };
     let partner: Vec<Option<usize>> = (0..free.len()).map(nearest).collect();
-    let mut lines = Vec::new();
+    let (mut lines, mut loose) = (Vec::new(), Vec::new());
     for (i, &(p, k)) in free.iter().enumerate() {
         match partner[i] {
             Some(j) if partner[j] == Some(i) => {
@@ -370,6 +431,12 @@ fn bridges(ink: &Ink) -> Vec<(Vec<DVec2>, usize)> {
             _ => {
                 if let Some((entry, _)) = near.nearest(p, LIMITS.side, |owner| owner != k) {
                     lines.push((vec![p, entry.point], k));
+                } else {
+                    let mut points = ink.strokes[k].points.clone();
+                    if points[0] == p {
+                        points.reverse();
+                    }
+                    loose.push((points, k));
                 }
             }
         }
@@ -382,5 +449,5 @@ fn bridges(ink: &Ink) -> Vec<(Vec<DVec2>, usize)> {
             lines.push((vec![start, end], k));
         }
     }
-    lines
+    (lines, loose)
 }

@@ -19,13 +19,14 @@ struct CloverLimits {
     meet: f64,
     /// A leaflet is a heart if a notch lies farther from where they meet than this share of its length.
     notch: f64,
-    score: f64,
+    /// See [`Proposal::likelihood`].
+    likelihood: f64,
 }
 
 const CLOVER: CloverLimits =
-    CloverLimits { leaflets: 3..=5, whole: 0.9, alike: 0.45, meet: 0.3, notch: 0.55, score: 0.93 };
+    CloverLimits { leaflets: 3..=4, whole: 0.9, alike: 0.45, meet: 0.3, notch: 0.55, likelihood: 1e7 };
 
-pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let faces = &scene.faces;
     if !CLOVER.leaflets.contains(&faces.len()) {
         return None;
@@ -52,5 +53,5 @@ pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
         .collect();
     parts.extend(stalks.map(|l| Part::of_run(l, StrokeClass::Axis)));
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Leaf, parts, score: CLOVER.score })
+    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: CLOVER.likelihood })
 }

@@ -13,6 +13,8 @@ use crate::contour::runs_at;
 struct ConiferLimits {
     /// The crown covers more than this share of all that is enclosed.
     whole: f64,
+    /// Tiers have more than this share of the area of the largest.
+    tier: f64,
     /// Its apex lies within this share of its width from its middle,
     centred: f64,
     /// and is narrower than this at a tenth of the height below the top.
@@ -29,11 +31,13 @@ struct ConiferLimits {
     levels: usize,
     /// A triangle fills this much of its box; more than that is a dome.
     full: f64,
-    score: f64,
+    /// See [`Proposal::likelihood`].
+    likelihood: f64,
 }
 
 const CONIFER: ConiferLimits = ConiferLimits {
     whole: 0.7,
+    tier: 0.12,
     centred: 0.12,
     pointed: 0.42,
     widest: 0.45,
@@ -42,23 +46,29 @@ const CONIFER: ConiferLimits = ConiferLimits {
     tiers: 0.45,
     levels: 16,
     full: 0.68,
-    score: 0.9,
+    likelihood: 5000.0,
 };
 
-pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
+    let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
     let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
-    let crown = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > CONIFER.whole * total)?;
-    let face = &scene.faces[crown];
-    if !is_crown(face) {
+    // One outline, or tiers one over the other.
+    let tiers: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > CONIFER.tier * largest).collect();
+    let face = match tiers[..] {
+        [one] => one.clone(),
+        _ => scene.union(&tiers)?,
+    };
+    if face.shape.area < CONIFER.whole * total || !is_crown(&face) {
         return None;
     }
+    let is_tier = |k: usize| tiers.iter().any(|t| core::ptr::eq(*t, &scene.faces[k]));
     let (low, high) = bounds(&face.outline)?;
     // The trunk: lines or a face below the crown, in its middle.
     let below = |p: DVec2| {
         p.y < low.y + 0.3 * (high.y - low.y) && (p.x - low.midpoint(high).x).abs() < 0.3 * (high.x - low.x)
     };
     let stands = |points: &[DVec2]| bounds(points).is_some_and(|(a, b)| a.y < low.y - 0.02 && below(a.midpoint(b)));
-    let trunk_face = (0..scene.faces.len()).find(|&k| k != crown && stands(&scene.faces[k].outline));
+    let trunk_face = (0..scene.faces.len()).find(|&k| !is_tier(k) && stands(&scene.faces[k].outline));
     let lines: Vec<_> = scene.lines.iter().filter(|l| stands(&l.points)).collect();
     if trunk_face.is_none() && lines.is_empty() {
         return None;
@@ -66,7 +76,7 @@ pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
     if scene.lines.iter().any(|l| polyline_length(&l.points) > 0.6 * (high.y - low.y)) {
         return None;
     }
-    let mut parts = vec![Part::of_face(face, StrokeClass::Crown, None)];
+    let mut parts = vec![Part::of_face(&face, StrokeClass::Crown, None)];
     match trunk_face {
         Some(k) => parts.push(Part::of_face(&scene.faces[k], StrokeClass::TrunkOutline, None)),
         None => {
@@ -74,7 +84,7 @@ pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
             parts.extend(lines.iter().map(|l| Part::of_run(l, class)));
         }
     }
-    Some(Proposal { kind: Kind::Conifer, parts, score: CONIFER.score })
+    Some(Proposal { kind: Kind::Conifer, parts, heads: Vec::new(), likelihood: CONIFER.likelihood })
 }
 
 /// Whether an outline is the crown of a conifer.

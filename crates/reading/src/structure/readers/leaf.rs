@@ -23,8 +23,8 @@ struct LeafLimits {
     petiole: f64,
     /// Without a midrib it is more slender than this.
     without_rib: f64,
-    /// How sure the reader is of a leaf with a midrib, and of one with a petiole alone.
-    score: [f64; 2],
+    /// See [`Proposal::likelihood`], of a leaf with a midrib, and of one with a petiole alone.
+    likelihood: [f64; 2],
 }
 
 const LEAF: LeafLimits = LeafLimits {
@@ -34,10 +34,10 @@ const LEAF: LeafLimits = LeafLimits {
     rib_base: 0.22,
     petiole: 1.1,
     without_rib: 0.8,
-    score: [0.95, 0.75],
+    likelihood: [5000.0, 2000.0],
 };
 
-pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
     let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > LEAF.whole * total)?;
     let face = &scene.faces[row];
@@ -62,15 +62,15 @@ pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
         return None;
     }
     let has_rib = rib.is_some_and(|(_, base)| base.distance(root) < LEAF.rib_base * length);
-    let score = match has_rib {
-        true => LEAF.score[0],
-        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => LEAF.score[1],
+    let likelihood = match has_rib {
+        true => LEAF.likelihood[0],
+        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => LEAF.likelihood[1],
         false => return None,
     };
     let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
     parts.extend(scene.marks_of(row).map(|mark| Part::of_run(mark, StrokeClass::Vein)));
     parts.extend(petioles.iter().map(|(line, _)| Part::of_run(line, StrokeClass::Axis)));
-    Some(Proposal { kind: Kind::Leaf, parts, score })
+    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood })
 }
 
 fn reach(run: &Run) -> f64 {

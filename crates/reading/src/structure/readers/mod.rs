@@ -3,11 +3,15 @@
 //! `Scene -> Proposal`: the parts of the plant, cut from the strokes as they are needed. A reader never looks at the kind that
 //! the drawing resembles; it says what it sees only where the arrangement leaves little doubt.
 
+mod bloom;
 mod clover;
 mod conifer;
+mod cup;
 mod leaf;
+mod lobed;
 mod sprig;
 
+use base::LiteMap;
 use geom::{bounds, polyline_length};
 use glam::DVec2;
 use ink::{Ink, StrokeClass};
@@ -15,6 +19,10 @@ use ink::{Ink, StrokeClass};
 use super::faces::{Face, Faces, Place, Run};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
+use crate::thresholds::STRAIGHT;
+
+/// The rule that a stroke is what the arrangement of faces and lines makes it.
+pub(crate) const ARRANGEMENT: &str = "arrangement";
 
 /// One part of a plant.
 #[derive(Clone, Debug)]
@@ -32,8 +40,11 @@ pub(crate) struct Part {
 pub(crate) struct Proposal {
     pub(crate) kind: Kind,
     pub(crate) parts: Vec<Part>,
-    /// How sure the reader is, 0 to 1.
-    pub(crate) score: f64,
+    /// Flowers: rows of the parts that are petals of one.
+    pub(crate) heads: Vec<Vec<usize>>,
+    /// How many times as often this arrangement is found in drawings of the kind as in others (a likelihood ratio): the readers'
+    /// judgement, to be weighed with how likely the kind is otherwise.
+    pub(crate) likelihood: f64,
 }
 
 /// What touches and what is small, for all readers. Lengths are in ink units (the drawing's diagonal is 1).
@@ -53,25 +64,28 @@ pub(crate) const LIMITS: ReaderLimits =
     ReaderLimits { touch: 0.035, most_strokes: 80, speck: 0.01, leaf_convex: 0.84, leaf_slender: [0.12, 0.86] };
 
 /// What the readers look at.
-pub(crate) struct Scene<'a> {
-    pub(crate) ink: &'a Ink,
+pub(crate) struct Scene {
+    all: Faces,
     /// Faces that are no specks.
     pub(crate) faces: Vec<Face>,
     /// Lines outside all faces.
     pub(crate) lines: Vec<Run>,
     /// Lines within a face: its row among `faces`.
     pub(crate) marks: Vec<(usize, Run)>,
+    /// Strokes that lead from one end to the other without a detour.
+    pub(crate) straight: LiteMap<usize, Vec<DVec2>>,
     pub(crate) low: DVec2,
     pub(crate) high: DVec2,
 }
 
-impl<'a> Scene<'a> {
+impl Scene {
     /// `None` for drawings of too many strokes, and where nothing is enclosed.
-    pub(crate) fn new(ink: &'a Ink) -> Option<Self> {
+    pub(crate) fn new(ink: &Ink) -> Option<Self> {
         if ink.strokes.is_empty() || ink.strokes.len() > LIMITS.most_strokes {
             return None;
         }
-        let Faces { faces, runs } = Faces::new(ink);
+        let all = Faces::new(ink)?;
+        let (faces, runs) = (all.faces.clone(), all.runs.clone());
         let area: f64 = faces.iter().map(|f| f.shape.area).sum();
         let mut rows = Vec::with_capacity(faces.len());
         let mut kept = Vec::new();
@@ -84,7 +98,13 @@ impl<'a> Scene<'a> {
         }
         let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
         let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let mut scene = Self { ink, faces: kept, lines: Vec::new(), marks: Vec::new(), low, high };
+        let mut scene = Self { all, faces: kept, lines: Vec::new(), marks: Vec::new(), straight: LiteMap::new(), low, high };
+        for (k, stroke) in ink.strokes.iter().enumerate() {
+            let (a, b) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
+            if a.distance(b) > STRAIGHT * stroke.length {
+                scene.straight.insert(k, stroke.points.clone());
+            }
+        }
         for run in runs {
             match run.place {
                 Place::Outside => scene.lines.push(run),
@@ -104,6 +124,11 @@ impl<'a> Scene<'a> {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         let off = |p: DVec2| nearest_on_ring(&self.faces[face].outline, p).1;
         ends.into_iter().filter(|&p| off(p) < LIMITS.touch).min_by(|a, b| off(*a).total_cmp(&off(*b)))
+    }
+
+    /// Several faces as one, if they hang together.
+    pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
+        self.all.union(faces)
     }
 
     /// Lines within a face.
@@ -139,9 +164,17 @@ const TIP: f64 = 0.88;
 /// What the readers propose for a drawing, the surest first.
 pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     let Some(scene) = Scene::new(ink) else { return Vec::new() };
-    let readers = [leaf::propose, clover::propose, sprig::propose, conifer::propose];
+    let readers = [
+        leaf::propose,
+        clover::propose,
+        lobed::propose,
+        bloom::propose,
+        cup::propose,
+        sprig::propose,
+        conifer::propose,
+    ];
     let mut found: Vec<Proposal> = readers.iter().filter_map(|reader| reader(&scene)).collect();
-    base::sort_by(&mut found, |a, b| b.score.total_cmp(&a.score));
+    base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));
     found
 }
 

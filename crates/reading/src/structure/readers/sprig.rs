@@ -13,7 +13,7 @@ use crate::blade::nearest_on_ring;
 struct SprigLimits {
     /// Leaves cover more than this share of all that is enclosed.
     whole: f64,
-    /// The smallest leaf has more than this share of the area of the largest.
+    /// Leaves have more than this share of the area of the largest.
     alike: f64,
     /// Its stem is at least this share of the length of the longest leaf,
     stem: f64,
@@ -21,25 +21,35 @@ struct SprigLimits {
     below: f64,
     /// So many leaves in one place, all round it, are petals.
     petals: usize,
-    score: f64,
+    /// See [`Proposal::likelihood`].
+    likelihood: f64,
 }
 
 const SPRIG: SprigLimits =
-    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, petals: 4, score: 0.9 };
+    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, petals: 4, likelihood: 5000.0 };
 
-pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let lines: Vec<(usize, Vec<DVec2>)> = axes(scene);
     let longest = lines.iter().map(|(_, l)| polyline_length(l)).fold(0.0, f64::max);
-    let leaves: Vec<(&Face, DVec2)> =
+    let mut leaves: Vec<(&Face, DVec2)> =
         scene.faces.iter().filter_map(|face| Some((face, root_of(scene, face, &lines)?))).collect();
+    // A leaf that touches no stem stands on the leaf below it.
+    let on_leaf = |face: &Face| {
+        let near = leaves.iter().flat_map(|(f, _)| &f.outline).map(|&p| nearest_on_ring(&face.outline, p));
+        near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d < LIMITS.touch).map(|(p, _)| p)
+    };
+    let free = scene.faces.iter().filter(|f| !leaves.iter().any(|(leaf, _)| core::ptr::eq(*leaf, *f)));
+    let upper: Vec<(&Face, DVec2)> = free.filter_map(|face| Some((face, on_leaf(face)?))).collect();
+    leaves.extend(upper);
     let area = |f: &Face| f.shape.area;
+    // Slivers between leaf and stem are none.
+    let large = leaves.iter().map(|(f, _)| area(f)).fold(0.0, f64::max);
+    leaves.retain(|(f, _)| area(f) > SPRIG.alike * large);
     let total: f64 = scene.faces.iter().map(area).sum();
     let own: f64 = leaves.iter().map(|(f, _)| area(f)).sum();
-    let largest = leaves.iter().map(|(f, _)| area(f)).fold(0.0, f64::max);
     let long = leaves.iter().map(|(f, _)| f.shape.length()).fold(0.0, f64::max);
     if leaves.len() < 2
         || own < SPRIG.whole * total
-        || leaves.iter().any(|(f, _)| area(f) < SPRIG.alike * largest)
         || longest < SPRIG.stem * long
         || !leaves.iter().all(|(f, root)| is_leaf_from(f, *root))
     {
@@ -61,13 +71,20 @@ pub(super) fn propose(scene: &Scene<'_>) -> Option<Proposal> {
         strokes: vec![stroke],
     }));
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Stem, parts, score: SPRIG.score })
+    Some(Proposal { kind: Kind::Stem, parts, heads: Vec::new(), likelihood: SPRIG.likelihood })
 }
 
-/// The lines that are stems: of each stroke what runs outside of the leaves, with what lies between.
-fn axes(scene: &Scene<'_>) -> Vec<(usize, Vec<DVec2>)> {
+/// The lines that are stems: open strokes that run outside of the leaves for a part of their way, whole; of other strokes what
+/// runs outside.
+pub(super) fn axes(scene: &Scene) -> Vec<(usize, Vec<DVec2>)> {
     let mut found: Vec<(usize, Vec<DVec2>)> = Vec::new();
     for run in &scene.lines {
+        if let Some(line) = scene.straight.get(&run.stroke) {
+            if !found.iter().any(|(stroke, _)| *stroke == run.stroke) {
+                found.push((run.stroke, line.clone()));
+            }
+            continue;
+        }
         let next_to = |line: &[DVec2]| line.last().is_some_and(|p| p.distance(run.points[0]) < LIMITS.touch);
         match found.last_mut() {
             Some((stroke, line)) if *stroke == run.stroke && next_to(line) => line.extend(&run.points),
@@ -78,7 +95,7 @@ fn axes(scene: &Scene<'_>) -> Vec<(usize, Vec<DVec2>)> {
 }
 
 /// Where a leaf is attached: its point nearest to a stem, or to a stem's end.
-fn root_of(scene: &Scene<'_>, face: &Face, lines: &[(usize, Vec<DVec2>)]) -> Option<DVec2> {
+pub(super) fn root_of(scene: &Scene, face: &Face, lines: &[(usize, Vec<DVec2>)]) -> Option<DVec2> {
     // A stem that ends at the leaf, or else one that passes it.
     let ends = lines.iter().flat_map(|(_, l)| [l[0], l[l.len() - 1]]);
     let end = ends

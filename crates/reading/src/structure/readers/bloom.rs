@@ -1,0 +1,111 @@
+//! A flower seen from the front: petals of one form all round a disc, or round the place where they meet.
+
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::Face;
+use super::sprig::{axes, root_of};
+use super::{LIMITS, Part, Proposal, Scene, clover, is_leaf_from};
+use crate::Kind;
+use crate::blade::nearest_on_ring;
+
+/// What a flower from the front must have.
+struct BloomLimits {
+    /// How many petals at least.
+    petals: usize,
+    /// The smallest petal has more than this share of the area of the largest.
+    alike: f64,
+    /// Petals come within this share of their reach of the disc, or of their middle.
+    meet: f64,
+    /// Between neighbours no wider angle than this, radians.
+    gap: f64,
+    /// Petals reach out alike: the shortest more than this share of the longest.
+    reach: f64,
+    /// What is neither petal, disc nor leaf covers less than this share of all that is enclosed.
+    other: f64,
+    /// See [`Proposal::likelihood`], round a disc and without one.
+    likelihood: [f64; 2],
+}
+
+const BLOOM: BloomLimits =
+    BloomLimits { petals: 4, alike: 0.4, meet: 0.3, gap: 2.0, reach: 0.6, other: 0.1, likelihood: [ROUND_A_DISC, 200.0] };
+
+/// See [`Proposal::likelihood`]: petals round a disc.
+pub(super) const ROUND_A_DISC: f64 = 4000.0;
+
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
+    if clover::propose(scene).is_some() {
+        return None;
+    }
+    let discs = (0..scene.faces.len()).map(Some).chain([None]);
+    discs.filter_map(|disc| around(scene, disc)).max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))
+}
+
+/// A flower whose petals stand round a face, or round the place where they meet.
+fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
+    let faces = &scene.faces;
+    let rest = || (0..faces.len()).filter(move |k| Some(*k) != disc);
+    let centre = match disc {
+        Some(k) => faces[k].shape.middle,
+        None => meeting_place(scene)?,
+    };
+    let hub = disc.map_or(0.0, |k| (faces[k].shape.area / base::ops::PI).sqrt());
+    let reach = |f: &Face| f.outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
+    let touches = |f: &Face| nearest_on_ring(&f.outline, centre).1 < hub + BLOOM.meet * (reach(f) - hub).max(0.0);
+    let petals: Vec<usize> = rest().filter(|&k| touches(&faces[k])).collect();
+    let areas = || petals.iter().map(|&k| faces[k].shape.area);
+    let reaches = || petals.iter().map(|&k| reach(&faces[k]));
+    let least = |x: &mut dyn Iterator<Item = f64>| x.fold(f64::INFINITY, f64::min);
+    let most = |x: &mut dyn Iterator<Item = f64>| x.fold(0.0, f64::max);
+    if petals.len() < BLOOM.petals
+        || least(&mut areas()) < BLOOM.alike * most(&mut areas())
+        || least(&mut reaches()) < BLOOM.reach * most(&mut reaches())
+        || disc.is_some_and(|k| faces[k].shape.area > 3.0 * most(&mut areas()))
+        || widest_gap(petals.iter().map(|&k| faces[k].shape.middle - centre)) > BLOOM.gap
+    {
+        return None;
+    }
+    let lines = axes(scene);
+    let total: f64 = faces.iter().map(|f| f.shape.area).sum();
+    let mut parts: Vec<Part> = Vec::new();
+    let mut other = 0.0;
+    for k in rest().filter(|k| !petals.contains(k)) {
+        match root_of(scene, &faces[k], &lines).filter(|root| is_leaf_from(&faces[k], *root)) {
+            Some(root) => parts.push(Part::of_face(&faces[k], StrokeClass::Blade, Some(root))),
+            None => other += faces[k].shape.area,
+        }
+    }
+    if other > BLOOM.other * total {
+        return None;
+    }
+    let first = parts.len();
+    let to_centre = |f: &Face| Some(nearest_on_ring(&f.outline, centre).0);
+    parts.extend(petals.iter().map(|&k| Part::of_face(&faces[k], StrokeClass::Blade, to_centre(&faces[k]))));
+    let heads = if disc.is_some() { Vec::new() } else { vec![(first..parts.len()).collect()] };
+    parts.extend(disc.map(|k| Part::of_face(&faces[k], StrokeClass::Disc, None)));
+    let outer = most(&mut reaches());
+    parts.extend(
+        lines
+            .into_iter()
+            .filter(|(_, line)| line.iter().any(|p| p.distance(centre) > outer + LIMITS.touch))
+            .map(|(stroke, points)| Part { points, class: StrokeClass::Axis, root: None, strokes: vec![stroke] }),
+    );
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood: BLOOM.likelihood[usize::from(disc.is_none())] })
+}
+
+/// The middle of the largest faces, if they are petals that meet there.
+fn meeting_place(scene: &Scene) -> Option<DVec2> {
+    let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
+    let large: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > BLOOM.alike * largest).collect();
+    (large.len() >= BLOOM.petals)
+        .then(|| large.iter().map(|f| f.shape.middle).sum::<DVec2>() / large.len() as f64)
+}
+
+/// The widest angle between neighbouring directions, radians.
+pub(super) fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
+    let mut angles: Vec<f64> = ways.map(|d| base::ops::atan2(d.y, d.x)).collect();
+    base::sort_by(&mut angles, f64::total_cmp);
+    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return base::ops::TAU };
+    let seam = first + base::ops::TAU - last;
+    angles.windows(2).map(|w| w[1] - w[0]).fold(seam, f64::max)
+}

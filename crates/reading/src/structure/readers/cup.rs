@@ -1,0 +1,240 @@
+//! A flower seen from the side: petals that rise from one base like a fan, with their tips above (tulip, lotus, crocus).
+
+use geom::convex_hull;
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::Face;
+use super::sprig::{axes, root_of};
+use super::{LIMITS, Part, Proposal, Scene, bloom, clover, is_leaf_from};
+use crate::Kind;
+use crate::blade::nearest_on_ring;
+
+/// What a flower from the side must have. Shares of the height of the head.
+struct CupLimits {
+    /// The stem is attached below this height, in the middle of the head (a share of its width to either side).
+    base: f64,
+    middle: f64,
+    /// Its tips lie above this height.
+    tips: f64,
+    /// Its notches lie above this height.
+    notches: f64,
+    /// So many petals: faces with a tip each, or lobes of one face.
+    petals: core::ops::RangeInclusive<usize>,
+    /// A petal is at least so convex (area over that of the hull),
+    convex: f64,
+    /// so many are seen down to their base,
+    in_front: usize,
+    /// and what is led on behind others is at most so many times as large as what is seen.
+    hidden: f64,
+    /// ... of one that stands behind the others.
+    behind: f64,
+    /// The largest petal is at most so many times as large as the smallest.
+    alike: f64,
+    /// A line that goes farther than this from the head leads out of it.
+    leads_out: f64,
+    /// What is seen of a petal comes nearer to its base than this share of its length.
+    seen: f64,
+    /// Petals cover more than this share of the head; the rest are leaves that float or bracts.
+    most: f64,
+    /// The halves of the head left and right of its base differ by less than this share of it.
+    lopsided: f64,
+    /// One face is at least so convex, with at most so many notches.
+    whole_convex: f64,
+    most_notches: usize,
+    /// The head is at least so high and so wide, shares of the drawing's diagonal.
+    size: f64,
+    /// What is neither petal nor leaf covers less than this share of all that is enclosed.
+    other: f64,
+    /// See [`Proposal::likelihood`], where two petals are seen down to their base, and where one is.
+    likelihood: [f64; 2],
+}
+
+const CUP: CupLimits = CupLimits {
+    base: 0.3,
+    middle: 0.3,
+    tips: 0.5,
+    notches: 0.35,
+    petals: 3..=9,
+    convex: 0.72,
+    in_front: 2,
+    hidden: 2.2,
+    behind: 8.0,
+    alike: 7.0,
+    leads_out: 0.06,
+    seen: 0.4,
+    most: 0.6,
+    lopsided: 0.35,
+    whole_convex: 0.78,
+    most_notches: 3,
+    size: 0.2,
+    other: 0.12,
+    likelihood: [30_000.0, 1000.0],
+};
+
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
+    // Petals all round a disc are seen from the front.
+    let from_front = |p: Proposal| p.likelihood >= bloom::ROUND_A_DISC;
+    if clover::propose(scene).is_some() || bloom::propose(scene).is_some_and(from_front) {
+        return None;
+    }
+    let lines = axes(scene);
+    let is_leaf = |f: &Face| {
+        root_of(scene, f, &lines).filter(|root| is_leaf_from(f, *root))
+    };
+    // The head: the highest face, and all that hang together with it.
+    let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    let first = (0..scene.faces.len()).max_by(|&a, &b| top(&scene.faces[a]).total_cmp(&top(&scene.faces[b])))?;
+    let mut members = vec![first];
+    loop {
+        let near = |k: usize| {
+            let face = &scene.faces[k];
+            members.iter().any(|&m| scene.faces[m].outline.iter().any(|p| nearest_on_ring(&face.outline, *p).1 < 0.3 * LIMITS.touch))
+        };
+        let Some(next) = (0..scene.faces.len()).find(|k| !members.contains(k) && near(*k)) else { break };
+        members.push(next);
+    }
+    let faces: Vec<&Face> = members.iter().map(|&k| &scene.faces[k]).collect();
+    let head = if let [one] = faces[..] { one.clone() } else { scene.union(&faces)? };
+    let (low, high) = geom::bounds(&head.outline)?;
+    let size = high - low;
+    if size.min_element() < CUP.size {
+        return None;
+    }
+    let at_base = |p: DVec2| {
+        p.y < low.y + CUP.base * size.y && (p.x - low.midpoint(high).x).abs() < CUP.middle * size.x
+    };
+    // Nothing leads out of it above its base, and one stem at most below: a trunk has two sides.
+    let off_head = |p: DVec2| {
+        if geom::contains(&head.outline, p) { 0.0 } else { nearest_on_ring(&head.outline, p).1 }
+    };
+    let leads_out = |line: &[DVec2]| line.iter().map(|&p| off_head(p)).fold(0.0, f64::max) > CUP.leads_out;
+    let out: Vec<&Vec<DVec2>> = lines.iter().map(|(_, l)| l).filter(|l| leads_out(l)).collect();
+    let from_head = out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < LIMITS.touch).count();
+    if from_head > 1 || out.iter().any(|l| l.iter().any(|p| p.y > low.y + CUP.tips * size.y)) {
+        return None;
+    }
+    let stem = lines.iter().flat_map(|(_, l)| [l[0], l[l.len() - 1]]).find(|&p| {
+        at_base(p) && nearest_on_ring(&head.outline, p).1 < LIMITS.touch
+            || lines.iter().any(|(_, l)| l.iter().any(|q| q.y < low.y - LIMITS.touch) && l.contains(&p)) && at_base(p)
+    });
+    let base = match stem {
+        Some(p) => nearest_on_ring(&head.outline, p).0,
+        None => {
+            let middle = DVec2::new(low.midpoint(high).x, low.y);
+            nearest_on_ring(&head.outline, middle).0
+        }
+    };
+    let side = |sign: f64| {
+        let half: Vec<DVec2> = head.outline.iter().map(|p| DVec2::new(base.x + (sign * (p.x - base.x)).max(0.0), p.y)).collect();
+        geom::signed_area(&half).abs()
+    };
+    let (right, left) = (side(1.0), side(-1.0));
+    if (right - left).abs() > CUP.lopsided * (right + left) {
+        return None;
+    }
+    let (petals, in_front) = match faces.len() {
+        1 => (lobes(&head, base, low.y, size.y)?, CUP.in_front),
+        _ => fan(&faces, base, low.y, size.y)?,
+    };
+    if in_front < CUP.in_front && stem.is_none() {
+        return None;
+    }
+    let mut parts: Vec<Part> = petals
+        .into_iter()
+        .map(|(points, strokes)| Part { points, class: StrokeClass::Blade, root: Some(base), strokes })
+        .collect();
+    let heads = vec![(0..parts.len()).collect()];
+    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
+    let beside = (0..scene.faces.len()).filter(|k| !members.contains(k)).map(|k| scene.faces[k].shape.area);
+    if beside.fold(0.0, f64::max) > head.shape.area {
+        return None;
+    }
+    let mut other = 0.0;
+    for k in (0..scene.faces.len()).filter(|k| !members.contains(k)) {
+        let face = &scene.faces[k];
+        match is_leaf(face) {
+            Some(root) => parts.push(Part::of_face(face, StrokeClass::Blade, Some(root))),
+            None => other += face.shape.area,
+        }
+    }
+    if other > CUP.other * total {
+        return None;
+    }
+    parts.extend(lines.into_iter().map(|(stroke, points)| Part {
+        points,
+        class: StrokeClass::Axis,
+        root: None,
+        strokes: vec![stroke],
+    }));
+    let likelihood = CUP.likelihood[usize::from(in_front < CUP.in_front)];
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood })
+}
+
+type Petal = (Vec<DVec2>, Vec<usize>);
+
+/// Faces that rise from the base, each with a tip, led on to the base where they are hidden; and how many are seen down to it.
+fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal>, usize)> {
+    let tip = |f: &Face| f.shape.tip_from(base);
+    let rises = |f: &&&Face| tip(f).is_some_and(|t| t.y > low + CUP.notches * height);
+    let petals: Vec<&&Face> = faces.iter().filter(rises).collect();
+    let area = |list: &[&&Face]| list.iter().map(|f| f.shape.area).sum::<f64>();
+    let whole: f64 = faces.iter().map(|f| f.shape.area).sum();
+    let largest = petals.iter().map(|f| f.shape.area).fold(0.0, f64::max);
+    let is_seen = |f: &Face| {
+        let length = tip(f).map_or(0.0, |t| t.distance(base));
+        nearest_on_ring(&f.outline, base).1 < CUP.seen * length
+    };
+    // Of a petal behind others the tip is enough.
+    let in_front: Vec<&&&Face> = petals.iter().filter(|f| is_seen(f)).collect();
+    let sound = |f: &&&&Face| f.shape.convexity > CUP.convex && CUP.alike * f.shape.area > largest;
+    if !CUP.petals.contains(&petals.len()) || in_front.is_empty() || !in_front.iter().all(sound) || area(&petals) < CUP.most * whole {
+        return None;
+    }
+    let mean = petals.iter().filter_map(|f| tip(f)).sum::<DVec2>() / petals.len() as f64;
+    // They rise: petals all round a middle are seen from the front.
+    if mean.y < low + CUP.tips * height {
+        return None;
+    }
+    let led = |f: &&&Face| {
+        let mut points = f.outline.clone();
+        points.push(base);
+        let hull = convex_hull(&points);
+        let most = if is_seen(f) { CUP.hidden } else { CUP.behind };
+        (geom::signed_area(&hull) < most * f.shape.area).then(|| (hull, f.strokes.clone()))
+    };
+    Some((petals.iter().map(led).collect::<Option<_>>()?, in_front.len()))
+}
+
+/// One face whose upper side has tips and notches: cut from the notches to the base.
+fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> {
+    let is_high = |p: &&DVec2, least: f64| p.y > low + least * height;
+    let tips = head.shape.corners.iter().filter(|p| is_high(p, CUP.tips)).count();
+    let notches: Vec<DVec2> = head.shape.notches.iter().filter(|p| is_high(p, CUP.notches)).copied().collect();
+    let low_corners = head.shape.corners.iter().filter(|p| !is_high(p, CUP.tips) && p.distance(base) > 0.3 * height);
+    if tips + 1 < *CUP.petals.start()
+        || notches.is_empty()
+        || notches.len() < head.shape.notches.len()
+        || notches.len() > CUP.most_notches
+        || head.shape.convexity < CUP.whole_convex
+        || low_corners.count() > 0
+    {
+        return None;
+    }
+    let n = head.outline.len();
+    let nearest = |p: DVec2| {
+        (0..n).min_by(|&a, &b| head.outline[a].distance_squared(p).total_cmp(&head.outline[b].distance_squared(p)))
+    };
+    // Counter-clockwise from the base: up the right side, over the tips, down the left.
+    let start = nearest(base)?;
+    let mut cuts: Vec<usize> = notches.iter().filter_map(|&p| Some((nearest(p)? + n - start) % n)).collect();
+    base::sort_by(&mut cuts, usize::cmp);
+    cuts.insert(0, 0);
+    cuts.push(n);
+    let lobe = |w: &[usize]| {
+        let mut points: Vec<DVec2> = (w[0]..=w[1].min(n - 1)).map(|k| head.outline[(start + k) % n]).collect();
+        points.push(base);
+        (points, head.strokes.clone())
+    };
+    Some(cuts.windows(2).map(lobe).collect())
+}
