@@ -519,10 +519,7 @@ fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Readin
     let odds = |p: &structure::readers::Proposal| {
         p.likelihood * share(p.kind) / best_other(p.kind).max(f64::MIN_POSITIVE)
     };
-    let proposals = structure::readers::propose(ink);
-    if std::env::var_os("DEBUG_READERS").is_some() { for p in &proposals { eprintln!("PRIOR {:?} L {} own {:.6} best {:.4} odds {:.4}", p.kind, p.likelihood, share(p.kind), best_other(p.kind), odds(p)); } }
-    let proposals = proposals.into_iter();
-    let chosen = proposals.filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
+    let chosen = structure::readers::propose(ink).into_iter().filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
     let proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
     let score = odds(&proposal) / (1.0 + odds(&proposal));
     let composed = Composed::new(ink, &proposal, score);

@@ -10,6 +10,8 @@ mod cup;
 mod leaf;
 mod lobed;
 mod sprig;
+#[cfg(test)]
+mod tests;
 
 use base::LiteMap;
 use geom::{bounds, polyline_length};

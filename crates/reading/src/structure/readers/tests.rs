@@ -1,0 +1,120 @@
+use base::ops;
+use glam::DVec2;
+use ink::{Drawing, Ink};
+
+use super::{Proposal, propose};
+use crate::Kind;
+
+fn p(x: f64, y: f64) -> DVec2 {
+    DVec2::new(x, y)
+}
+
+fn seen(lines: &[Vec<DVec2>]) -> Vec<Proposal> {
+    propose(&cleaned(lines))
+}
+
+fn cleaned(lines: &[Vec<DVec2>]) -> Ink {
+    ink::clean(&Drawing::from_polylines("test", lines), &mut base::Report::default())
+}
+
+/// A quadratic curve from `a` to `b` that leans to `c`.
+fn arc(a: DVec2, c: DVec2, b: DVec2) -> Vec<DVec2> {
+    let at = |k: u8| {
+        let t = f64::from(k) / 24.0;
+        a * ((1.0 - t) * (1.0 - t)) + c * (2.0 * t * (1.0 - t)) + b * (t * t)
+    };
+    (0..=24).map(at).collect()
+}
+
+/// A leaf from its root to its tip, as one line.
+fn leaf(root: DVec2, tip: DVec2, wide: f64) -> Vec<DVec2> {
+    let side = (tip - root).perp() * wide;
+    let mut line = arc(root, root.midpoint(tip) + side, tip);
+    line.extend(arc(tip, root.midpoint(tip) - side, root));
+    line
+}
+
+fn ring(centre: DVec2, radius: f64) -> Vec<DVec2> {
+    (0..=48)
+        .map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 48.0))
+        .map(|(s, c)| centre + p(c, s) * radius)
+        .collect()
+}
+
+fn first(lines: &[Vec<DVec2>]) -> Option<Kind> {
+    seen(lines).first().map(|p| p.kind)
+}
+
+#[test]
+fn an_outline_with_a_midrib_that_leaves_it_as_petiole_is_a_leaf() {
+    let lines = [leaf(p(0.0, 0.0), p(6.0, 6.0), 0.5), vec![p(-1.5, -1.5), p(0.0, 0.0), p(3.5, 3.5)]];
+    assert_eq!(first(&lines), Some(Kind::Leaf));
+    // Without the line it may be anything that is pointed.
+    assert_eq!(first(&lines[..1]), None);
+    // A stalk on a round outline is an apple's.
+    assert_eq!(first(&[ring(p(0.0, 0.0), 3.0), vec![p(0.0, 3.0), p(0.4, 4.2)]]), None);
+}
+
+#[test]
+fn two_leaves_on_a_stem_are_a_sprig_and_two_crowns_are_not() {
+    let stem = vec![p(0.0, 0.0), p(0.0, 5.0)];
+    let leaves = [leaf(p(0.0, 5.0), p(4.0, 8.0), 0.5), leaf(p(0.0, 5.0), p(-4.0, 8.0), 0.5)];
+    assert_eq!(first(&[stem.clone(), leaves[0].clone(), leaves[1].clone()]), Some(Kind::Stem));
+    let crowns = [ring(p(2.5, 7.0), 2.0), ring(p(-2.5, 7.0), 2.0)];
+    let limbs = [vec![p(0.0, 5.0), p(1.2, 5.4)], vec![p(0.0, 5.0), p(-1.2, 5.4)]];
+    let [a, b] = limbs;
+    let [c, d] = crowns;
+    assert_eq!(first(&[stem, a, b, c, d]), None);
+}
+
+#[test]
+fn four_hearts_that_meet_are_a_clover_and_four_ovals_are_a_flower_only_round_a_disc() {
+    let turned = |line: &[DVec2], way: DVec2| line.iter().map(|q| way.rotate(*q)).collect::<Vec<_>>();
+    let mut heart = arc(p(0.0, 0.0), p(1.2, 3.4), p(1.2, 3.8));
+    heart.extend(arc(p(1.2, 3.8), p(0.6, 5.0), p(0.0, 3.9)));
+    heart.extend(arc(p(0.0, 3.9), p(-0.6, 5.0), p(-1.2, 3.8)));
+    heart.extend(arc(p(-1.2, 3.8), p(-1.2, 3.4), p(0.0, 0.0)));
+    let ways = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+    let hearts: Vec<Vec<DVec2>> = ways.iter().map(|w| turned(&heart, *w)).collect();
+    let found = seen(&hearts);
+    assert_eq!(found.first().map(|p| (p.kind, p.parts.len())), Some((Kind::Leaf, 4)));
+
+    let petal: Vec<DVec2> = leaf(p(0.0, 1.0), p(0.0, 4.0), 0.8);
+    let mut flower: Vec<Vec<DVec2>> = (0..6)
+        .map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 6.0))
+        .map(|(s, c)| turned(&petal, p(c, s)))
+        .collect();
+    flower.push(ring(DVec2::ZERO, 1.0));
+    assert_eq!(first(&flower), Some(Kind::Flower));
+}
+
+#[test]
+fn a_pointed_crown_on_a_trunk_is_a_conifer_and_a_round_one_is_not() {
+    let trunk = vec![p(0.0, 0.0), p(0.0, 2.0)];
+    let crown = vec![p(-3.0, 2.0), p(0.0, 9.0), p(3.0, 2.0), p(-3.0, 2.0)];
+    assert_eq!(first(&[trunk.clone(), crown]), Some(Kind::Conifer));
+    assert_eq!(first(&[trunk, ring(p(0.0, 5.0), 3.0)]), None);
+}
+
+#[test]
+fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
+    let stem = vec![p(0.0, 0.0), p(0.0, 5.0)];
+    let petals = [
+        leaf(p(0.0, 5.0), p(0.0, 10.0), 0.45),
+        arc(p(0.0, 5.0), p(3.4, 5.2), p(3.0, 9.6)),
+        arc(p(3.0, 9.6), p(1.8, 9.0), p(0.95, 8.0)),
+        arc(p(0.0, 5.0), p(-3.4, 5.2), p(-3.0, 9.6)),
+        arc(p(-3.0, 9.6), p(-1.8, 9.0), p(-0.95, 8.0)),
+    ];
+    let mut lines = vec![stem];
+    lines.extend(petals);
+    let found = seen(&lines);
+    assert_eq!(found.first().map(|p| (p.kind, p.heads.iter().map(Vec::len).collect())), Some((Kind::Flower, vec![3])));
+}
+
+#[test]
+fn what_encloses_nothing_or_has_no_extent_gives_no_proposal() {
+    assert!(seen(&[]).is_empty());
+    assert!(seen(&[vec![DVec2::ZERO, DVec2::ZERO]]).is_empty());
+    assert!(seen(&[vec![p(0.0, 0.0), p(0.0, 9.0)], vec![p(0.0, 4.0), p(3.0, 7.0)]]).is_empty());
+}
