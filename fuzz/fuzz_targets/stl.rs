@@ -6,7 +6,7 @@ use formats::{ExportSpec, ModelFormat, read_model, write_glb};
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut report = base::Report::default();
     // Whatever an OBJ refers to is the same bytes again.
-    let resolve = |_: &str| Some(bytes.to_vec());
+    let resolve = |_: formats::SideFile<'_>| Ok(bytes.to_vec());
     let read = read_model(bytes, ModelFormat::Stl, "fuzz", &ExportSpec::default(), &resolve, &mut report);
     if let Ok(model) = read {
         let bad = model.validate().find(|f| !matches!(f, mesh::MeshFault::Degenerate(_)));

@@ -89,6 +89,17 @@ fn shown(path: &Path) -> impl fmt::Display {
     if crate::inputs::is_stdin(path) { Path::new("standard input") } else { path }.display()
 }
 
+impl From<companions::NamedFileError> for Failure {
+    fn from(e: companions::NamedFileError) -> Self {
+        Self::Bad(line_of(&e))
+    }
+}
+
+/// What is wrong with a file that another one names.
+pub(crate) fn line_of(e: &companions::NamedFileError) -> String {
+    format!("{}: names {:?}, {}", shown(&e.naming), burgeon::quoted(&e.name), e.fault)
+}
+
 impl From<burgeon::Stopped> for Failure {
     fn from(stopped: burgeon::Stopped) -> Self {
         match stopped {

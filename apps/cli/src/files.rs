@@ -1,22 +1,24 @@
 //! Files by their extension or, failing that, by their first bytes.
 
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Cursor, Read};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, FileStems, Foreign, MAX_MODEL_BYTES, ModelFormat, Packing,
-    PngCache, ReadDrawing, StructureFormat, obj_files, usd_files, warn_of_wind, write_glb_packed,
-    write_glb_with,
+    CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign, MAX_MODEL_BYTES, ModelFormat,
+    NoFile, Packing, PngCache, ReadDrawing, SideFile, StructureFormat, decode_uri, obj_files, usd_files,
+    warn_of_wind, write_glb_packed, write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
 use burgeon::{DrawnLine, Report, Spec, Warning, plainly};
+use companions::{LIMITS, Named, NamedFault};
 use serde::Deserialize;
 
 use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
-use crate::failure::{Failure, Outcome};
+use crate::failure::{Failure, Outcome, line_of};
 use crate::inputs;
 use crate::output::{self, Outputs};
 use crate::signals::Stoppable;
@@ -171,6 +173,25 @@ pub(crate) fn read_cloud(
     burgeon::formats::read_cloud(input, format, axes, report).map_err(|e| Failure::at(path, e))
 }
 
+/// The bytes of a file, at most `limit`.
+pub(crate) fn read_bytes(path: &Path, limit: u64) -> Outcome<Vec<u8>> {
+    bytes_of(path, open_bytes(path)?, limit)
+}
+
+fn bytes_of(path: &Path, input: Input, limit: u64) -> Outcome<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = input.take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(|e| Failure::io(path, "read", &e))?;
+    if bytes.len() as u64 > limit {
+        let line = format_args!(
+            "is larger than {} MiB, too large for such a file; is it the right one?",
+            limit >> 20
+        );
+        return Err(Failure::at(path, line));
+    }
+    Ok(bytes)
+}
+
 /// The text of a small file, such as settings: at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Outcome<String> {
     text_of(path, open_bytes(path)?)
@@ -178,16 +199,7 @@ pub(crate) fn read_text(path: &Path) -> Outcome<String> {
 
 /// [`read_text`] of a file that is open already.
 pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
-    const MAX_BYTES: u64 = 16 << 20;
-    let failed = |e: &std::io::Error| Failure::io(path, "read", e);
-    let mut bytes = Vec::new();
-    input.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(Failure::at(
-            path,
-            "is larger than 16 MiB, too large for such a file; is it the right one?",
-        ));
-    }
+    let bytes = bytes_of(path, input, LIMITS.text)?;
     if let Some(foreign) = Foreign::sniff_no_drawing(&bytes) {
         return Err(Failure::at(path, foreign));
     }
@@ -293,13 +305,15 @@ pub(crate) fn read_opened_model(
     };
     let mut report = Report::default();
     let input = if format.fixed_axes() { announce_gltf(path, input)? } else { input };
-    let beside = |name: &str| resolve(path, name);
-    let model = burgeon::formats::read_model(input, format, &stem(path), axes, &beside, &mut report);
-    Ok((model.map_err(|e| Failure::at(path, e))?, format, report.warnings))
+    let named = |file: SideFile<'_>| resolve(path, file);
+    let model = burgeon::formats::read_model(input, format, &stem(path), axes, &named, &mut report);
+    let model = model.map_err(|e| match e.fault {
+        // It says itself which file names what.
+        FileFault::Refused { why } => Failure::Bad(why),
+        _ => Failure::at(path, e),
+    });
+    Ok((model?, format, report.warnings))
 }
-
-/// Largest file that a model may refer to: 256 MiB.
-const MAX_SIDE_FILE: u64 = 256 << 20;
 
 /// What a glTF names, read or not: only some of its pictures are.
 #[derive(Default, Deserialize)]
@@ -332,47 +346,45 @@ fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
     let files: GltfFiles =
         start.get(from..).and_then(|json| serde_json::from_slice(json).ok()).unwrap_or_default();
     let names = files.buffers.iter().chain(&files.images).filter_map(|f| f.uri.as_deref());
-    names.filter(|n| !n.starts_with("data:")).for_each(|n| inputs::announce(&beside(model, n)));
+    let names: BTreeSet<&str> = names.filter(|n| !n.starts_with("data:")).collect();
+    for name in names.into_iter().take(MOST_NAMED) {
+        inputs::announce_named(model, name);
+        decode_uri(name).iter().for_each(|name| inputs::announce_named(model, name));
+    }
     Ok(Box::new(BufReader::new(Cursor::new(start).chain(input))))
 }
 
+/// Files that are named by one: the reader of models refuses one that names more.
+const MOST_NAMED: usize = 4096;
+
 /// Keeps the textures that a material file names from being written over.
-fn announce_textures(model: &Path, text: &[u8]) {
-    for line in String::from_utf8_lossy(text).lines() {
+fn announce_textures(library: &Path, text: &[u8]) {
+    let text = String::from_utf8_lossy(text);
+    let mut names = BTreeSet::new();
+    for line in text.lines() {
         let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or_default();
         if key.starts_with("map_") || ["bump", "disp", "decal", "refl", "norm"].contains(&key) {
             let rest = rest.trim();
             let name = if rest.starts_with('-') { rest.rsplit(' ').next().unwrap_or(rest) } else { rest };
-            inputs::announce(&beside(model, name));
+            names.insert(name);
         }
     }
+    names.into_iter().take(MOST_NAMED).for_each(|name| inputs::announce_named(library, name));
 }
 
-/// The path of a file that a model names.
-fn beside(model: &Path, name: &str) -> PathBuf {
-    model.parent().unwrap_or_else(|| Path::new("")).join(name.replace('\\', "/"))
-}
-
-// A material file or texture in the model's folder or below it: a file from elsewhere must not make us read
-// other places.
-fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
-    let path = beside(model, name);
-    inputs::announce(&path);
-    let name = name.replace('\\', "/");
-    if !Path::new(&name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
-        return None;
-    }
-    // Asked before it is opened: opening a pipe waits for its writer.
-    if !std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
-        return None;
-    }
-    let file = inputs::open(&path).ok()?;
-    let mut bytes = Vec::new();
-    file.take(MAX_SIDE_FILE).read_to_end(&mut bytes).ok()?;
+/// A file that a model, or its file of materials, names. What need not be there may be missing; what must not be read ends it.
+fn resolve(model: &Path, file: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
+    let library = file.by.map(|by| Named { naming: model, name: by }.path());
+    let naming = library.as_deref().unwrap_or(model);
+    let bytes = inputs::named_bytes(naming, file.name, LIMITS.side_file).map_err(|e| match e.fault {
+        NamedFault::Missing => NoFile::Missing,
+        _ => NoFile::Refused(line_of(&e)),
+    })?;
+    let path = Named { naming, name: file.name }.path();
     if extension(&path).is_some_and(|e| e.eq_ignore_ascii_case("mtl")) {
-        announce_textures(model, &bytes);
+        announce_textures(&path, &bytes);
     }
-    Some(bytes)
+    Ok(bytes)
 }
 
 /// The format of a model's file name, if we write it.

@@ -1,5 +1,7 @@
 //! `burgeon bloom fit`: growth laws from scans of several days, or from a growth table.
 
+use std::collections::BTreeMap;
+
 use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Offset, Quantity, RegionLaw, Rival, Series, Trial};
 use burgeon::bloom::{MotionSpec, RegisterSpec, ShapeError};
 use burgeon::formats::read_growth;
@@ -232,6 +234,7 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
     });
     let read = read?;
     let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for row in read.rows {
         let name = match (row.organ.is_empty(), row.plant.is_empty()) {
             (true, true) => "plant".to_owned(),
@@ -240,10 +243,11 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
             (true, false) => format!("plant {}", row.plant),
             (false, false) => format!("plant {}: {}", row.plant, row.organ),
         };
-        match series.iter_mut().find(|s| s.0 == name) {
-            Some(known) => known.1.push((row.day, row.size)),
-            None => series.push((name, vec![(row.day, row.size)])),
-        }
+        let place = *places.entry(name).or_insert_with_key(|name| {
+            series.push((name.clone(), vec![]));
+            series.len() - 1
+        });
+        series[place].1.push((row.day, row.size));
     }
     let mut warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
     let mut able = Vec::new();

@@ -1,5 +1,6 @@
 //! `burgeon grow`: a species or a spec to a tree.
 
+use std::cell::RefCell;
 use std::path::Path;
 
 use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat};
@@ -246,13 +247,16 @@ fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Tre
     Ok(spec)
 }
 
-/// The leaf of --leaf-template, or the one that the spec names, beside the spec or by its full path.
+/// The leaf of --leaf-template, or the one that the spec names, beside the spec.
 fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<Option<LeafTemplate>> {
-    let named = spec.blade.file.take().map(|file| {
-        let folder = args.what.as_deref().and_then(Path::parent).unwrap_or_else(|| Path::new(""));
-        folder.join(file)
-    });
-    let path = args.growth.leaf_template.clone().or(named);
+    let named = spec.blade.file.take();
+    let path = match (&args.growth.leaf_template, named) {
+        (Some(path), _) => Some(path.clone()),
+        (None, Some(file)) => {
+            Some(inputs::named_path(args.what.as_deref().unwrap_or(Path::new("spec.toml")), &file)?)
+        }
+        (None, None) => None,
+    };
     path.map(|p| crate::leaf_data::template_of(&p, args.seed, machine)).transpose()
 }
 
@@ -274,9 +278,20 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
 
 /// The spec of a text that was read from `what`.
 pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<TreeSpec> {
-    let warnings = std::cell::RefCell::new(Vec::new());
-    let open = |name: &str| named_mesh(what, name, &mut warnings.borrow_mut());
-    let mut spec = read_tree_spec(text, &open).map_err(|e| Failure::at(what, e))?;
+    let (warnings, failed) = (RefCell::new(Vec::new()), RefCell::new(None));
+    let open = |name: &str| match named_mesh(what, name, &mut warnings.borrow_mut()) {
+        Ok(mesh) => mesh,
+        Err(failure) => {
+            failed.replace(Some(failure));
+            None
+        }
+    };
+    let spec = read_tree_spec(text, &open);
+    // What is wrong with the file, rather than that it is of no use.
+    if let Some(failure) = failed.into_inner() {
+        return Err(failure);
+    }
+    let mut spec = spec.map_err(|e| Failure::at(what, e))?;
     if spec.name == TreeSpec::default().name {
         spec.name = files::stem(what);
     }
@@ -284,22 +299,25 @@ pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<Tre
     Ok(spec)
 }
 
-/// A mesh or cloud that a spec names, beside the spec or by its full path. In metres, +Y up.
-fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Option<NamedMesh> {
-    let path = spec.parent().unwrap_or_else(|| Path::new("")).join(name);
+/// A mesh or cloud that a spec names, beside the spec; none of what is no such file. In metres, +Y up.
+fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Outcome<Option<NamedMesh>> {
+    let path = inputs::named_path(spec, name)?;
+    let known = |e| CloudFormat::from_extension(e).is_some() || ModelFormat::from_extension(e).is_some();
+    if !path.exists() || !files::extension(&path).is_some_and(known) {
+        return Ok(None);
+    }
     let axes = ExportSpec::default();
     if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) =
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
-        let cloud =
-            files::read_cloud(&path, (files::open_bytes(&path).ok()?, format), &axes, &mut report).ok()?;
+        let cloud = files::read_cloud(&path, (files::open_bytes(&path)?, format), &axes, &mut report)?;
         warnings.extend(report.warnings);
-        return Some((cloud.points, Vec::new()));
+        return Ok(Some((cloud.points, Vec::new())));
     }
-    let (model, _, told) = files::read_model(&path, &axes).ok()?;
+    let (model, _, told) = files::read_model(&path, &axes)?;
     warnings.extend(told);
-    Some(model.triangles())
+    Ok(Some(model.triangles()))
 }
 
 fn read_points(path: &Path, args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Vec<DVec3>> {

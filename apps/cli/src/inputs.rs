@@ -5,6 +5,9 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use companions::{LIMITS, Named, NamedFault, NamedFileError, Trust};
 
 /// `-` stands for standard input.
 pub(crate) fn is_stdin(path: &Path) -> bool {
@@ -74,11 +77,51 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// The bytes of a file.
-pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    open(path)?.read_to_end(&mut bytes)?;
-    Ok(bytes)
+/// The text of one of the system's own small files.
+pub(crate) fn system_text(path: &Path) -> Option<String> {
+    let mut text = String::new();
+    open(path).ok()?.take(LIMITS.text).read_to_string(&mut text).ok()?;
+    Some(text)
+}
+
+/// Whether files may name others outside of their folders; a process does one command.
+static TRUSTED: AtomicBool = AtomicBool::new(false);
+
+/// What --trust-paths says.
+pub(crate) fn trust_paths(trusted: bool) {
+    TRUSTED.store(trusted, Ordering::Relaxed);
+}
+
+fn trust() -> Trust {
+    Trust { paths: TRUSTED.load(Ordering::Relaxed), allow: "--trust-paths" }
+}
+
+/// The path of a file that another one names, if it may be opened. One that is not there may be: opening it says so.
+pub(crate) fn named_path(naming: &Path, name: &str) -> Result<PathBuf, NamedFileError> {
+    let named = Named { naming, name };
+    match named.find(trust()) {
+        Err(e) if !matches!(e.fault, NamedFault::Missing) => return Err(e),
+        _ => announce(&named.path()),
+    }
+    Ok(named.path())
+}
+
+/// A file that another one names, read or not. One that must not be read is not looked at either.
+pub(crate) fn announce_named(naming: &Path, name: &str) {
+    let named = Named { naming, name };
+    if named.find(trust()).is_ok() {
+        announce(&named.path());
+    }
+}
+
+/// What is in a file that another one names: at most `limit` bytes.
+pub(crate) fn named_bytes(naming: &Path, name: &str, limit: u64) -> Result<Vec<u8>, NamedFileError> {
+    let named = Named { naming, name };
+    let (file, path) = named.open(trust(), limit)?;
+    if let Ok(metadata) = file.metadata() {
+        note(&named.path(), &path, &metadata);
+    }
+    named.read(file, limit)
 }
 
 /// By which path a file was read.

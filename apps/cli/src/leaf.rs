@@ -13,6 +13,7 @@ use burgeon::leaf::{
 use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, LeafError, LeafOptions, MadePlant, Report, RunReport, Seed, ShootSpec};
+use companions::LIMITS;
 
 use crate::args::{AxesArgs, LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, VenationWord};
 use crate::failure::{Failure, Outcome};
@@ -21,7 +22,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{checks, edits, files, inputs, levels, picture, report, say};
+use crate::{checks, edits, files, levels, picture, report, say};
 
 pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -240,8 +241,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         Some("plain") => (LeafPaint::Plain, None),
         _ => {
             let path = &look.texture;
-            let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
-            let picture = read_picture(&bytes);
+            let picture = read_picture(&files::read_bytes(path, LIMITS.picture)?);
             let picture =
                 picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
             (LeafPaint::default(), Some(Arc::new(picture)))

@@ -77,6 +77,7 @@ impl Machine {
         let clock = WallClock::start();
         let budget = Budget { times: args.budget, raise: Some("--budget") };
         crate::memory::limit(&budget);
+        crate::inputs::trust_paths(args.trust_paths);
         let quiet = args.quiet || args.json;
         Self { threads: Threads::new(args.threads), clock, cancel: signals::token(), budget, quiet }
     }

@@ -11,6 +11,8 @@ use burgeon::formats::{read_picture, write_png};
 use burgeon::mesh::Texture;
 use burgeon::skin::{OrganMaterial, Pattern, Wear, Wearer, Worn};
 
+use companions::{LIMITS, Named};
+
 use crate::failure::{Failure, Outcome};
 use crate::{files, inputs};
 
@@ -102,8 +104,8 @@ fn run(editor: &mut Editor, command: Command) -> Outcome {
 }
 
 fn picture_beside(path: &Path, name: &str) -> Outcome<Arc<Texture>> {
-    let path = path.parent().unwrap_or(Path::new("")).join(name);
-    let bytes = inputs::bytes(&path).map_err(|e| Failure::io(&path, "read", &e))?;
-    let picture = read_picture(&bytes);
-    picture.map(Arc::new).ok_or_else(|| Failure::at(&path, "is no PNG or JPEG picture that can be read"))
+    let bytes = inputs::named_bytes(path, name, LIMITS.picture)?;
+    let line = "is no PNG or JPEG picture that can be read";
+    let picture = read_picture(&bytes).map(Arc::new);
+    picture.ok_or_else(|| Failure::at(&Named { naming: path, name }.path(), line))
 }

@@ -50,7 +50,7 @@ pub(crate) fn limit(budget: &Budget) {
 
 /// What Linux could give without ending other programs; `None` where it does not tell.
 fn free_bytes() -> Option<u64> {
-    let text_of = |path: &str| String::from_utf8(crate::inputs::bytes(Path::new(path)).ok()?).ok();
+    let text_of = |path: &str| crate::inputs::system_text(Path::new(path));
     let text = text_of("/proc/meminfo")?;
     let kib = |name: &str| {
         let rest = text.lines().find_map(|l| l.strip_prefix(name)?.strip_prefix(':'))?;

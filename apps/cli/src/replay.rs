@@ -6,6 +6,7 @@ use std::path::Path;
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 use burgeon::render::{Camera, Picture, PictureSpec, View};
+use companions::LIMITS;
 use serde::Serialize;
 use workspace::{
     GestureDeed, GestureRecord, GestureStep, ShapeInput, ShapePointer, Workspace, WorkspaceError,
@@ -15,7 +16,7 @@ use crate::args::ReplayArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, inputs, picture, project, report, say};
+use crate::{files, picture, project, report, say};
 
 /// Between two pictures of a film, hundredths of a second.
 const FRAME_CS: u16 = 12;
@@ -65,7 +66,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
         return Err(Failure::at(film, "films are written as GIF; end the name with .gif"));
     }
     let path = args.record.as_path();
-    let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let bytes = files::read_bytes(path, LIMITS.side_file)?;
     let record = GestureRecord::read(&bytes).map_err(|e| Failure::at(path, e))?;
     let mut workspace = Workspace::default();
     let mut film = args.film.as_ref().map(|_| (Film::default(), Extent::new()));

@@ -405,7 +405,7 @@ fn add_entry(
         out.axes = axes;
     }
     let place = |p: [f64; 3]| axes.inward(DVec3::from_array(p));
-    let scan = path.parent().unwrap_or_else(|| Path::new("")).join(&entry.file);
+    let scan = inputs::named_path(path, &entry.file.to_string_lossy())?;
     let clean = CleanSpec {
         outliers: file.clean,
         plane: file.clean,

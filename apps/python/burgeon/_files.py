@@ -4,8 +4,26 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
-from typing import Iterable, List, Tuple
+from typing import Any, Iterable, List, Tuple
+
+
+def inside(folder: "str | os.PathLike[str]", name: Any) -> str:
+    """The path of a file that a file of a data set names: one of the same folder, not a link out of it, not a pipe or device.
+
+    A data set is a folder that moves as a whole, so there is no need to trust it with paths. Of a file that is not there the path
+    as well: who opens it says so.
+    """
+    if not isinstance(name, str) or name in ("", ".", "..") or "/" in name or "\\" in name or "\0" in name:
+        raise ValueError(f"{os.fspath(folder)}: {name!r} is not the name of a file beside its manifest; download the data set again")
+    path = os.path.join(folder, name)
+    real = os.path.realpath(path)
+    if os.path.dirname(real) != os.path.realpath(folder):
+        raise ValueError(f"{path}: a link that leads out of the data set; copy the file there")
+    if os.path.exists(real) and not stat.S_ISREG(os.stat(real).st_mode):
+        raise ValueError(f"{path}: not a file; download the data set again")
+    return path
 
 
 def write_whole(folder: str, files: "Iterable[Tuple[str, bytes]]") -> None:

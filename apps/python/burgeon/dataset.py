@@ -22,7 +22,7 @@ import tarfile
 import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ._files import write_whole
+from ._files import inside, write_whole
 from ._given import beyond, keys, table, whole, wrong
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
@@ -99,7 +99,7 @@ def read(out: "str | os.PathLike[str]") -> "Iterator[Dict[str, Any]]":
     with open(os.path.join(out, "manifest.json"), encoding="utf-8") as file:
         manifest = json.load(file)
     for entry in manifest["shards"]:
-        with tarfile.open(os.path.join(out, entry["file"])) as archive:
+        with tarfile.open(inside(out, entry["file"])) as archive:
             plant: "Dict[str, Any]" = {}
             for member in archive:
                 stem, _, kind = member.name.partition(".")
@@ -124,7 +124,7 @@ def verify(out: "str | os.PathLike[str]") -> None:
     """Reads every shard and compares its SHA-256 with the manifest's; raises ValueError with the names of those that differ."""
     with open(os.path.join(out, "manifest.json"), encoding="utf-8") as file:
         manifest = json.load(file)
-    bad = [e["file"] for e in manifest["shards"] if _sha256_of(os.path.join(out, e["file"])) != e["sha256"]]
+    bad = [e["file"] for e in manifest["shards"] if _sha256_of(inside(out, e["file"])) != e["sha256"]]
     if bad:
         raise ValueError(f"{out}: not what the manifest says: {', '.join(bad)}; delete them and generate again")
 
@@ -250,7 +250,7 @@ def _sha256_of(path: str) -> "Optional[str]":
 
 def _is_made(out: str, recipe: "Mapping[str, Any]", k: int) -> bool:
     entry = _entry(out, k)
-    return entry is not None and _sha256_of(os.path.join(out, entry["file"])) == entry["sha256"]
+    return entry is not None and _sha256_of(inside(out, entry["file"])) == entry["sha256"]
 
 
 def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":

@@ -25,12 +25,18 @@ class Law:
         self._raw = raw
 
     @classmethod
-    def fit(cls, days: "Sequence[float]", sizes: "Sequence[float] | Mapping[str, Sequence[float]]", name: str = "plant") -> "Law":
+    def fit(
+        cls,
+        days: "Sequence[float]",
+        sizes: "Sequence[float] | Mapping[str, Sequence[float]]",
+        name: str = "plant",
+        budget: float = 1.0,
+    ) -> "Law":
         """Fits a law to sizes.
 
         ``days``: (n,), at least 3, increasing; ``sizes``: (n,), metres, or a dict of such by the names of organs. Those
         of one kind (``leaf-1``, ``leaf-2``) share rate and time. Logistic, Gompertz, monomolecular or straight: what
-        predicts days that are left out best.
+        predicts days that are left out best. ``budget``: how many times the usual limit may be exceeded, some 49,000 sizes.
         """
         organs = sizes if isinstance(sizes, Mapping) else {name: sizes}
         when = _numbers(days, "days")
@@ -43,7 +49,7 @@ class Law:
                 line = f"sizes of {organ}: there are {len(row)} for {len(when)} days"
                 raise wrong(line, "sizes", f"{len(row)} numbers", f"{len(when)} numbers")
             rows.append((str(organ), when.tolist(), row.tolist()))
-        return cls(_burgeon.RawLaw.fit(name, rows))
+        return cls(_burgeon.RawLaw.fit(name, rows, number("budget", budget, 1, 1000)))
 
     @classmethod
     def fit_scans(

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union, cast
 
 from . import _burgeon
-from ._given import beyond, number, unused, whole, word, wrong
+from ._given import beyond, flag, number, unused, whole, word, wrong
 from ._given import coloured as _coloured
 from ._given import path as path_of
 from ._given import points as _points
@@ -33,18 +33,19 @@ class SpecText(NamedTuple):
 Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], SpecText, None]
 
 
-def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
+def _base(spec: Spec, trust_paths: bool = False) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
     """Where a spec comes from, and the fields that it is given as."""
+    base: "Dict[str, Any]" = {"preset": None, "toml": None, "trust_paths": trust_paths}
     if spec is None:
-        return {"preset": None, "toml": None}, {}
+        return base, {}
     if isinstance(spec, Mapping):
-        return {"preset": None, "toml": None}, dict(spec)
+        return base, dict(spec)
     if isinstance(spec, SpecText):
-        return {"preset": None, "toml": (spec.toml, spec.file)}, {}
+        return {**base, "toml": (spec.toml, spec.file)}, {}
     path = path_of("spec", spec)
     if isinstance(spec, str) and not path.endswith(".toml"):
-        return {"preset": path, "toml": None}, {}
-    return {"preset": None, "toml": (_text(path), path)}, {}
+        return {**base, "preset": path}, {}
+    return {**base, "toml": (_text(path), path)}, {}
 
 
 def _text(path: str) -> str:
@@ -81,6 +82,7 @@ def grow(
     leaf: "Optional[Plant]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
+    trust_paths: bool = False,
     **fields: Any,
 ) -> Plant:
     """A tree (``burgeon grow``).
@@ -92,10 +94,11 @@ def grow(
     ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: of an ordinary branch, 3 to 24; ``textures``: False for
     plain colours; ``texture_size``: pixels of a side, 64 to 4096; ``foliage``: leaves by their ``outlines``, as ``cards`` of
     which they are cut out, or ``by-level`` of detail; ``leaf``: one of ``leaf()`` that it bears in the place of its own;
-    ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
+    ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded; ``trust_paths``: meshes,
+    points and a leaf that a file names may lie outside of its folder.
     Ctrl-C stops it. Raises SpecError, BudgetError.
     """
-    base, own = _base(spec)
+    base, own = _base(spec, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
     asked = _asked(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
     if textures is False and texture_size is not None:
@@ -285,6 +288,7 @@ def scan(
     textures: "Optional[bool]" = None,
     wind: "Optional[bool]" = None,
     budget: float = 1.0,
+    trust_paths: bool = False,
 ) -> Plant:
     """The tree of a laser scan (``burgeon scan``): stem and branches with their radii.
 
@@ -292,7 +296,7 @@ def scan(
     ``unit`` (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: what ``grow`` takes, a species
     whose leaves it gets (default: bare); ``at``: where the stem stands, in the two coordinates that are not up (default: the
     largest thing on the ground); ``cell``: edge of the cubes that the cloud is seen in, metres, 0.001 to 1; ``gap``: widest
-    gap that is bridged, metres, 0 to 5. ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
+    gap that is bridged, metres, 0 to 5; ``trust_paths``: of ``leaves``, as in ``grow``. ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
     """
     if at is not None:
         if isinstance(at, (str, bytes)) or not hasattr(at, "__len__") or len(at) != 2:
@@ -312,7 +316,7 @@ def scan(
     else:
         how["points"] = _points(cloud).tobytes()
         name = "scan" if name is None else name
-    base, own = (None, {}) if leaves is None else _base(leaves)
+    base, own = (None, {}) if leaves is None else _base(leaves, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
     return Plant(_burgeon.tree_of_scan(word("name", name), how, base, _asked(seed, budget, own, skin)))
 

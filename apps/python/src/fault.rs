@@ -38,6 +38,12 @@ pub(crate) fn refused<E: Coded + Display>(py: Python<'_>, error: &E) -> PyErr {
     exception(py, class, &error.to_string(), code, fields)
 }
 
+/// A file that another one names, and that must not be read.
+pub(crate) fn not_readable(py: Python<'_>, error: &companions::NamedFileError) -> PyErr {
+    let why = error.to_string();
+    exception(py, "SpecError", &why, "file-refused", [("why", why.as_str())])
+}
+
 /// An argument that is not what it may be, in the words of the core.
 pub(crate) fn beyond(field: &str, value: impl Display, range: &str) -> PyErr {
     let value = burgeon::quoted(&value.to_string());

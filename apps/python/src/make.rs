@@ -1,9 +1,10 @@
 //! What is asked for in Python -> a document of one plant -> the plant.
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 
-use burgeon::bloom::{FlowerSpec, GrowthLaw, Offset, Series};
+use burgeon::bloom::{BloomError, FlowerSpec, GrowthLaw, Offset, Series};
 use burgeon::document::{
     Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantId, Settings,
     SketchCommand,
@@ -16,11 +17,12 @@ use burgeon::mesh::PointCloud;
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{LeafOptions, NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
+use companions::{LIMITS, Named, NamedFault, NamedFileError, Trust};
 use pyo3::prelude::*;
 
 use crate::asked::Asked;
 use crate::compute::{aside, compute};
-use crate::fault::{beyond, choice, refused, unlike, unusable, wrong};
+use crate::fault::{beyond, choice, not_readable, refused, unlike, unusable, wrong};
 use crate::held::{Held, run};
 use crate::model::{axes, colours};
 use crate::plant::RawPlant;
@@ -32,6 +34,9 @@ pub(crate) struct Base {
     preset: Option<String>,
     #[pyo3(item)]
     toml: Option<(String, std::path::PathBuf)>,
+    /// Its paths may lead anywhere.
+    #[pyo3(item)]
+    trust_paths: bool,
 }
 
 /// A tree; `leaf`: the leaf that it bears.
@@ -68,12 +73,22 @@ impl Base {
                 Ok((preset.spec().map_err(|e| refused(py, &e))?, Some(preset.key)))
             }
             (None, Some((text, path))) => {
-                let folder = path.parent().unwrap_or_else(|| Path::new(""));
-                let spec = burgeon::read_tree_spec(text, &|name| named_mesh(&folder.join(name)));
+                let not_read = RefCell::new(None);
+                let spec = burgeon::read_tree_spec(text, &|name| {
+                    let mesh = named_mesh(&Named { naming: path, name }, self.trust());
+                    mesh.map_err(|e| not_read.replace(Some(e))).ok().flatten()
+                });
+                if let Some(e) = not_read.into_inner() {
+                    return Err(not_readable(py, &e));
+                }
                 Ok((spec.map_err(|e| refused(py, &e.in_text(text)))?, None))
             }
             (None, None) => Ok((TreeSpec::default(), None)),
         }
+    }
+
+    fn trust(&self) -> Trust {
+        Trust { paths: self.trust_paths, allow: "trust_paths=True" }
     }
 }
 
@@ -87,31 +102,44 @@ fn lender(py: Python<'_>, leaf: &RawPlant) -> PyResult<Settings> {
 
 /// The leaf of a file that a spec names, beside the spec.
 fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<Settings> {
-    let path = base.toml.as_ref().and_then(|(_, spec)| Some(spec.parent()?.join(file)));
-    let path = path.unwrap_or_else(|| file.into());
+    let naming = base.toml.as_ref().map_or(Path::new("spec.toml"), |(_, spec)| spec);
+    let named = Named { naming, name: file };
+    let path = named.path();
     let unread = |why: &dyn std::fmt::Display| unusable(py, &format!("blade.file {file:?}: {why}"));
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv") || e.eq_ignore_ascii_case("json")) {
         return Err(unread(&"Python reads leaves of marks (.csv) and of vein graphs (.json)"));
     }
-    let text = std::fs::read_to_string(&path).map_err(|e| unread(&e))?;
+    let bytes = named.open(base.trust(), LIMITS.text).and_then(|(file, _)| named.read(file, LIMITS.text));
+    let bytes = bytes.map_err(|e| match e.fault {
+        NamedFault::Missing => unread(&e.fault),
+        _ => not_readable(py, &e),
+    })?;
+    let text = String::from_utf8(bytes).map_err(|e| unread(&e))?;
     let data = LeafData { name: file.to_owned(), text: text.into() };
     let maker = Maker::Leaf(Box::new(LeafMaker { data, settings: LeafSpec::default() }));
     Ok(Settings { name: file.to_owned(), seed, maker, ..Settings::default() })
 }
 
-/// A mesh or cloud that a spec names, in metres, +Y up.
-fn named_mesh(path: &Path) -> Option<NamedMesh> {
+/// A mesh or cloud that a spec names, in metres, +Y up; none of what is no such file.
+fn named_mesh(named: &Named<'_>, trust: Trust) -> Result<Option<NamedMesh>, NamedFileError> {
+    match named.open(trust, LIMITS.model) {
+        Ok((file, _)) => Ok(mesh_of(&named.path(), &named.read(file, LIMITS.model)?)),
+        Err(NamedFileError { fault: NamedFault::Missing, .. }) => Ok(None),
+        Err(e) => Err(e),
+    }
+}
+
+fn mesh_of(path: &Path, bytes: &[u8]) -> Option<NamedMesh> {
     let extension = path.extension()?.to_str()?;
-    let bytes = std::fs::read(path).ok()?;
     let (axes, mut report) = (ExportSpec::default(), Report::default());
     let cloud = CloudFormat::from_extension(extension);
     if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) = cloud {
-        let cloud = burgeon::formats::read_cloud(&*bytes, format, &axes, &mut report).ok()?;
+        let cloud = burgeon::formats::read_cloud(bytes, format, &axes, &mut report).ok()?;
         return Some((cloud.points, Vec::new()));
     }
     let format = ModelFormat::from_extension(extension)?;
     let none = burgeon::formats::no_files;
-    let model = burgeon::formats::read_model(&*bytes, format, "obstacle", &axes, &none, &mut report).ok()?;
+    let model = burgeon::formats::read_model(bytes, format, "obstacle", &axes, &none, &mut report).ok()?;
     Some(model.triangles())
 }
 
@@ -416,11 +444,19 @@ impl RawLaw {
 impl RawLaw {
     /// Fits a law to the sizes of each organ: name, days, sizes in metres.
     #[staticmethod]
-    fn fit(py: Python<'_>, name: &str, organs: Vec<(String, Vec<f64>, Vec<f64>)>) -> PyResult<Self> {
+    fn fit(
+        py: Python<'_>,
+        name: &str,
+        organs: Vec<(String, Vec<f64>, Vec<f64>)>,
+        budget: f64,
+    ) -> PyResult<Self> {
         let series = organs.into_iter().map(|(organ, days, values)| (organ, Series { days, values }));
         let series: Vec<(String, Series)> = series.collect();
-        let law = compute(py, 1.0, |run| burgeon::bloom::fit_sizes(name, &series, Offset::Auto, run))?;
-        law.map(Self).map_err(|e| unusable(py, &e))
+        let law = compute(py, budget, |run| burgeon::bloom::fit_sizes(name, &series, Offset::Auto, run))?;
+        law.map(Self).map_err(|e| match e {
+            BloomError::OverBudget(much) => refused(py, &much),
+            other => unusable(py, &other),
+        })
     }
 
     /// A law of a file of `burgeon bloom fit`.

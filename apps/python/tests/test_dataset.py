@@ -334,3 +334,21 @@ def test_four_workers_of_ray_make_the_same_bytes(made, tmp_path):
         assert got == want and sums(tmp_path / "killed") == sums(tmp_path / "one")
     finally:
         ray.shutdown()
+
+
+def test_a_manifest_names_shards_beside_it_alone(made, tmp_path):
+    import shutil
+
+    out = tmp_path / "set"
+    shutil.copytree(made[0], out)
+    manifest = json.loads((out / "manifest.json").read_text())
+    shard = manifest["shards"][0]["file"]
+    (tmp_path / "x.tar").write_bytes((out / shard).read_bytes())
+    (out / "link.tar").symlink_to("../x.tar")
+    os.mkfifo(out / "pipe.tar")
+    for name in ("../x.tar", "..\\x.tar", str(tmp_path / "x.tar"), "link.tar", "pipe.tar", ".", "", 7, None):
+        manifest["shards"][0]["file"] = name
+        (out / "manifest.json").write_text(json.dumps(manifest))
+        for use in (lambda: list(dataset.read(out)), lambda: dataset.verify(out)):
+            with pytest.raises(ValueError, match="data set|beside its manifest"):
+                use()

@@ -14,7 +14,7 @@ import burgeon as bg
 from burgeon.errors import SpecError
 
 #: Steers how work is done; a seed goes with everything that is made.
-RUNNING = {"budget", "seed"}
+RUNNING = {"budget", "seed", "trust_paths"}
 #: The rest: fields of a spec, which have a test of their own.
 REST = {"self", "fields", "how"}
 

@@ -1,5 +1,7 @@
 """What is written beside the plain model, and plants of other settings: the bytes and digests of the command line."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -220,3 +222,42 @@ def test_a_tree_comes_back_from_its_cloud(oak, tmp_path):
 def test_what_is_no_scan_is_told(call, words):
     with pytest.raises((ValueError, TypeError), match=words):
         call()
+
+
+def test_what_a_spec_names_lies_below_it_or_is_trusted(root, shown, tmp_path):
+    inner = tmp_path / "in"
+    inner.mkdir()
+    leaf = (root / "fixtures/leaves/leaf1.csv").read_text()
+    (tmp_path / "leaf.csv").write_text(leaf)
+    (inner / "leaf.csv").write_text(leaf)
+    spec = inner / "hazel.toml"
+
+    def name(file):
+        spec.write_text(shown("hazel").replace("[blade]", f"[blade]\nfile = '{file}'"))
+
+    name("leaf.csv")
+    beside = bg.grow(spec, **SMALL).digest
+    (inner / "link.csv").symlink_to("../leaf.csv")
+    for file in ("../leaf.csv", "..\\leaf.csv", "link.csv", str(tmp_path / "leaf.csv")):
+        name(file)
+        with pytest.raises(bg.SpecError, match="trust_paths=True") as refused:
+            bg.grow(spec, **SMALL)
+        assert refused.value.code == "file-refused"
+        assert bg.grow(spec, **SMALL, trust_paths=True).digest == beside
+    (tmp_path / "box.obj").write_text("v 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n")
+    spec.write_text("[[obstacles]]\nshape = 'mesh'\nfile = '../box.obj'\n" + shown("hazel"))
+    with pytest.raises(bg.SpecError, match="box.obj.*not below its folder"):
+        bg.grow(spec, **SMALL)
+    assert bg.grow(spec, **SMALL, trust_paths=True).digest
+    os.mkfifo(inner / "pipe.csv")
+    name("pipe.csv")
+    with pytest.raises(bg.SpecError, match="a pipe"):
+        bg.grow(spec, **SMALL, trust_paths=True)
+    with pytest.raises(TypeError, match="trust_paths"):
+        bg.grow("hazel", trust_paths="yes")
+
+
+def test_a_growth_table_that_is_too_long_is_refused_at_once():
+    days = np.arange(60000.0)
+    with pytest.raises(bg.BudgetError, match="comparisons of sizes"):
+        bg.Law.fit(days, 1 + days)

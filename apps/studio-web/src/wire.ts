@@ -19,6 +19,7 @@ export const CODES = {
   "file-malformed": ["what"],
   "file-no-strokes": [],
   "file-not-utf8": ["after"],
+  "file-refused": ["why"],
   "file-too-much": ["what", "limit"],
   "file-truncated": ["inside"],
   "file-unsupported": ["what"],

@@ -90,7 +90,9 @@ impl Counted {
             Self::Leaves | Self::Obstacles | Self::Pieces => 1_000_000,
             Self::Course => 100_000,
             Self::MarkerQueries => 100_000_000,
-            Self::JointYears | Self::Comparisons => 20_000_000,
+            Self::JointYears => 20_000_000,
+            // Some 50,000 sizes.
+            Self::Comparisons => 500_000_000,
             Self::Triangles => 16_000_000,
             Self::Strokes => 20_000,
             Self::Edits => 1_000,

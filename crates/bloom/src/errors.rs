@@ -37,6 +37,9 @@ pub enum BloomError {
     /// A series cannot be fitted.
     #[error(transparent)]
     Fit(#[from] crate::FitError),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] base::OverBudget),
     /// The user asked to stop.
     #[error("cancelled")]
     Cancelled,

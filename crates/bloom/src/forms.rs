@@ -89,59 +89,126 @@ const RATE_RANGE: [f64; 2] = [0.5, 40.0];
 const TIMES: usize = 37;
 const TIME_RANGE: [f64; 2] = [-1.0, 2.0];
 
-/// Sums of one series at one curve.
-struct Solved {
-    ab: [f64; 2],
-    sse: f64,
-    /// Residual and leverage of each value.
-    rows: Vec<(f64, f64)>,
+/// Series of one kind, with those of equal days found: a curve has the same values on them.
+struct Group<'a> {
+    series: &'a [Series],
+    /// The sum of the values of each series.
+    sums: Vec<f64>,
+    /// Each list of days once.
+    days: Vec<&'a [f64]>,
+    /// Which list each series has.
+    list: Vec<usize>,
 }
 
-fn solve(series: &Series, level: bool, curve: &[f64]) -> Option<Solved> {
-    let n = curve.len() as f64;
-    let (values, mean) = (&series.values, curve.iter().sum::<f64>() / n);
-    let centre = if level { mean } else { 0.0 };
-    let square: f64 = curve.iter().map(|s| (s - centre) * (s - centre)).sum();
-    // A curve without motion on these days tells nothing.
-    let flat = square <= 1e-10 * curve.iter().map(|s| s * s).sum::<f64>().max(1e-300);
-    if flat || !square.is_finite() {
-        return None;
+impl<'a> Group<'a> {
+    fn new(series: &'a [Series]) -> Self {
+        let by_days = |&a: &usize, &b: &usize| {
+            let [a, b] = [a, b].map(|i| series[i].days.iter().map(|d| d.to_bits()));
+            a.cmp(b)
+        };
+        let mut order: Vec<usize> = (0..series.len()).collect();
+        base::sort_by(&mut order, by_days);
+        let mut out = Self {
+            series,
+            sums: series.iter().map(|s| s.values.iter().sum()).collect(),
+            days: Vec::new(),
+            list: vec![0; series.len()],
+        };
+        for alike in order.chunk_by(|a, b| by_days(a, b).is_eq()) {
+            alike.iter().for_each(|&i| out.list[i] = out.days.len());
+            out.days.push(&series[alike[0]].days);
+        }
+        out
     }
-    let b = curve.iter().zip(values).map(|(s, y)| (s - centre) * y).sum::<f64>() / square;
-    let a = if level { values.iter().sum::<f64>() / n - b * mean } else { 0.0 };
-    let rows: Vec<(f64, f64)> = curve
-        .iter()
-        .zip(values)
-        .map(|(s, y)| {
-            let leverage = (s - centre) * (s - centre) / square + if level { 1.0 / n } else { 0.0 };
-            (y - a - b * s, leverage)
-        })
-        .collect();
-    let sse = rows.iter().map(|r| r.0 * r.0).sum();
-    Some(Solved { ab: [a, b], sse, rows })
 }
 
-/// One place of the grid: the sum of squares of each series, and of each value its residual and leverage.
-struct Cell {
-    total: f64,
-    rows: Vec<Solved>,
+/// What a curve is on a list of days.
+#[derive(Default)]
+struct OnDays {
+    curve: Vec<f64>,
+    mean: f64,
+    centre: f64,
+    square: f64,
+    /// How much of each value its own fit takes up.
+    leverage: Vec<f64>,
 }
 
-fn cell(form: Form, level: bool, all: &[Series], r: f64, t0: f64) -> Option<Cell> {
-    let mut out = Cell { total: 0.0, rows: Vec::with_capacity(all.len()) };
-    for series in all {
-        let curve: Vec<f64> = series.days.iter().map(|&t| form.curve(r, t0, t)).collect();
-        let solved = solve(series, level, &curve)?;
-        out.total += solved.sse;
-        out.rows.push(solved);
+impl OnDays {
+    /// False for a curve without motion on these days, which tells nothing.
+    fn fill(&mut self, level: bool, days: &[f64], curve: impl Fn(f64) -> f64) -> bool {
+        self.curve.clear();
+        self.curve.extend(days.iter().map(|&t| curve(t)));
+        let n = days.len() as f64;
+        let mean = self.curve.iter().sum::<f64>() / n;
+        let centre = if level { mean } else { 0.0 };
+        let square: f64 = self.curve.iter().map(|s| (s - centre) * (s - centre)).sum();
+        (self.mean, self.centre, self.square) = (mean, centre, square);
+        let flat = square <= 1e-10 * self.curve.iter().map(|s| s * s).sum::<f64>().max(1e-300);
+        if flat || !square.is_finite() {
+            return false;
+        }
+        let own = if level { 1.0 / n } else { 0.0 };
+        self.leverage.clear();
+        self.leverage.extend(self.curve.iter().map(|s| (s - centre) * (s - centre) / square + own));
+        true
     }
-    out.total.is_finite().then_some(out)
+}
+
+/// All series at one place of the grid.
+struct Cell<'a> {
+    form: Form,
+    level: bool,
+    group: &'a Group<'a>,
+    on_days: Vec<OnDays>,
+    /// A and B of each series.
+    linear: Vec<[f64; 2]>,
+    /// Of each value, one series after the other.
+    residuals: Vec<f64>,
+}
+
+impl<'a> Cell<'a> {
+    fn new(form: Form, level: bool, group: &'a Group<'a>) -> Self {
+        let on_days = group.days.iter().map(|_| OnDays::default()).collect();
+        Self { form, level, group, on_days, linear: Vec::new(), residuals: Vec::new() }
+    }
+
+    /// The sum of squares; none where the curve does not move on the days of a series.
+    fn fill(&mut self, r: f64, t0: f64) -> Option<f64> {
+        let (form, level) = (self.form, self.level);
+        for (on, days) in self.on_days.iter_mut().zip(&self.group.days) {
+            if !on.fill(level, days, |t| form.curve(r, t0, t)) {
+                return None;
+            }
+        }
+        self.linear.clear();
+        self.residuals.clear();
+        let mut total = 0.0;
+        for (k, series) in self.group.series.iter().enumerate() {
+            let on = &self.on_days[self.group.list[k]];
+            let values = &series.values;
+            let pairs = || on.curve.iter().zip(values);
+            let b = pairs().map(|(s, y)| (s - on.centre) * y).sum::<f64>() / on.square;
+            let a = if level { self.group.sums[k] / on.curve.len() as f64 - b * on.mean } else { 0.0 };
+            let first = self.residuals.len();
+            self.residuals.extend(pairs().map(|(s, y)| y - a - b * s));
+            total += self.residuals[first..].iter().map(|e| e * e).sum::<f64>();
+            self.linear.push([a, b]);
+        }
+        total.is_finite().then_some(total)
+    }
+
+    /// Residual and leverage of each value, one series after the other.
+    fn rows(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let leverage = self.group.list.iter().flat_map(|&list| &self.on_days[list].leverage);
+        self.residuals.iter().zip(leverage).map(|(&e, &h)| (e, h))
+    }
 }
 
 /// Fits one curve to all series; `None` where none of the grid's curves moves on the days of each.
 ///
 /// Each series needs 2 days or more. Guaranteed: the least sum of squares of the grid, refined until r and t0 are known
-/// to 1e-9 of themselves. Cost: about a thousand curves for each value, then a few hundred.
+/// to 1e-9 of themselves. Cost: about two thousand curves for each value, then a few hundred; a curve is computed once for
+/// all series of the same days.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -157,38 +224,37 @@ pub fn fit_shared(
     if all.is_empty() || !(span > 0.0 && span.is_finite()) {
         return Ok(None);
     }
+    let values: usize = all.iter().map(|s| s.values.len()).sum();
     let places = grid(form, level, first, span);
+    let group = Group::new(all);
+    let mut cell = Cell::new(form, level, &group);
     let mut best: Option<(f64, usize)> = None;
-    let mut held: Vec<Vec<(f64, Option<f64>)>> =
-        all.iter().map(|s| vec![(f64::INFINITY, None); s.values.len()]).collect();
+    let mut held: Vec<(f64, Option<f64>)> = vec![(f64::INFINITY, None); values];
     for (at, &[r, t0]) in places.iter().enumerate() {
         cancel.check()?;
-        let Some(cell) = cell(form, level, all, r, t0) else { continue };
-        if best.is_none_or(|(sse, _)| cell.total < sse) {
-            best = Some((cell.total, at));
+        let Some(total) = cell.fill(r, t0) else { continue };
+        if best.is_none_or(|(sse, _)| total < sse) {
+            best = Some((total, at));
         }
         // The sum without one value follows from its residual and leverage (Allen 1974).
-        for (solved, held) in cell.rows.iter().zip(&mut held) {
-            for (&(e, h), held) in solved.rows.iter().zip(held) {
-                let free = 1.0 - h;
-                if free > 1e-9 {
-                    let sum = cell.total - e * e / free;
-                    if sum < held.0 {
-                        *held = (sum, Some(e / free));
-                    }
+        for ((e, h), held) in cell.rows().zip(&mut held) {
+            let free = 1.0 - h;
+            if free > 1e-9 {
+                let sum = total - e * e / free;
+                if sum < held.0 {
+                    *held = (sum, Some(e / free));
                 }
             }
         }
     }
     let Some((_, at)) = best else { return Ok(None) };
-    let Some((r, t0)) = refine(form, level, all, (places[at], span), cancel)? else { return Ok(None) };
-    let Some(end) = cell(form, level, all, r, t0) else { return Ok(None) };
+    let Some((r, t0)) = refine(&mut cell, (places[at], first, span), cancel)? else { return Ok(None) };
+    let Some(sse) = cell.fill(r, t0) else { return Ok(None) };
     let shared = match form {
         Form::Straight => 0,
         Form::Monomolecular if level => 1,
         _ => 2,
     };
-    let values: usize = all.iter().map(|s| s.values.len()).sum();
     let numbers = all.len() * if level { 2 } else { 1 } + shared;
     #[expect(clippy::cast_possible_wrap, reason = "counts of values")]
     let freedom = values as i64 - numbers as i64;
@@ -202,17 +268,26 @@ pub fn fit_shared(
         level,
         r,
         t0,
-        linear: end.rows.iter().map(|s| s.ab).collect(),
+        linear: cell.linear,
         errors: None,
-        sse: end.total,
+        sse,
         freedom,
         on_bound,
-        left_out: held.into_iter().map(|row| row.into_iter().map(|h| h.1).collect()).collect(),
+        left_out: Vec::with_capacity(all.len()),
     };
+    let mut held = held.into_iter().map(|h| h.1);
+    fit.left_out.extend(all.iter().map(|s| held.by_ref().take(s.values.len()).collect()));
     if freedom > 0 && !on_bound {
         fit.errors = errors(&fit, all, shared);
     }
     Ok(Some(fit))
+}
+
+/// How many curves of the grid [`choose`] compares with each value.
+pub(crate) fn curves_compared() -> u64 {
+    let of = |form, level| grid(form, level, 0.0, 1.0).len() as u64;
+    let laws = Form::LAWS.iter().map(|&form| of(form, false) + of(form, true));
+    laws.sum::<u64>() + of(Form::Straight, true)
 }
 
 /// Rates and times that are looked at first.
@@ -233,16 +308,13 @@ fn grid(form: Form, level: bool, first: f64, span: f64) -> Vec<[f64; 2]> {
 
 /// A compass search within the grid's bounds: in the logarithm of r, and in t0.
 fn refine(
-    form: Form,
-    level: bool,
-    all: &[Series],
-    (start, span): ([f64; 2], f64),
+    cell: &mut Cell<'_>,
+    (start, first, span): ([f64; 2], f64, f64),
     cancel: &CancelToken,
 ) -> Result<Option<(f64, f64)>, Cancelled> {
-    let value = |r: f64, t0: f64| cell(form, level, all, r, t0).map(|c| c.total);
-    let first = all.iter().filter_map(|s| s.days.first()).copied().fold(f64::INFINITY, f64::min);
+    let (form, level) = (cell.form, cell.level);
     let [mut r, mut t0] = start;
-    let Some(mut best) = value(r, t0) else { return Ok(None) };
+    let Some(mut best) = cell.fill(r, t0) else { return Ok(None) };
     if form == Form::Straight {
         return Ok(Some((r, t0)));
     }
@@ -265,7 +337,7 @@ fn refine(
         let next = ways.iter().filter_map(|w| {
             let r = (r * ops::exp(w[0] * step[0])).clamp(low, high);
             let t0 = (t0 + w[1] * step[1]).clamp(first + TIME_RANGE[0] * span, first + TIME_RANGE[1] * span);
-            Some((value(r, t0)?, r, t0))
+            Some((cell.fill(r, t0)?, r, t0))
         });
         match next.min_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((sse, new_r, new_t0)) if sse < best => (best, r, t0) = (sse, new_r, new_t0),
@@ -564,6 +636,30 @@ mod tests {
         assert!(choose(&[]).is_none());
         let two = made(Form::Logistic, &[0.0, 5.0], &LINEAR, 0.7, 3.0, 0.0, 1);
         assert!(!choose(&two).unwrap().determined, "two days determine no law");
+    }
+
+    /// A curve is computed once for series of equal days, and whichever come in between make no difference.
+    #[test]
+    fn series_of_equal_days_share_their_curves() {
+        let odd = made(Form::Logistic, &[0.0, 2.5, 4.0, 7.0, 9.0], &LINEAR[..3], 0.7, 3.0, 0.15, 7);
+        let even = made(Form::Logistic, &[0.0, 1.0, 2.0, 4.0, 6.0, 9.0], &LINEAR[..3], 0.7, 3.0, 0.15, 8);
+        let mixed: Vec<Series> = odd.iter().zip(&even).flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
+        let group = Group::new(&mixed);
+        assert_eq!((group.days.len(), group.list.len()), (2, 6));
+        assert!(group.list.iter().zip(&mixed).all(|(&list, s)| group.days[list] == s.days));
+        for (form, level) in [(Form::Logistic, true), (Form::Gompertz, false), (Form::Straight, true)] {
+            let mut together = Cell::new(form, level, &group);
+            let total = together.fill(0.6, 2.0).unwrap();
+            let rows: Vec<(f64, f64)> = together.rows().collect();
+            let (mut sum, mut alone) = (0.0, Vec::new());
+            for one in mixed.chunks(1) {
+                let group = Group::new(one);
+                let mut cell = Cell::new(form, level, &group);
+                sum += cell.fill(0.6, 2.0).unwrap();
+                alone.extend(cell.rows());
+            }
+            assert!((sum - total).abs() <= 1e-12 * total && rows == alone, "{form:?}");
+        }
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Organs at several days -> growth laws, saved, plotted, and moved to another species.
 
-use base::{CancelToken, Run};
+use base::{CancelToken, Counted, Run};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::forms::curves_compared;
 use crate::logistic::fit_logistic_while;
 use crate::{
     BloomError, Choice, Fit, FitError, Form, Logistic, Offset, ScanOrgan, Series, SharedFit, choose, fit_law,
@@ -315,7 +316,7 @@ impl Default for LawSpec {
 ///
 /// # Errors
 /// [`FitError::TooFew`] below 3 stages, [`FitError::Order`] for days that do not increase, and for a coordinate
-/// that changes its sign where the offset is [`Offset::Zero`]; [`BloomError::Cancelled`].
+/// that changes its sign where the offset is [`Offset::Zero`]; [`BloomError::OverBudget`]; [`BloomError::Cancelled`].
 pub fn fit_stages(
     name: &str,
     stages: &[Stage],
@@ -362,6 +363,7 @@ pub fn fit_stages(
             }
         }
     }
+    check_sizes(&rows, run, "give fewer stages, or fewer regions of an organ")?;
     let span_days = stages[stages.len() - 1].day - first_day;
     let laws = fit_rows(rows, span_days, spec.offset, run.cancel)?;
     Ok(GrowthLaw { schema: LAW_SCHEMA.into(), name: name.to_owned(), first_day, span_days, regions, laws })
@@ -372,7 +374,7 @@ pub fn fit_stages(
 ///
 /// # Errors
 /// [`FitError`], as [`fit_logistic`](crate::fit_logistic), with fewer than 3 days in every series; a series of fewer is left
-/// out. [`BloomError::Cancelled`].
+/// out. [`BloomError::OverBudget`], before anything is fitted, and [`BloomError::Cancelled`].
 pub fn fit_sizes(
     name: &str,
     series: &[(String, Series)],
@@ -394,7 +396,9 @@ pub fn fit_sizes(
             values: series.values.clone(),
         },
     });
-    let laws = fit_rows(rows.collect(), last - first_day, offset, run.cancel)?;
+    let rows: Vec<Measured> = rows.collect();
+    check_sizes(&rows, run, "split the table, or give fewer days of each organ")?;
+    let laws = fit_rows(rows, last - first_day, offset, run.cancel)?;
     let (schema, name) = (LAW_SCHEMA.into(), name.to_owned());
     Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, regions: 1, laws })
 }
@@ -405,6 +409,13 @@ fn kind_of(organ: &str) -> &str {
     let organ = organ.rsplit(": ").next().unwrap_or(organ);
     let name = organ.strip_prefix("new-").unwrap_or(organ);
     name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches(['-', '_', ' '])
+}
+
+/// Counts how often sizes are compared with laws, before any is.
+fn check_sizes(rows: &[Measured], run: &Run<'_>, remedy: &'static str) -> Result<(), BloomError> {
+    let sizes: u64 = rows.iter().map(|r| r.series.values.len() as u64).sum();
+    run.budget.check(Counted::Comparisons, sizes.saturating_mul(curves_compared()), remedy)?;
+    Ok(())
 }
 
 /// One series before its law is known.
@@ -592,6 +603,24 @@ mod tests {
         assert_eq!(fit(&two), BloomError::Fit(FitError::TooFew { got: 2 }));
         let disorder = [stage(0.0, &l), stage(2.0, &l), stage(1.0, &l)];
         assert_eq!(fit(&disorder), BloomError::Fit(FitError::Order { day: 101.0, before: 102.0 }));
+    }
+
+    #[test]
+    fn a_table_that_is_too_long_is_refused_before_it_is_fitted() {
+        let days: Vec<f64> = (0..10).map(f64::from).collect();
+        let plant = |k: usize| (format!("plant {k}"), Series { days: days.clone(), values: days.clone() });
+        let most = Counted::Comparisons.limit() / curves_compared();
+        assert_eq!(most, 48_871, "as docs/limits.md has it");
+        let series: Vec<_> = (0..4_888).map(plant).collect();
+        let start = std::time::Instant::now();
+        let BloomError::OverBudget(much) = fit_sizes("x", &series, Offset::Auto, &Run::plain()).unwrap_err()
+        else {
+            panic!("not too much");
+        };
+        assert_eq!((much.what, much.number), (Counted::Comparisons, 48_880 * curves_compared()));
+        assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+        // Whatever the budget, the few that are left are fitted.
+        assert!(fit_sizes("x", &series[..3], Offset::Auto, &Run::plain()).is_ok());
     }
 
     #[test]

@@ -108,6 +108,12 @@ pub enum FileFault {
     /// It is a file of another program.
     #[error("{0}")]
     Foreign(Foreign),
+    /// It names a file that must not be read.
+    #[error("{why}")]
+    Refused {
+        /// Who names which file, why it is not read, and what to do.
+        why: String,
+    },
     /// Reading failed.
     #[error("it could not be read: {0}")]
     Io(#[from] io::Error),
@@ -252,6 +258,7 @@ base::coded!(FileFault {
     Self::TooMuch { what, limit, .. } => "file-too-much" { what, limit },
     Self::NoStrokes { .. } => "file-no-strokes" {},
     Self::NotUtf8 { after } => "file-not-utf8" { after },
+    Self::Refused { why } => "file-refused" { why },
     Self::Io(why) => "file-io" { why },
 } wraps {
     Self::Foreign(foreign) => foreign, Foreign;

@@ -29,10 +29,10 @@ pub use leaves::{
     read_profiles, read_rays, read_vein_graph, write_marks, write_rays,
 };
 pub use model::{
-    ExportSpec, FileStems, Level, MAX_MODEL_BYTES, Morph, ObjFiles, Packing, PngCache, Resolver, UsdFiles,
-    file_name, no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb,
-    write_glb_levels, write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with,
-    write_model, write_ply, write_png, write_stl,
+    ExportSpec, FileStems, Level, MAX_MODEL_BYTES, Morph, NoFile, ObjFiles, Packing, PngCache, Resolver,
+    SideFile, UsdFiles, decode_uri, file_name, no_files, obj_files, read_model, read_picture, usd_files,
+    warn_of_wind, write_glb, write_glb_levels, write_glb_morph, write_glb_packed, write_glb_rigged,
+    write_glb_scene, write_glb_with, write_model, write_ply, write_png, write_stl,
 };
 pub use plant::{write_mtg, write_opf, write_qsm, write_structure, write_swc};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

@@ -23,6 +23,10 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
           value_parser = |s: &str| ranged(s, 1.0, 1000.0))]
     pub(crate) budget: f64,
+    /// Follow paths in files to wherever they lead: a model's textures, a spec's meshes, the scans of stages. Without, what a
+    /// file names has to lie in its folder or below it, also by links (docs/limits.md). Pipes and devices are never read.
+    #[arg(long)]
+    pub(crate) trust_paths: bool,
     /// Print nothing but errors; show no progress.
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -123,13 +123,14 @@ fn what_a_model_names_is_kept() {
     fs::write(dir.join("a.gltf"), gltf).unwrap();
     good(&dir, &["info", "a.gltf"]);
     refused(&dir, &["convert", "a.gltf", "-o", "x.obj", "--report", "p.bin"], &["p.bin", "--report", INPUT]);
-    // Named, though not read: of no use to us, or outside of the model's folder.
+    // Named, though not read: of no use to us. Or outside of the model's folder.
     fs::create_dir(dir.join("sub")).unwrap();
     fs::write(dir.join("sub/b.mtl"), "newmtl wood\nmap_Bump -bm 0.2 n.png\nmap_Kd ../t-wood.png\n").unwrap();
     fs::write(dir.join("sub/b.obj"), format!("mtllib b.mtl\n{BOX}")).unwrap();
     fs::copy(dir.join("t-wood.png"), dir.join("sub/n.png")).unwrap();
     for name in ["sub/n.png", "t-wood.png"] {
-        refused(&dir, &["convert", "sub/b.obj", "-o", "x.glb", "--png", name], &["--png", INPUT]);
+        let args = ["convert", "sub/b.obj", "-o", "x.glb", "--trust-paths", "--png", name];
+        refused(&dir, &args, &["--png", INPUT]);
     }
     let names = r#"{"asset": {"version": "2.0"}, "images": [{"uri": "sub/n.png"}, {"uri": "data:,"}], "#;
     let named = gltf.replacen(r#"{"asset": {"version": "2.0"}, "#, names, 1);

@@ -342,6 +342,7 @@ mod unix {
             return missing::skipped("mkfifo");
         }
         fs::write(dir.join("a.obj"), "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-        good(&dir, &["info", "a.obj"]);
+        let line = bad(&dir, &["info", "a.obj"]);
+        assert!(line.contains("a.obj: names \"a.mtl\", which is a pipe, not a file"), "{line}");
     }
 }

@@ -14,6 +14,7 @@ mod hostile;
 mod kills;
 mod leaf;
 mod limits;
+mod named;
 mod options;
 mod replay;
 mod shape;

@@ -12,8 +12,19 @@ use serde_json::Value;
 use tools::{FLOWER, folder, good, status};
 
 /// Steer how a command runs or talks, whatever it makes; -o is in each use.
-const RUNNING: [&str; 10] =
-    ["help", "version", "threads", "quiet", "seed", "report", "json", "output", "budget", "strict"];
+const RUNNING: [&str; 11] = [
+    "help",
+    "version",
+    "threads",
+    "quiet",
+    "seed",
+    "report",
+    "json",
+    "output",
+    "budget",
+    "strict",
+    "trust-paths",
+];
 
 /// A value that is not the default, for each option that takes one.
 const VALUES: &[(&str, &str)] = &[

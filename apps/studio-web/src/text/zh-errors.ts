@@ -79,6 +79,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'file-too-much': '{what}超过上限 {limit}',
   'file-no-strokes': '文件里没有笔画，请画可见的线、路径或形状',
   'file-not-utf8': '{after} 字节之后不是 UTF-8 文本，请另存为 UTF-8',
+  'file-refused': '文件引用了不允许读取的文件：{why}',
   'file-io': '无法读取文件：{why}',
   write: '无法写出：{why}',
   'step-too-long': '步长 {step_m} 米远大于根与吸引点的间距 {space_m} 米：请缩短步长或 kill_m，或放大轮廓',

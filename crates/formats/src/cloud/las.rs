@@ -1,9 +1,11 @@
 //! LAS 1.0 to 1.4, point formats 0 to 10, with their colours; compressed (LAZ) with the feature `laz`.
 
+#[cfg(feature = "laz")]
+use super::laz_limits::Packed;
 use super::{CloudFormat, MAX_POINTS, Sink, too_many};
 use crate::error::{CloudError, FileFault, Place};
 
-fn fail(at: usize, what: impl Into<String>) -> CloudError {
+pub(super) fn fail(at: usize, what: impl Into<String>) -> CloudError {
     let fault = FileFault::malformed(what, "export the scan again");
     CloudError::new(CloudFormat::Las, Place::Byte(at as u64), fault)
 }
@@ -171,7 +173,7 @@ fn unpack(
     sink: &mut Sink,
 ) -> Result<(), CloudError> {
     let broken = |what: String| fail(data_at, what);
-    let mut vlr = None;
+    let mut how = None;
     // Records before the points: one of them says how they are packed.
     for _ in 0..records {
         let b = Bytes(bytes);
@@ -179,22 +181,21 @@ fn unpack(
         let (id, length) = (b.u16(at + 18)?, b.u16(at + 20)?);
         let data = bytes.get(at + 54..(at + 54).saturating_add(length));
         if user.starts_with(b"laszip encoded") && id == 22204 {
-            let data = data.ok_or_else(|| fail(at, "the record of LASzip is cut off"))?;
-            vlr = Some(laz::LazVlr::read_from(data).map_err(|e| broken(e.to_string()))?);
+            how = Some(data.ok_or_else(|| fail(at, "the record of LASzip is cut off"))?);
         }
         at += 54 + length;
     }
-    let vlr = vlr.ok_or_else(|| broken("it is compressed (LAZ), but no record says how".into()))?;
-    if vlr.items_size() != rows.record as u64 {
-        return Err(broken(format!(
-            "its records have {} bytes and {} packed ones",
-            rows.record,
-            vlr.items_size()
-        )));
-    }
+    let how = how.ok_or_else(|| broken("it is compressed (LAZ), but no record says how".into()))?;
+    let vlr = laz::LazVlr::read_from(how).map_err(|e| broken(e.to_string()))?;
+    let packed = Packed { bytes, data_at, record: rows.record, count, how };
+    let end = packed.check(&vlr)?;
     let mut source = std::io::Cursor::new(bytes);
     source.set_position(data_at as u64);
     let mut unpacker = laz::LasZipDecompressor::new(source, vlr).map_err(|e| broken(e.to_string()))?;
+    // What claims more than is there is not begun: its memory would be taken before its bytes are read.
+    let begins = unpacker.get().position();
+    *unpacker.get_mut() = std::io::Cursor::new(&bytes[..end]);
+    unpacker.get_mut().set_position(begins);
     let mut row = vec![0; rows.record];
     for k in 0..count {
         unpacker

@@ -1,6 +1,8 @@
 //! bytes -> [`mesh::PointCloud`]: scans as PLY, XYZ or TXT, PCD, LAS and OBJ.
 
 mod las;
+#[cfg(feature = "laz")]
+mod laz_limits;
 mod pcd;
 mod ply;
 mod text;

@@ -143,19 +143,30 @@ fn every_format_gives_the_same_two_points() {
     assert_eq!(points(&las(2, 0.25, 1.0, 2, &[[0, 4, 8], [-6, -3, 3996]]), Las), TWO);
 }
 
-/// Compressed by another program: laz-rs.
+/// Points of format 0 or 6 as another program compresses them, laz-rs; and where their compressed bytes begin.
 #[cfg(feature = "laz")]
-#[test]
-fn compressed_las_gives_the_same_points() {
+fn packed(format: u8, places: &[[i32; 3]], variable: bool) -> (Vec<u8>, Vec<u8>, usize) {
     use std::io::Cursor;
 
-    let places: Vec<[i32; 3]> = (0..3000).map(|i| [7 * i, i * i % 977, -3 * i]).collect();
-    let plain = las(2, 0.25, 1.0, 2, &places);
+    let mut plain = las(2, 0.25, 1.0, u32::try_from(places.len()).unwrap(), places);
+    if format == 6 {
+        let (head, count) = (usize::from(plain[94]) + 256 * usize::from(plain[95]), places.len());
+        plain.truncate(head);
+        plain[104..107].copy_from_slice(&[6, 30, 0]);
+        for p in places {
+            plain.extend(p.iter().flat_map(|x| x.to_le_bytes()));
+            plain.extend_from_slice(&[0; 18]);
+        }
+        assert_eq!(plain.len(), head + 30 * count);
+    }
     let at = |k: usize| u32::from_le_bytes([plain[k], plain[k + 1], plain[k + 2], plain[k + 3]]) as usize;
     let (head, data_at) = (usize::from(plain[94]) + 256 * usize::from(plain[95]), at(96));
     let record = usize::from(plain[105]) + 256 * usize::from(plain[106]);
     let items = laz::LazItemRecordBuilder::default_for_point_format_id(plain[104], 0).unwrap();
-    let vlr = laz::LazVlr::from_laz_items(items);
+    let mut vlr = laz::LazVlr::from_laz_items(items.clone());
+    if variable {
+        vlr = laz::LazVlrBuilder::new(items).with_variable_chunk_size().build();
+    }
     assert_eq!(usize::try_from(vlr.items_size()).unwrap(), record);
     let mut said = Vec::new();
     vlr.write_to(&mut said).unwrap();
@@ -175,20 +186,92 @@ fn compressed_las_gives_the_same_points() {
     let mut cursor = Cursor::new(file);
     cursor.set_position(u64::from(start));
     let mut packer = laz::LasZipCompressor::new(&mut cursor, vlr).unwrap();
-    packer.compress_many(&plain[data_at..]).unwrap();
+    for some in plain[data_at..].chunks(record * 700) {
+        packer.compress_many(some).unwrap();
+        if variable {
+            packer.finish_current_chunk().unwrap();
+        }
+    }
     packer.done().unwrap();
     drop(packer);
-    let file = cursor.into_inner();
-    assert!(file.len() < plain.len() / 2, "{} {}", file.len(), plain.len());
-    assert_eq!(points(&file, CloudFormat::Las), points(&plain, CloudFormat::Las));
-    // Cut off and broken: an error, never a panic.
-    for cut in (0..file.len()).step_by(97) {
-        let _ = read_cloud(&file[..cut], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+    (plain, cursor.into_inner(), start as usize)
+}
+
+#[cfg(feature = "laz")]
+#[test]
+fn compressed_las_gives_the_same_points() {
+    let places: Vec<[i32; 3]> = (0..3000).map(|i| [7 * i, i * i % 977, -3 * i]).collect();
+    for (format, variable) in [(0, false), (0, true), (6, false), (6, true)] {
+        let (plain, file, _) = packed(format, &places, variable);
+        assert!(file.len() < plain.len() / 2, "{} {}", file.len(), plain.len());
+        assert_eq!(points(&file, CloudFormat::Las), points(&plain, CloudFormat::Las), "{format} {variable}");
+        // Cut off and broken: an error, never a panic.
+        for cut in (0..file.len()).step_by(97) {
+            let _ =
+                read_cloud(&file[..cut], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+        }
+        for k in (0..file.len()).step_by(53).chain(0..700.min(file.len())) {
+            let mut bad = file.clone();
+            bad[k] ^= 0x5a;
+            let _ = read_cloud(&bad[..], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+        }
     }
-    for k in (0..file.len()).step_by(53) {
+}
+
+/// More points for each byte than any scan: those of one place.
+#[cfg(feature = "laz")]
+#[test]
+fn points_of_one_place_are_read_and_claims_beyond_them_are_not() {
+    let claim = |file: &[u8], count: u32| {
+        let mut file = file.to_vec();
+        file[107..111].copy_from_slice(&count.to_le_bytes());
+        read_cloud(&file[..], CloudFormat::Las, &ExportSpec::default(), &mut Report::default())
+            .map(|c| c.points.len())
+            .map_err(|e| e.to_string())
+    };
+    for format in [0, 6] {
+        let (_, file, start) = packed(format, &vec![[1, 2, 3]; 100_000], false);
+        let there = file.len() - start;
+        assert_eq!(claim(&file, 100_000), Ok(100_000), "{there} bytes");
+        println!("format {format}: 100,000 points of one place in {there} bytes");
+        let line = claim(&file, u32::try_from(2_000 * (there + 1)).unwrap()).unwrap_err();
+        assert!(line.contains("points are announced in"), "{line}");
+    }
+}
+
+#[cfg(feature = "laz")]
+#[test]
+fn chunks_layers_and_parts_that_are_not_there_are_refused_before_they_are_unpacked() {
+    let places: Vec<[i32; 3]> = (0..3000).map(|i| [7 * i, i * i % 977, -3 * i]).collect();
+    let fails = |file: &[u8], part: &str| {
+        let read = read_cloud(file, CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+        let line = read.map(|c| c.points.len()).unwrap_err().to_string();
+        assert!(line.contains(part), "{line}");
+    };
+    for variable in [false, true] {
+        let (_, file, start) = packed(6, &places, variable);
+        let put = |at: usize, word: u32| {
+            let mut bad = file.clone();
+            bad[at..at + 4].copy_from_slice(&word.to_le_bytes());
+            bad
+        };
+        // Each of the nine layers of the first chunk in turn claims 4 GB.
+        for layer in 0..9 {
+            fails(&put(start + 8 + 30 + 4 + 4 * layer, 0xffff_fff0), "point 0 cannot be unpacked");
+        }
+        let table = usize::try_from(u64::from_le_bytes(file[start..start + 8].try_into().unwrap())).unwrap();
+        fails(&put(table + 4, 0x1000_0000), "268435456 chunks are announced");
+        if variable {
+            fails(&put(107, 3001), "3001 points are announced, 3000 are in its chunks");
+        }
+    }
+    // Parts of the record, which stands before the points: 34 bytes, then type, size and version of each.
+    let (_, file, start) = packed(0, &places, false);
+    let items = start - 6;
+    for (at, byte) in [(items + 2, 21), (items, 99), (items + 4, 9), (items - 2, 0), (items - 34, 3)] {
         let mut bad = file.clone();
-        bad[k] ^= 0x5a;
-        let _ = read_cloud(&bad[..], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+        bad[at] = byte;
+        fails(&bad, "");
     }
 }
 

@@ -8,6 +8,7 @@ use super::glb_write::INSTANCES;
 use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
 use super::gltf_bytes::{Bytes, MeshFault, broken, chunks, item, unsupported};
 use super::gltf_look::{Pictures, WEBP};
+use super::named::Files;
 use super::{MAX_ROWS, Names, Resolver, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
@@ -62,13 +63,14 @@ pub(super) fn read(
         ModelError::new(format, place, fault)
     })?;
     let at = |(place, fault): MeshFault| ModelError::new(format, place, fault);
-    let bytes = Bytes::load(&root, bin, resolve).map_err(at)?;
+    let mut files = Files::new(resolve);
+    let bytes = Bytes::load(&root, bin, &mut files).map_err(at)?;
     for extension in &root.extensions_required {
         if !HARMLESS.iter().any(|h| extension == h || (h.ends_with('_') && extension.starts_with(h))) {
             return Err(at(unsupported(Place::File, format!("the extension {extension}"))));
         }
     }
-    let materials = Pictures::new(&root, &bytes, resolve).materials();
+    let materials = Pictures::new(&root, &bytes, files).materials().map_err(at)?;
     let mut reader = Reader {
         root: &root,
         bytes,

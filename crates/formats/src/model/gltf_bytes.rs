@@ -1,12 +1,14 @@
 //! Checked access to the bytes behind a glTF document. Everything here may be hostile.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
-use super::Resolver;
+use base::LiteMap;
+
 use super::glb_pack::COMPRESSION;
 use super::gltf::{Accessor, FLOAT, I8, I16, Root, U8, U16, U32, View};
 use super::meshopt::{decode_attributes, decode_triangles};
 use super::meshopt_filter::Filter;
+use super::named::Files;
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
@@ -67,10 +69,30 @@ pub(super) fn chunks(bytes: &[u8], format: ModelFormat) -> Result<(&[u8], Option
     json.map(|json| (json, bin)).ok_or_else(|| cut(12, "the JSON chunk"))
 }
 
+/// What is in a buffer.
+#[derive(Debug)]
+enum Held<'a> {
+    /// A part of the document.
+    Inside(&'a [u8]),
+    /// A file or a URI's data; buffers that name one file share it.
+    Own(Arc<Vec<u8>>),
+}
+
+impl core::ops::Deref for Held<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Inside(bytes) => bytes,
+            Self::Own(bytes) => bytes,
+        }
+    }
+}
+
 /// The buffers of a document.
 #[derive(Debug)]
 pub(super) struct Bytes<'a> {
-    buffers: Vec<Cow<'a, [u8]>>,
+    buffers: Vec<Held<'a>>,
     /// What each compressed view holds; none of others.
     unpacked: Vec<Option<Vec<u8>>>,
 }
@@ -79,20 +101,30 @@ pub(super) struct Bytes<'a> {
 const MAX_UNPACKED: u64 = 1 << 30;
 
 impl<'a> Bytes<'a> {
-    pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, resolve: Resolver<'_>) -> Result<Self, MeshFault> {
+    pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, files: &mut Files<'_>) -> Result<Self, MeshFault> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
+        let mut read: LiteMap<&str, Arc<Vec<u8>>> = LiteMap::new();
         for (i, buffer) in root.buffers.iter().enumerate() {
             // A buffer for readers without the extension has nothing that its compressed views would need.
             let marked =
                 buffer.extensions.as_ref().and_then(|e| e.get(COMPRESSION)?.get("fallback")?.as_bool());
             if marked == Some(true) && buffer.uri.is_none() {
-                buffers.push(Cow::Borrowed(&[][..]));
+                buffers.push(Held::Inside(&[]));
                 continue;
             }
             let data = match (&buffer.uri, bin) {
-                (None, Some(bin)) if i == 0 => Cow::Borrowed(bin),
+                (None, Some(bin)) if i == 0 => Held::Inside(bin),
                 (None, _) => return Err(broken(item("buffer", i), "it has no data")),
-                (Some(uri), _) => Cow::Owned(load_uri(uri, resolve, &item("buffer", i))?),
+                (Some(uri), _) => Held::Own(match read.get(uri.as_str()) {
+                    Some(known) => Arc::clone(known),
+                    None => {
+                        let place = item("buffer", i);
+                        let new =
+                            Arc::new(load_uri(uri, files, &place)?.ok_or_else(|| not_found(uri, &place))?);
+                        read.insert(uri, Arc::clone(&new));
+                        new
+                    }
+                }),
             };
             if (data.len() as u64) < buffer.byte_length {
                 let inside = format!("{} of {} bytes", data.len(), buffer.byte_length);
@@ -276,16 +308,22 @@ fn number(raw: &[u8], kind: u32, scaled: bool) -> f32 {
     if scaled { (value / most).max(-1.0) } else { value }
 }
 
-/// The bytes that a `data:` URI holds or that `resolve` finds.
-pub(super) fn load_uri(uri: &str, resolve: Resolver<'_>, place: &Place) -> Result<Vec<u8>, MeshFault> {
+/// The bytes that a `data:` URI or a file holds; none of a file that is not there.
+pub(super) fn load_uri(
+    uri: &str,
+    files: &mut Files<'_>,
+    place: &Place,
+) -> Result<Option<Vec<u8>>, MeshFault> {
     if let Some(rest) = uri.strip_prefix("data:") {
-        let data = rest.split_once(";base64,").map(|(_, data)| data);
-        return data.and_then(base64).ok_or_else(|| broken(place.clone(), "its data URI is not base64"));
+        let data = rest.split_once(";base64,").and_then(|(_, data)| base64(data));
+        return data.map(Some).ok_or_else(|| broken(place.clone(), "its data URI is not base64"));
     }
-    resolve(uri).ok_or_else(|| {
-        let what = format!("the file {:?} that it refers to was not found", base::quoted(uri));
-        (place.clone(), FileFault::malformed(what, "put it beside the model, or save everything in one .glb"))
-    })
+    files.get_uri(uri).map_err(|fault| (place.clone(), fault))
+}
+
+fn not_found(uri: &str, place: &Place) -> MeshFault {
+    let what = format!("the file {:?} that it refers to was not found", base::quoted(uri));
+    (place.clone(), FileFault::malformed(what, "put it beside the model, or save everything in one .glb"))
 }
 
 fn base64(text: &str) -> Option<Vec<u8>> {

@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
+use base::LiteMap;
 use mesh::{AlphaMode, Impostor, Maps, Model};
 use serde_json::{Value, json};
 
 use super::glb_write::{Writer, row};
 use super::gltf::{Image, Material, Pbr, Root, Texture, TextureInfo};
-use super::gltf_bytes::{Bytes, load_uri};
+use super::gltf_bytes::{Bytes, MeshFault, item, load_uri};
+use super::named::{Files, NAMED};
 use super::picture::{WEBP_TYPE, read_webp};
-use super::{Names, PngCache, Resolver, kind_of, read_picture, share};
-use crate::error::{Place, WriteError};
+use super::{Names, PngCache, kind_of, read_picture, share};
+use crate::error::{FileFault, WriteError};
 
 /// Light that comes through a thin blade, as viewers know it that have the extension; to others it is opaque.
 const TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
 /// Textures whose image is WebP.
 pub(super) const WEBP: &str = "EXT_texture_webp";
-/// Pixels of all textures together, in bytes.
-const MAX_TEXTURES: usize = 1 << 30;
 
 impl Writer {
     /// The row of the model's first material.
@@ -143,39 +143,61 @@ fn extras(material: &mesh::Material) -> Value {
 pub(super) struct Pictures<'a> {
     root: &'a Root,
     bytes: &'a Bytes<'a>,
-    resolve: Resolver<'a>,
+    files: Files<'a>,
     read: Vec<Option<Option<Arc<mesh::Texture>>>>,
+    /// Those of files, which images may share.
+    named: LiteMap<&'a str, Option<Arc<mesh::Texture>>>,
     pixels: usize,
 }
 
 impl<'a> Pictures<'a> {
-    pub(super) fn new(root: &'a Root, bytes: &'a Bytes<'a>, resolve: Resolver<'a>) -> Self {
-        Self { root, bytes, resolve, read: vec![None; root.images.len()], pixels: 0 }
+    pub(super) fn new(root: &'a Root, bytes: &'a Bytes<'a>, files: Files<'a>) -> Self {
+        let read = vec![None; root.images.len()];
+        Self { root, bytes, files, read, named: LiteMap::new(), pixels: 0 }
     }
 
     /// The picture that is named; none where nothing is, or where it cannot be read.
-    fn get(&mut self, info: Option<&TextureInfo>) -> Option<Arc<mesh::Texture>> {
-        let source = source(self.root.textures.get(info?.index as usize)?)?;
-        let image = self.root.images.get(source)?;
-        if let Some(known) = self.read.get(source)? {
-            return known.clone();
+    fn get(&mut self, info: Option<&TextureInfo>) -> Result<Option<Arc<mesh::Texture>>, MeshFault> {
+        let texture = info.and_then(|info| self.root.textures.get(info.index as usize));
+        let Some(source) = texture.and_then(source).filter(|&s| s < self.read.len()) else { return Ok(None) };
+        if let Some(known) = &self.read[source] {
+            return Ok(known.clone());
         }
-        let bytes = match (image.buffer_view, &image.uri) {
-            (Some(view), _) => self.bytes.view(self.root, view).ok().map(|(b, _)| b.to_vec()),
-            (None, Some(uri)) => load_uri(uri, self.resolve, &Place::File).ok(),
+        let image = &self.root.images[source];
+        let picture = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => {
+                let bytes = self.bytes.view(self.root, view).ok().map(|(b, _)| b.to_vec());
+                self.decode(bytes)
+            }
+            (None, Some(uri)) => match self.named.get(uri.as_str()) {
+                Some(known) => known.clone(),
+                None => {
+                    let bytes = match load_uri(uri, &mut self.files, &item("image", source)) {
+                        Err(fault @ (_, FileFault::Refused { .. } | FileFault::TooMuch { .. })) => {
+                            return Err(fault);
+                        }
+                        bytes => bytes.ok().flatten(),
+                    };
+                    let picture = self.decode(bytes);
+                    self.named.insert(uri, picture.clone());
+                    picture
+                }
+            },
             (None, None) => None,
         };
-        let picture = bytes
-            .filter(|_| self.pixels < MAX_TEXTURES)
-            .and_then(|b| read_picture(&b).or_else(|| read_webp(&b)));
-        self.pixels = self.pixels.saturating_add(picture.as_ref().map_or(0, |p| p.pixels.len()));
-        let picture = picture.map(Arc::new);
         self.read[source] = Some(picture.clone());
-        picture
+        Ok(picture)
+    }
+
+    fn decode(&mut self, bytes: Option<Vec<u8>>) -> Option<Arc<mesh::Texture>> {
+        let bytes = bytes.filter(|_| self.pixels < NAMED.pixels)?;
+        let picture = read_picture(&bytes).or_else(|| read_webp(&bytes))?;
+        self.pixels = self.pixels.saturating_add(picture.pixels.len());
+        Some(Arc::new(picture))
     }
 
     /// The materials by their rows, and for each whether a texture was left out.
-    pub(super) fn materials(&mut self) -> Vec<(mesh::Material, bool)> {
+    pub(super) fn materials(&mut self) -> Result<Vec<(mesh::Material, bool)>, MeshFault> {
         let mut names = Names::default();
         let root = self.root;
         let each = root.materials.iter().map(|m| {
@@ -184,30 +206,30 @@ impl<'a> Pictures<'a> {
             let through: Option<TextureInfo> = look
                 .and_then(|l| l.get("diffuseTransmissionTexture")?.get("index")?.as_u64())
                 .and_then(|i| Some(TextureInfo { index: u32::try_from(i).ok()?, ..TextureInfo::default() }));
-            let texture = self.get(pbr.base_color_texture.as_ref());
+            let texture = self.get(pbr.base_color_texture.as_ref())?;
             let maps = Maps {
-                normal: self.get(m.normal_texture.as_ref()),
-                orm: self.orm(m),
+                normal: self.get(m.normal_texture.as_ref())?,
+                orm: self.orm(m)?,
                 height: None,
-                through: self.get(through.as_ref()),
+                through: self.get(through.as_ref())?,
             };
             let name = names.fresh(m.name.as_deref().unwrap_or_default(), "material");
             let lost = texture.is_none() && pbr.base_color_texture.is_some();
-            (material(m, name, texture, maps), lost)
+            Ok((material(m, name, texture, maps), lost))
         });
         each.collect()
     }
 
     /// Occlusion and roughness in one picture; of roughness alone one without occlusion.
-    fn orm(&mut self, m: &Material) -> Option<Arc<mesh::Texture>> {
+    fn orm(&mut self, m: &Material) -> Result<Option<Arc<mesh::Texture>>, MeshFault> {
         let rough = m.pbr_metallic_roughness.metallic_roughness_texture.as_ref();
-        let picture = self.get(rough)?;
+        let Some(picture) = self.get(rough)? else { return Ok(None) };
         if m.occlusion_texture.as_ref().is_some_and(|o| Some(o.index) == rough.map(|r| r.index)) {
-            return Some(picture);
+            return Ok(Some(picture));
         }
         let mut alone = (*picture).clone();
         alone.pixels.chunks_exact_mut(4).for_each(|p| p[0] = 255);
-        Some(Arc::new(alone))
+        Ok(Some(Arc::new(alone)))
     }
 }
 

@@ -9,6 +9,7 @@ mod gltf_bytes;
 mod gltf_look;
 mod meshopt;
 mod meshopt_filter;
+mod named;
 mod obj_read;
 mod obj_write;
 mod picture;
@@ -31,6 +32,7 @@ pub use glb_write::{
     Level, Morph, write_glb, write_glb_levels, write_glb_morph, write_glb_rigged, write_glb_scene,
     write_glb_with,
 };
+pub use named::decode_uri;
 pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
 pub use ply_write::write_ply;
@@ -46,18 +48,40 @@ pub const MAX_MODEL_BYTES: u64 = 1 << 30;
 /// Most vertices or triangles of a model that is read.
 pub(crate) const MAX_ROWS: usize = 32 << 20;
 
-/// Finds a file that a model refers to (a material file, a texture) by the name that the model uses.
-pub type Resolver<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+/// A file that a model refers to: a buffer, a material file, a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SideFile<'a> {
+    /// Its path as it is written, of whatever system.
+    pub name: &'a str,
+    /// The material file that names it, by the path that the model has for it: paths are relative to who names them. None:
+    /// the model itself.
+    pub by: Option<&'a str>,
+}
+
+/// Why a file that a model refers to is not given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoFile {
+    /// There is none: what can do without it does.
+    Missing,
+    /// It must not be read, and neither is the model: why, who names it, and what to do.
+    Refused(String),
+}
+
+/// Finds a file that a model refers to. Where it may lie is the caller's to decide, as a model may come from anybody.
+pub type Resolver<'a> = &'a dyn Fn(SideFile<'_>) -> Result<Vec<u8>, NoFile>;
 
 /// A resolver that finds nothing.
-pub fn no_files(_: &str) -> Option<Vec<u8>> {
-    None
+///
+/// # Errors
+/// Always [`NoFile::Missing`].
+pub fn no_files(_: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
+    Err(NoFile::Missing)
 }
 
 /// Reads a model.
 ///
 /// `spec` says which unit and up axis the file has where the format does not (OBJ, PLY, STL); the model comes
-/// back in metres, +Y up. `resolve` finds the files that an OBJ refers to. Missing normals are computed.
+/// back in metres, +Y up. `resolve` finds the files that an OBJ or a glTF refers to; each is asked for once. Missing normals are computed.
 /// Guaranteed: `model.validate()` finds nothing but degenerate triangles. What was left out is told in
 /// `report`.
 ///

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use base::Report;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
+use super::named::{Files, NAMED};
 use super::picture::linear;
-use super::{MAX_ROWS, Names, Resolver, kind_of, read_picture, unit};
+use super::{MAX_ROWS, Names, Resolver, SideFile, kind_of, read_picture, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
@@ -32,6 +33,12 @@ struct Reader {
     triangles: usize,
     lines: usize,
     title: Option<String>,
+    /// The files of materials that were read, or that are not there.
+    libraries: LiteMap<String, ()>,
+    /// Textures by the file of materials that names them, and their name in it.
+    textures: LiteMap<(String, String), Option<Arc<Texture>>>,
+    /// Of all textures, in bytes.
+    pixels: usize,
 }
 
 fn fail(line: usize, what: impl Into<String>, advice: &'static str) -> ModelError {
@@ -47,6 +54,7 @@ pub(super) fn read(
     // Names may be in any encoding; everything that we need is ASCII.
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::default();
+    let mut files = Files::new(resolve);
     let mut joined = String::new();
     for (i, line) in text.lines().enumerate() {
         if let Some(start) = line.strip_suffix('\\') {
@@ -55,11 +63,11 @@ pub(super) fn read(
             continue;
         }
         if joined.is_empty() {
-            reader.line(line, i + 1, resolve, report)?;
+            reader.line(line, i + 1, &mut files, report)?;
         } else {
             joined.push_str(line);
             let whole = core::mem::take(&mut joined);
-            reader.line(&whole, i + 1, resolve, report)?;
+            reader.line(&whole, i + 1, &mut files, report)?;
         }
     }
     if reader.lines > 0 {
@@ -81,7 +89,7 @@ impl Reader {
         &mut self,
         line: &str,
         number: usize,
-        resolve: Resolver<'_>,
+        files: &mut Files<'_>,
         report: &mut Report,
     ) -> Result<(), ModelError> {
         let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
@@ -116,7 +124,10 @@ impl Reader {
                 self.material = Some(rest.trim().to_owned());
                 self.current = None;
             }
-            "mtllib" => self.library(rest.trim(), resolve, report),
+            "mtllib" => {
+                let fail = |fault| ModelError::new(ModelFormat::Obj, Place::line(number), fault);
+                self.library(rest.trim(), files, report).map_err(fail)?;
+            }
             "#" if self.title.is_none() => {
                 self.title = rest.trim().strip_prefix("model ").map(|t| t.trim().to_owned());
             }
@@ -191,18 +202,21 @@ impl Reader {
         row
     }
 
-    fn library(&mut self, name: &str, resolve: Resolver<'_>, report: &mut Report) {
-        let Some(bytes) = resolve(name) else {
+    /// Reads a file of materials, the first time that it is named.
+    fn library(&mut self, name: &str, files: &mut Files<'_>, report: &mut Report) -> Result<(), FileFault> {
+        if self.libraries.insert(name.to_owned(), ()).is_some() {
+            return Ok(());
+        }
+        let Some(bytes) = files.get(SideFile { name, by: None })? else {
             base::warn!(
                 report,
                 "obj-material-file",
                 { file = name },
                 "the material file {file:?} was not found: materials are plain"
             );
-            return;
+            return Ok(());
         };
         let text = String::from_utf8_lossy(&bytes);
-        let mut textures: LiteMap<String, Option<Arc<Texture>>> = LiteMap::new();
         let mut material: Option<Material> = None;
         for line in text.lines() {
             let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
@@ -225,10 +239,7 @@ impl Reader {
                 "map_Kd" => {
                     let file =
                         if rest.starts_with('-') { rest.rsplit(' ').next().unwrap_or(rest) } else { rest };
-                    let known = textures.entry(file.to_owned());
-                    m.texture = known
-                        .or_insert_with(|| resolve(file).and_then(|b| read_picture(&b)).map(Arc::new))
-                        .clone();
+                    m.texture = self.texture(file, name, files)?;
                     if m.texture.is_none() {
                         base::warn!(
                             report,
@@ -243,6 +254,30 @@ impl Reader {
             }
         }
         self.add(material);
+        Ok(())
+    }
+
+    /// The texture that a file of materials names; none where it cannot be read.
+    fn texture(
+        &mut self,
+        name: &str,
+        library: &str,
+        files: &mut Files<'_>,
+    ) -> Result<Option<Arc<Texture>>, FileFault> {
+        let key = (library.to_owned(), name.to_owned());
+        if let Some(known) = self.textures.get(&key) {
+            return Ok(known.clone());
+        }
+        let mut bytes = files.get(SideFile { name, by: Some(library) })?;
+        // Beside the model, as some programs write it.
+        if bytes.is_none() && library.contains(['/', '\\']) {
+            bytes = files.get(SideFile { name, by: None })?;
+        }
+        let bytes = bytes.filter(|_| self.pixels < NAMED.pixels);
+        let picture = bytes.and_then(|b| read_picture(&b)).map(Arc::new);
+        self.pixels = self.pixels.saturating_add(picture.as_ref().map_or(0, |p| p.pixels.len()));
+        self.textures.insert(key, picture.clone());
+        Ok(picture)
     }
 
     fn add(&mut self, material: Option<Material>) {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use base::{Report, Unit, UpAxis};
 use formats::{
-    ExportSpec, FileStems, ModelFormat, ModelSummary, file_name, no_files, obj_files, read_model, usd_files,
-    write_glb, write_model,
+    ExportSpec, FileStems, ModelFormat, ModelSummary, NoFile, SideFile, file_name, no_files, obj_files,
+    read_model, usd_files, write_glb, write_model,
 };
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
@@ -98,9 +98,9 @@ fn obj_comes_back_with_its_materials() {
     let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Centimetre };
     let files = obj_files(&m, "my oak", &spec).expect("writes");
     assert_eq!(files.textures.len(), 1, "a shared texture is written once");
-    let resolve = |name: &str| match name {
-        "my-oak.mtl" => Some(files.mtl.clone()),
-        name => files.textures.iter().find(|(n, _)| n == name).map(|(_, b)| b.clone()),
+    let resolve = |file: SideFile<'_>| match file.name {
+        "my-oak.mtl" => Ok(files.mtl.clone()),
+        name => files.textures.iter().find(|(n, _)| n == name).map(|(_, b)| b.clone()).ok_or(NoFile::Missing),
     };
     let mut report = Report::default();
     let back =
@@ -157,7 +157,10 @@ fn obj_of_other_programs_is_read() {
         ModelFormat::Obj,
         "x",
         &ExportSpec::default(),
-        &|name| (name == "a.mtl").then(|| b"newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 gone.png\n".to_vec()),
+        &|file| match file.name {
+            "a.mtl" => Ok(b"newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 gone.png\n".to_vec()),
+            _ => Err(NoFile::Missing),
+        },
         &mut report,
     )
     .expect("reads");
@@ -487,4 +490,94 @@ fn tiny_and_huge_normals_become_units() {
         let read = read(text.as_bytes(), ModelFormat::Obj, &ExportSpec::default());
         assert_eq!(read.validate().next(), None, "{n}");
     }
+}
+
+/// Who asks for what, in order.
+fn asked_of(
+    bytes: &[u8],
+    format: ModelFormat,
+    give: &dyn Fn(SideFile<'_>) -> Result<Vec<u8>, NoFile>,
+) -> (Result<Model, formats::ModelError>, Vec<String>) {
+    let asked = core::cell::RefCell::new(Vec::new());
+    let resolve = |file: SideFile<'_>| {
+        asked.borrow_mut().push(format!("{} by {}", file.name, file.by.unwrap_or("the model")));
+        give(file)
+    };
+    let read = read_model(bytes, format, "x", &ExportSpec::default(), &resolve, &mut Report::default());
+    (read, asked.into_inner())
+}
+
+#[test]
+fn a_file_is_asked_for_once_and_by_who_names_it() {
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let give = |file: SideFile<'_>| match file.name {
+        "m/a.mtl" | "b.mtl" => Ok(b"newmtl a\nmap_Kd t.png\nnewmtl b\nmap_Kd t.png\n".to_vec()),
+        _ => Err(NoFile::Missing),
+    };
+    let text = "mtllib m/a.mtl\nmtllib gone.mtl\nmtllib b.mtl\n".repeat(100) + triangle;
+    let (read, asked) = asked_of(text.as_bytes(), ModelFormat::Obj, &give);
+    assert!(read.is_ok(), "{read:?}");
+    let want = [
+        "m/a.mtl by the model",
+        "t.png by m/a.mtl",
+        "t.png by the model",
+        "gone.mtl by the model",
+        "b.mtl by the model",
+        "t.png by b.mtl",
+    ];
+    assert_eq!(asked, want);
+    let many: String = (0..5000).map(|k| format!("mtllib {k}.mtl\n")).collect();
+    let (read, asked) = asked_of((many + triangle).as_bytes(), ModelFormat::Obj, &give);
+    let line = read.expect_err("too many").to_string();
+    assert!(line.contains("line 4097") && line.contains("the number of files that it names"), "{line}");
+    assert_eq!(asked.len(), 4096);
+}
+
+#[test]
+fn buffers_of_one_file_are_one_and_together_no_more_than_a_model() {
+    let gltf = |buffers: &str, view: u32| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+            "buffers":[{buffers}],"bufferViews":[{{"buffer":{view},"byteLength":36}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}]}}"#
+        )
+    };
+    let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let give = |_: SideFile<'_>| Ok(bytes.clone());
+    let same = vec![r#"{"uri":"a.bin","byteLength":36}"#; 2000].join(",");
+    let (read, asked) = asked_of(gltf(&same, 1999).as_bytes(), ModelFormat::Gltf, &give);
+    assert_eq!(read.expect("reads").triangle_count(), 1);
+    assert_eq!(asked, ["a.bin by the model"]);
+    let large = |_: SideFile<'_>| Ok(vec![0; 400 << 20]);
+    let three = [0, 1, 2].map(|k| format!(r#"{{"uri":"{k}.bin","byteLength":36}}"#)).join(",");
+    let (read, asked) = asked_of(gltf(&three, 0).as_bytes(), ModelFormat::Gltf, &large);
+    let line = read.expect_err("too large").to_string();
+    assert!(line.contains("buffer 2") && line.contains("1073741824"), "{line}");
+    assert_eq!(asked.len(), 3);
+}
+
+#[test]
+fn what_must_not_be_read_ends_the_model_and_what_is_missing_does_not() {
+    let why = || "a.obj: names \"../x\", which is not below its folder".to_owned();
+    let refuse = |file: SideFile<'_>| match (file.name, file.by) {
+        ("a.mtl", None) => Ok(b"newmtl a\nmap_Kd ../x\n".to_vec()),
+        _ => Err(NoFile::Refused(why())),
+    };
+    let image = r#"{"asset":{"version":"2.0"},"images":[{"uri":"../x"}],"textures":[{"source":0}],
+        "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}]}"#;
+    for (format, text) in [
+        (ModelFormat::Obj, "mtllib ../x\nv 0 0 0\n"),
+        (ModelFormat::Obj, "mtllib a.mtl\nv 0 0 0\n"),
+        (ModelFormat::Gltf, image),
+        (ModelFormat::Gltf, r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"../x","byteLength":1}]}"#),
+    ] {
+        let (read, _) = asked_of(text.as_bytes(), format, &refuse);
+        let fault = read.expect_err("refused").fault;
+        assert!(
+            matches!(&fault, formats::FileFault::Refused { why: said } if *said == why()),
+            "{text}: {fault:?}"
+        );
+    }
+    let (read, asked) = asked_of(b"mtllib ../x\nv 0 0 0\n", ModelFormat::Obj, &|_| Err(NoFile::Missing));
+    assert!(read.is_ok() && asked == ["../x by the model"], "{read:?} {asked:?}");
 }

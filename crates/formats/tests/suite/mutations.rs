@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use base::{Draw, Report, Seed, Stream};
 use formats::{
-    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ModelSummary, is_rays,
-    no_files, obj_files, read_cloud, read_drawings, read_marks, read_model, read_rays, read_vein_graph,
-    write_cloud_ply, write_drawing, write_glb, write_model,
+    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ModelSummary, NoFile,
+    SideFile, is_rays, no_files, obj_files, read_cloud, read_drawings, read_marks, read_model, read_rays,
+    read_vein_graph, write_cloud_ply, write_drawing, write_glb, write_model,
 };
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
@@ -171,7 +171,7 @@ fn drawings(format: DrawingFormat, bytes: &[u8]) -> bool {
 }
 
 fn models(format: ModelFormat, bytes: &[u8]) -> bool {
-    let mtl = |name: &str| (name == "a.mtl").then(|| MTL.to_vec());
+    let mtl = |f: SideFile<'_>| if f.name == "a.mtl" { Ok(MTL.to_vec()) } else { Err(NoFile::Missing) };
     let mut report = Report::default();
     match read_model(bytes, format, "m", &ExportSpec::default(), &mtl, &mut report) {
         Ok(m) => {
@@ -229,7 +229,8 @@ fn obj_with_its_materials() {
     let all = mutants();
     for i in 0..all {
         let mtl = mutate(MTL, &mut Seed::new(8).child(i).stream(Draw::Test));
-        let resolve = |name: &str| (name == "a.mtl").then(|| mtl.clone());
+        let resolve =
+            |f: SideFile<'_>| if f.name == "a.mtl" { Ok(mtl.clone()) } else { Err(NoFile::Missing) };
         read_model(OBJ, ModelFormat::Obj, "m", &ExportSpec::default(), &resolve, &mut report)
             .expect("a broken material file spoils no shape");
     }

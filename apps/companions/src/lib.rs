@@ -1,0 +1,279 @@
+//! Files that a file names: where they may lie, and how much of them is read.
+//!
+//! A model names its materials and buffers, a spec its obstacles, a file of stages its scans. Whoever made that file chose the
+//! names, and it may have come from anybody. So a name is looked for below the folder of the file that names it, also after
+//! links, and what is no regular file is never opened. One who trusts the file says so ([`Trust::paths`]): then a path may
+//! lead anywhere, and the limits stay.
+
+use std::fmt;
+use std::fs::{self, File, Metadata};
+use std::io::{self, Read as _};
+use std::path::{Component, Path, PathBuf};
+
+/// The most bytes that are read of a file that another one names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// What a model names: a buffer, a file of materials, a texture.
+    pub side_file: u64,
+    /// A picture that a file of materials names.
+    pub picture: u64,
+    /// A model or a scan that a spec or a file of stages names.
+    pub model: u64,
+    /// A text, such as the leaf of a spec.
+    pub text: u64,
+}
+
+/// The limits of the command and of Python.
+pub const LIMITS: Limits = Limits { side_file: 256 << 20, picture: 64 << 20, model: 1 << 30, text: 16 << 20 };
+
+/// Where the files may lie that a file names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Trust {
+    /// Anywhere, also by links; otherwise below the folder of the file that names them.
+    pub paths: bool,
+    /// How paths are trusted, as messages say it: an option or an argument.
+    pub allow: &'static str,
+}
+
+/// A file that is named by another one, and was not read.
+#[derive(Debug, thiserror::Error)]
+#[error("{} names {:?}, {fault}", naming.display(), base::quoted(name))]
+pub struct NamedFileError {
+    /// The file that names it.
+    pub naming: PathBuf,
+    /// The path as it is written.
+    pub name: String,
+    /// What is wrong.
+    pub fault: NamedFault,
+}
+
+/// Why a file that is named is not read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NamedFault {
+    /// There is none.
+    #[error("which is not there; check the spelling, and copy it along")]
+    Missing,
+    /// It lies, or may lie, outside of the folder of the file that names it. Whether it exists is not said.
+    #[error("which is not below its folder; copy it there, or allow it with {allow}")]
+    Outside {
+        /// How it is allowed.
+        allow: &'static str,
+    },
+    /// A link leads outside of the folder of the file that names it.
+    #[error("a link that leads out of its folder; copy the file there, or allow it with {allow}")]
+    Link {
+        /// How it is allowed.
+        allow: &'static str,
+    },
+    /// It is no regular file.
+    #[error("which is {0}, not a file; put a file there")]
+    NotAFile(NotAFile),
+    /// There is more of it than is read.
+    #[error("which is larger than {} MiB; is it the right file?", limit >> 20)]
+    TooLarge {
+        /// Bytes.
+        limit: u64,
+    },
+    /// The system refuses.
+    #[error("which cannot be read: {0}")]
+    Io(io::Error),
+}
+
+/// What there is instead of a regular file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotAFile {
+    /// A folder.
+    Folder,
+    /// A pipe: opening it waits for somebody who writes into it.
+    Pipe,
+    /// A socket.
+    Socket,
+    /// A device, which may never end.
+    Device,
+    /// Something else.
+    Other,
+}
+
+impl fmt::Display for NotAFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Folder => "a folder",
+            Self::Pipe => "a pipe",
+            Self::Socket => "a socket",
+            Self::Device => "a device",
+            Self::Other => "something else",
+        })
+    }
+}
+
+impl NotAFile {
+    /// What it is, if it is no regular file.
+    fn new(metadata: &Metadata) -> Option<Self> {
+        let kind = metadata.file_type();
+        if kind.is_file() {
+            return None;
+        }
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::FileTypeExt as _;
+            if kind.is_fifo() {
+                return Some(Self::Pipe);
+            }
+            if kind.is_socket() {
+                return Some(Self::Socket);
+            }
+            if kind.is_char_device() || kind.is_block_device() {
+                return Some(Self::Device);
+            }
+        }
+        Some(if kind.is_dir() { Self::Folder } else { Self::Other })
+    }
+}
+
+/// A name in a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Named<'a> {
+    /// The file that names it; it need not be read from there.
+    pub naming: &'a Path,
+    /// The path as it is written, with separators of Windows or others.
+    pub name: &'a str,
+}
+
+impl Named<'_> {
+    /// The path that is meant: from the folder of the file that names it. Nothing is looked up.
+    pub fn path(&self) -> PathBuf {
+        self.naming.parent().unwrap_or(Path::new("")).join(self.name.replace('\\', "/"))
+    }
+
+    fn folder(&self) -> &Path {
+        self.naming.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
+    /// The path without links of a regular file that may be read.
+    ///
+    /// Nothing is opened: neither is a pipe waited for nor a device touched. Not guaranteed: that the same file is there
+    /// later.
+    ///
+    /// # Errors
+    /// [`NamedFileError`].
+    pub fn find(&self, trust: Trust) -> Result<PathBuf, NamedFileError> {
+        self.look(trust).map(|(path, _)| path).map_err(|fault| self.error(fault))
+    }
+
+    /// The file and its path without links, opened to be read; at most `limit` bytes by what the disk says.
+    ///
+    /// Guaranteed: what was opened is the regular file that was looked at.
+    ///
+    /// # Errors
+    /// [`NamedFileError`].
+    pub fn open(&self, trust: Trust, limit: u64) -> Result<(File, PathBuf), NamedFileError> {
+        self.opened(trust, limit).map_err(|fault| self.error(fault))
+    }
+
+    /// What is in `file`, which [`Self::open`] opened: at most `limit` bytes, whatever the disk said.
+    ///
+    /// # Errors
+    /// [`NamedFileError`].
+    pub fn read(&self, file: File, limit: u64) -> Result<Vec<u8>, NamedFileError> {
+        let mut bytes = Vec::new();
+        let read = file.take(limit.saturating_add(1)).read_to_end(&mut bytes);
+        read.map_err(|e| self.error(NamedFault::Io(e)))?;
+        if bytes.len() as u64 > limit {
+            return Err(self.error(NamedFault::TooLarge { limit }));
+        }
+        Ok(bytes)
+    }
+
+    fn error(&self, fault: NamedFault) -> NamedFileError {
+        NamedFileError { naming: self.naming.to_path_buf(), name: self.name.to_owned(), fault }
+    }
+
+    fn opened(&self, trust: Trust, limit: u64) -> Result<(File, PathBuf), NamedFault> {
+        let (path, seen) = self.look(trust)?;
+        if seen.len() > limit {
+            return Err(NamedFault::TooLarge { limit });
+        }
+        let file = File::open(&path).map_err(NamedFault::Io)?;
+        let opened = file.metadata().map_err(NamedFault::Io)?;
+        if let Some(other) = NotAFile::new(&opened) {
+            return Err(NamedFault::NotAFile(other));
+        }
+        if !is_same(&seen, &opened) {
+            return Err(NamedFault::Io(io::Error::other("it was replaced in the meantime; try again")));
+        }
+        Ok((file, path))
+    }
+
+    fn look(&self, trust: Trust) -> Result<(PathBuf, Metadata), NamedFault> {
+        let allow = trust.allow;
+        let path = self.path();
+        let folder = if trust.paths { None } else { Some(fs::canonicalize(self.folder()).map_err(missing)?) };
+        // By its letters first: whether there is such a file elsewhere is nobody's business, and a path on the network is not
+        // asked for.
+        if let Some(folder) = &folder
+            && !self.stays_inside(folder)
+        {
+            return Err(NamedFault::Outside { allow });
+        }
+        let real = fs::canonicalize(&path).map_err(missing)?;
+        if folder.is_some_and(|folder| !real.starts_with(folder)) {
+            return Err(NamedFault::Link { allow });
+        }
+        let metadata = fs::symlink_metadata(&real).map_err(missing)?;
+        match NotAFile::new(&metadata) {
+            Some(other) => Err(NamedFault::NotAFile(other)),
+            None => Ok((real, metadata)),
+        }
+    }
+
+    /// The letters of the path lead below the folder; `folder` is the same without links.
+    fn stays_inside(&self, folder: &Path) -> bool {
+        let name = self.name.replace('\\', "/");
+        let name = Path::new(&name);
+        let inner = if name.has_root() {
+            let written = std::path::absolute(self.folder()).ok();
+            let inner = written.and_then(|w| name.strip_prefix(w).ok().map(Path::to_path_buf));
+            match inner.or_else(|| name.strip_prefix(folder).ok().map(Path::to_path_buf)) {
+                Some(inner) => inner,
+                None => return false,
+            }
+        } else {
+            name.to_path_buf()
+        };
+        let mut depth = 0_usize;
+        for part in inner.components() {
+            match part {
+                Component::Normal(_) => depth += 1,
+                Component::CurDir => {}
+                Component::ParentDir if depth > 0 => depth -= 1,
+                Component::ParentDir | Component::RootDir | Component::Prefix(_) => return false,
+            }
+        }
+        true
+    }
+}
+
+/// What a path that leads nowhere gives.
+fn missing(error: io::Error) -> NamedFault {
+    match error.kind() {
+        // A name with a NUL is the name of no file, and one that is too long neither.
+        io::ErrorKind::NotFound
+        | io::ErrorKind::NotADirectory
+        | io::ErrorKind::InvalidInput
+        | io::ErrorKind::InvalidFilename => NamedFault::Missing,
+        _ => NamedFault::Io(error),
+    }
+}
+
+#[cfg(unix)]
+fn is_same(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+/// Where the system does not number files, another one is told by its size and time.
+#[cfg(not(unix))]
+fn is_same(a: &Metadata, b: &Metadata) -> bool {
+    (a.len(), a.modified().ok()) == (b.len(), b.modified().ok())
+}
