@@ -8,6 +8,9 @@ use glam::DVec2;
 
 /// Cells along the longer side of the drawing.
 const ALONG: usize = 96;
+/// Cells that the radius of a ball may have. One as wide as the drawing finds no way into any gap; of lines that are specks beside
+/// it, the picture would hold nothing else.
+const WIDEST_BALL: f64 = ALONG as f64;
 /// Corners of the outline lie within this of its cells, in cells.
 const CALM: f64 = 0.5;
 
@@ -50,8 +53,8 @@ pub(crate) struct Sealed {
 }
 
 impl Sealed {
-    /// The piece that a ball of a radius leaves; `None` where there is none. Cost: linear in points, and the picture times the
-    /// ball.
+    /// The piece that a ball of a radius leaves; `None` where there is none, or the ball is larger than all the lines. Cost:
+    /// linear in points, and the picture times the ball.
     pub(crate) fn new(lines: &[&[DVec2]], radius: f64) -> Option<Self> {
         let (lo, hi) = lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let size = (hi - lo).max_element() / ALONG as f64;
@@ -59,6 +62,9 @@ impl Sealed {
             return None;
         }
         let reach = radius / size;
+        if reach > WIDEST_BALL {
+            return None;
+        }
         let ball = ball(reach);
         let margin = reach.ceil() + 2.0;
         let count = |length: f64| whole((length / size).ceil() + 2.0 * margin + 1.0);
@@ -229,6 +235,15 @@ mod tests {
                 && contains(&outline, p(0.2, 0.3))
                 && contains(&outline, p(0.5, 0.8))
         );
+    }
+
+    #[test]
+    fn a_ball_larger_than_the_lines_is_given_up_at_once() {
+        let speck =
+            |size: f64| Sealed::new(&[&square(0.1).iter().map(|p| *p * size).collect::<Vec<_>>()], 0.05);
+        assert!(speck(0.06).is_some());
+        // Pictures of 500 thousand million cells, as the ball needs room.
+        assert!(speck(1e-5).is_none() && speck(1e-300).is_none());
     }
 
     #[test]
