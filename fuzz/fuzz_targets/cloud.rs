@@ -1,14 +1,6 @@
-//! Any bytes as a scan of the format that the first byte names: a sound cloud or an error.
+//! `targets::TARGETS` names its function, which says what it does.
 #![no_main]
 
-use formats::{CloudFormat, ExportSpec, read_cloud, write_cloud_ply};
-
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let Some((first, rest)) = bytes.split_first() else { return };
-    let format = CloudFormat::ALL[usize::from(*first) % CloudFormat::ALL.len()];
-    let mut report = base::Report::default();
-    if let Ok(cloud) = read_cloud(rest, format, &ExportSpec::default(), &mut report) {
-        assert!(cloud.is_sound() && !cloud.points.is_empty(), "what was read is sound");
-        write_cloud_ply(&cloud, &ExportSpec::default(), std::io::sink()).expect("writes what it read");
-    }
+    targets::run("cloud", bytes);
 });

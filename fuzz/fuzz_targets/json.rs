@@ -1,12 +1,6 @@
-//! Any bytes as json: drawings or errors.
+//! `targets::TARGETS` names its function, which says what it does.
 #![no_main]
 
-use formats::{DrawingFormat, DrawingSummary, read_drawings, write_drawing};
-
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    for read in read_drawings(bytes, DrawingFormat::Json, "fuzz").flatten() {
-        let info = DrawingSummary::of(&read.drawing, &read.warnings);
-        assert!(info.strokes > 0, "a drawing without strokes is an error");
-        write_drawing(&read.drawing, std::io::sink()).expect("writes what it read");
-    }
+    targets::run("json", bytes);
 });

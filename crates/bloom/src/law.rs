@@ -147,12 +147,7 @@ impl GrowthLaw {
         let head = (self.schema != LAW_SCHEMA).then(|| LawFault::Schema(self.schema.clone()));
         let span = !(self.span_days > 0.0 && self.span_days.is_finite() && self.first_day.is_finite());
         let rows = self.laws.iter().enumerate().filter_map(|(i, row)| {
-            let l = row.law;
-            let finite = [l.k, l.p0, l.r, l.offset].iter().all(|x| x.is_finite());
-            let sound = finite
-                && row.value(0.0).is_finite()
-                && row.value(self.span_days).is_finite()
-                && row.days.len() == row.values.len();
+            let sound = row.is_finite(self.span_days) && row.days.len() == row.values.len();
             (!sound).then_some(LawFault::Row(i))
         });
         head.into_iter()
@@ -249,6 +244,22 @@ impl RegionLaw {
             Form::Monomolecular => l.offset + l.k - (l.k - l.p0) * base::ops::exp(-l.r * day),
             Form::Straight => l.offset + l.p0 + l.r * day,
         }
+    }
+
+    /// Whether its numbers, and its values on the first and the last day, are numbers.
+    fn is_finite(&self, span_days: f64) -> bool {
+        let Logistic { k, p0, r, offset } = self.law;
+        [k, p0, r, offset, self.value(0.0), self.value(span_days)].iter().all(|x| x.is_finite())
+    }
+
+    /// A straight line from the first value to the last, which determines nothing: for days so near to one another, or values so
+    /// far apart, that the numbers of its curve are none.
+    fn straightened(self, span_days: f64) -> Self {
+        let [first, last] = [self.values.first(), self.values.last()].map(|v| v.copied().unwrap_or(0.0));
+        let slope = (last - first) / span_days;
+        let r = if slope.is_finite() { slope } else { 0.0 };
+        let law = Logistic { k: last, p0: first, r, offset: 0.0 };
+        Self { form: Form::Straight, law, determined: Some(false), standard_errors: None, ..self }
     }
 
     /// The stages determine the law.
@@ -444,7 +455,8 @@ pub(crate) fn fit_rows(
         let series: Vec<Series> = mine.iter().map(|&i| rows[i].series.clone()).collect();
         let choice = choose(&series, cancel)?;
         for (k, &i) in mine.iter().enumerate() {
-            laws[i] = Some(row(&rows[i], choice.as_ref().map(|c| (c, k)), (span, offset), cancel)?);
+            let law = row(&rows[i], choice.as_ref().map(|c| (c, k)), (span, offset), cancel)?;
+            laws[i] = Some(if law.is_finite(span) { law } else { law.straightened(span) });
         }
     }
     Ok(laws.into_iter().flatten().collect())
@@ -554,6 +566,21 @@ mod tests {
             tip: DVec3::ONE + DVec3::X * length,
         };
         Stage { day: day + 100.0, organs: vec![organ] }
+    }
+
+    #[test]
+    fn a_curve_whose_numbers_are_none_becomes_a_straight_line() {
+        let curve = RegionLaw {
+            form: Form::Gompertz,
+            law: Logistic { k: 2.0, p0: 0.0, r: 1e19, offset: 0.0 },
+            days: vec![0.0, 2e-16, 4e-16],
+            values: vec![1.0, 1.5, 2.0],
+            ..GrowthLaw::logistic("a", 1.0, 1.0).laws.remove(0)
+        };
+        assert!(!curve.is_finite(4e-16));
+        let line = curve.straightened(4e-16);
+        assert!(line.is_finite(4e-16) && !line.is_determined());
+        assert_eq!([line.value(0.0), line.value(4e-16)], [1.0, 2.0]);
     }
 
     #[test]

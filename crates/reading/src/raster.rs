@@ -14,15 +14,18 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
+    /// The size of a cell where so many lie along the longer side of the box of the lines; `None` for lines without an extent.
+    pub(crate) fn size_for(lines: &[&[DVec2]], along: usize) -> Option<f64> {
+        let (lo, hi) = bounds_of(lines)?;
+        let size = (hi - lo).max_element() / along as f64;
+        (size.is_finite() && size > 0.0).then_some(size)
+    }
+
     /// `along`: cells of the longer side of the box of the lines; `margin`: cells round that box. `None` for lines without an
     /// extent.
-    pub(crate) fn new(lines: &[&[DVec2]], along: usize, margin: impl Fn(f64) -> f64) -> Option<Self> {
-        let (lo, hi) = lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let size = (hi - lo).max_element() / along as f64;
-        if !(size.is_finite() && size > 0.0) {
-            return None;
-        }
-        let margin = margin(size);
+    pub(crate) fn new(lines: &[&[DVec2]], along: usize, margin: f64) -> Option<Self> {
+        let size = Self::size_for(lines, along)?;
+        let (lo, hi) = bounds_of(lines)?;
         let count = |length: f64| whole((length / size).ceil() + 2.0 * margin + 1.0);
         let corner = lo - DVec2::splat(margin * size);
         Some(Self { wide: count(hi.x - lo.x), tall: count(hi.y - lo.y), size, corner })
@@ -52,6 +55,10 @@ impl Cells {
             (x < wide && y < tall).then_some(y * wide + x)
         })
     }
+}
+
+fn bounds_of(lines: &[&[DVec2]]) -> Option<(DVec2, DVec2)> {
+    lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
 /// Steps to the cells beside, above and below.

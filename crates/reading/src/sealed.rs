@@ -10,6 +10,9 @@ use crate::raster::{Cells, around, ball, drawn, flood, grown, largest};
 
 /// Cells along the longer side of the drawing.
 const ALONG: usize = 96;
+/// Cells that the radius of a ball may have. One as wide as the drawing finds no way into any gap; of lines that are specks beside
+/// it, the picture would hold nothing else.
+const WIDEST_BALL: f64 = ALONG as f64;
 /// Corners of the outline lie within this of its cells, in cells.
 const CALM: f64 = 0.5;
 
@@ -20,11 +23,16 @@ pub(crate) struct Sealed {
 }
 
 impl Sealed {
-    /// The piece that a ball of a radius leaves; `None` where there is none. Cost: linear in points, and the picture times the
-    /// ball.
+    /// The piece that a ball of a radius leaves; `None` where there is none, or the ball is larger than all the lines. Cost:
+    /// linear in points, and the picture times the ball.
     pub(crate) fn new(lines: &[&[DVec2]], radius: f64) -> Option<Self> {
-        let cells = Cells::new(lines, ALONG, |size| (radius / size).ceil() + 2.0)?;
-        let ball = ball(radius / cells.size);
+        let size = Cells::size_for(lines, ALONG)?;
+        let reach = radius / size;
+        if reach > WIDEST_BALL {
+            return None;
+        }
+        let cells = Cells::new(lines, ALONG, reach.ceil() + 2.0)?;
+        let ball = ball(reach);
         let near = grown(&cells, &drawn(&cells, lines), &ball);
         let middles = flood(&cells, 0, &|k| !near[k]);
         let outside = grown(&cells, &middles, &ball);
@@ -93,6 +101,15 @@ mod tests {
                 && contains(&outline, p(0.2, 0.3))
                 && contains(&outline, p(0.5, 0.8))
         );
+    }
+
+    #[test]
+    fn a_ball_larger_than_the_lines_is_given_up_at_once() {
+        let speck =
+            |size: f64| Sealed::new(&[&square(0.1).iter().map(|p| *p * size).collect::<Vec<_>>()], 0.05);
+        assert!(speck(0.06).is_some());
+        // Pictures of 500 thousand million cells, as the ball needs room.
+        assert!(speck(1e-5).is_none() && speck(1e-300).is_none());
     }
 
     #[test]

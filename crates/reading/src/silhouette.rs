@@ -258,7 +258,9 @@ impl<'a> Drawn<'a> {
 /// One body for what was read as less than that: the cap of a mushroom without its stem. Only where no line leads out of it.
 pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
     let parts = reading.leaves.len() + reading.flowers.len() + reading.thorns.len() + reading.pots.len();
-    if parts > 0 || !(1..=MOST_PARTS).contains(&reading.fruits.len()) {
+    // What was drawn as a contour that leaves or twigs fill is no skin.
+    let filled = reading.regions.iter().any(|r| r.kind != RegionKind::Crown);
+    if parts > 0 || filled || !(1..=MOST_PARTS).contains(&reading.fruits.len()) {
         return;
     }
     let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
@@ -275,6 +277,8 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
         return;
     }
     reading.axes.clear();
+    // Crowns were borne by them.
+    reading.regions.clear();
     reading.fruits.truncate(1);
     reading.fruits[0].bearer = None;
     // What runs inside is on its skin.

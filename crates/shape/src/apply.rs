@@ -37,8 +37,8 @@ pub struct Applied {
 
 /// Does edits one after another.
 ///
-/// Guaranteed: the same plant for the same input on every platform and any thread count; an edit that cannot be done
-/// says why and changes nothing; what an edit does not concern stays bit for bit as it was, but for the radii of the
+/// Guaranteed: the same plant for the same input on every platform and any thread count; an edit that cannot be done, or
+/// does not pass [`HandEdit::check`], says why and changes nothing; what an edit does not concern stays bit for bit as it was, but for the radii of the
 /// branches below it, which follow the pipe model; new branches keep out of obstacles; a plant that was sound is
 /// sound. Not guaranteed: that branches do not pass through one another. Cost: linear in the plant for each edit,
 /// and what grows.
@@ -179,6 +179,7 @@ fn one(
     if !draft.branches.iter().any(|b| b.alive) {
         return Err(Why::NoBranches.into());
     }
+    edit.check()?;
     let old = draft.branches.len();
     let mut changed = one_side(draft, edit, kept, bench)?;
     // An outline and its image are filled at once.
@@ -210,7 +211,6 @@ fn one_side(
             sketch_branch::brush(draft, bearer.as_ref(), &stroke, Seed::new(*seed), bench)
         }
         HandEdit::Grow { from, towards, rounds, changes, seed, mirror: _ } => {
-            edit.check()?;
             let wish = grow::Wish { from, towards: *towards, rounds: *rounds, changes };
             grow::grow(draft, &wish, Seed::new(*seed), kept, bench)
         }

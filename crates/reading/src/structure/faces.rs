@@ -74,6 +74,9 @@ const LIMITS: FaceLimits = FaceLimits {
     most_united: 48,
 };
 
+/// Cells round the drawing, so that the outside is one.
+const MARGIN: f64 = 3.0;
+
 /// Labels of cells: ink, and the outside; faces follow.
 const INK: u32 = u32::MAX;
 const OUTSIDE: u32 = 0;
@@ -137,7 +140,7 @@ impl Faces {
     /// drawings of at most some hundred strokes.
     pub(crate) fn new(ink: &Ink) -> Option<Self> {
         let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
-        let cells = Cells::new(&lines, LIMITS.along, |_| 3.0)?;
+        let cells = Cells::new(&lines, LIMITS.along, MARGIN)?;
         let count = cells.count();
         let mut picture = Picture { cells, label: vec![OUTSIDE; count], marks: vec![None; count] };
         for (k, stroke) in ink.strokes.iter().enumerate() {

@@ -1,7 +1,11 @@
 //! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-workspace --test suite MODULE::`.
 
 mod drawing;
+mod kept;
 mod later;
+#[path = "../../../../bench/src/piles.rs"]
+#[expect(unreachable_pub, reason = "what the benchmarks give to their programs")]
+mod piles;
 mod previews;
 mod typescript;
 mod warnings;
