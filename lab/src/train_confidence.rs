@@ -138,10 +138,9 @@ fn fit(judged: &[Judged]) -> [f64; NUMBERS] {
 fn solved(mut rows: [[f64; NUMBERS]; NUMBERS], mut right: [f64; NUMBERS]) -> [f64; NUMBERS] {
     for k in 0..NUMBERS {
         for below in k + 1..NUMBERS {
-            let share = rows[below][k] / rows[k][k];
-            for column in k..NUMBERS {
-                rows[below][column] -= share * rows[k][column];
-            }
+            let above = rows[k];
+            let share = rows[below][k] / above[k];
+            rows[below].iter_mut().zip(above).for_each(|(x, a)| *x -= share * a);
             right[below] -= share * right[k];
         }
     }
