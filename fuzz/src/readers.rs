@@ -3,8 +3,8 @@
 use burgeon::bloom::{self, GrowthLaw, Quantity};
 use burgeon::document;
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ReadMarks, is_rays,
-    read_cloud, read_drawings, read_growth, read_marks, read_model, read_rays, read_vein_graph,
+    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ReadMarks, SideFile,
+    is_rays, read_cloud, read_drawings, read_growth, read_marks, read_model, read_rays, read_vein_graph,
     write_cloud_ply, write_drawing, write_glb,
 };
 use burgeon::mesh::MeshFault;
@@ -62,7 +62,7 @@ pub fn stl(bytes: &[u8]) -> bool {
 
 fn read_any_model(bytes: &[u8], format: ModelFormat) -> bool {
     // Whatever a model refers to is the same bytes again.
-    let resolve = |_: formats::SideFile<'_>| Ok(bytes.to_vec());
+    let resolve = |_: SideFile<'_>| Ok(bytes.to_vec());
     match read_model(bytes, format, "fuzz", &ExportSpec::default(), &resolve, &mut Report::default()) {
         Ok(model) => {
             let bad = model.validate().find(|f| !matches!(f, MeshFault::Degenerate(_)));

@@ -6,6 +6,7 @@ mod adam;
 mod contact_sheet;
 mod flowers;
 mod gallery;
+mod in_all_styles;
 mod made_drawings;
 mod made_strokes;
 mod pixels;
@@ -15,8 +16,10 @@ mod read_in_turn;
 mod scenes;
 mod sheets;
 mod species;
+mod train_confidence;
 mod train_glance;
 mod train_kinds;
+mod train_no_plants;
 mod train_strokes;
 mod workshop;
 
@@ -32,6 +35,8 @@ fn main() -> ExitCode {
         Some("flowers") => flowers::run(),
         Some("train-kinds") => train_kinds::run(rest),
         Some("train-glance") => train_glance::run(rest),
+        Some("train-no-plants") => train_no_plants::run(rest),
+        Some("train-confidence") => train_confidence::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
         Some("read-drawings") => read_drawings::run(rest),
         Some("read-in-turn") => read_in_turn::run(rest),

@@ -464,6 +464,19 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
     Ok(known.chain(together).chain(rows).chain(kinds).collect())
 }
 
+/// All drawings of a part by people: what they were asked for, the kind that this is, if it is one, and the drawing.
+pub(crate) fn by_people(folder: &Path, part: Part) -> Outcome<Vec<(String, Option<Kind>, Drawing)>> {
+    let one = |right: &[Kind]| right.first().copied().filter(|k| right.iter().all(|r| r.is_like(*k)));
+    Ok(people(folder, part, 1)?.into_iter().map(|c| (c.set, one(&c.right), c.drawing)).collect())
+}
+
+/// Drawings of several plants of a part: drawings by people put side by side, and made ones.
+pub(crate) fn of_several(folder: &Path, part: Part) -> Outcome<Vec<Drawing>> {
+    let together = together(&people(folder, part, OF_SPG)?, part, SIDE_BY_SIDE);
+    let all = together.into_iter().chain(made(part)).filter(|c| c.kinds.len() != 1 && c.own == usize::MAX);
+    Ok(all.map(|c| c.drawing).collect())
+}
+
 /// Drawings of a part by people who were asked for a word, with the word.
 pub(crate) fn asked_for(folder: &Path, part: Part) -> Outcome<Vec<(String, Drawing)>> {
     let people =

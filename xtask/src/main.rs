@@ -39,6 +39,8 @@ cargo xtask COMMAND
   layers         checks that each crate uses only what ARCHITECTURE.md allows, no modules in a circle, no two public
                  types of one name, and no test that is skipped unseen
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
+  train-no-plants  learns what is no plant, from drawings in all styles; with --end, judges what is kept
+  train-confidence  fits how likely a reading is right; with --end, measures it on what is kept
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets),
                  or whether they are read alike when they are drawn in another way (--changed)
   read-in-turn   draws drawings stroke by stroke in several orders: how often strokes become something else (docs/strokes.md)
@@ -59,7 +61,7 @@ cargo xtask COMMAND
 ";
 
 /// Chores of the crate `lab`, which only they compile.
-const LABORATORY: [&str; 9] = [
+const LABORATORY: [&str; 11] = [
     "gallery",
     "species",
     "sheets",
@@ -67,6 +69,8 @@ const LABORATORY: [&str; 9] = [
     "train-strokes",
     "train-kinds",
     "train-glance",
+    "train-no-plants",
+    "train-confidence",
     "read-drawings",
     "read-in-turn",
 ];

@@ -1673,7 +1673,7 @@ export type ReadingReport = {
   kind: Kind;
   /** How many plants it would show. */
   plants: number;
-  /** How well it explains the drawing among all kinds, 0 to 1; of several plants their mean. */
+  /** How likely it is right, 0 to 1; of several plants their mean. */
   score: number;
 };
 

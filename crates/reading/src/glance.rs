@@ -16,7 +16,7 @@ use ink::Ink;
 pub use layers::{CHANNELS, GLIMPSE, HIDDEN, Layer, Seen, Sight, pooled};
 
 use crate::Kind;
-use crate::kinds::powers;
+use crate::kinds::{log_shares, powers};
 
 /// Cells along each side of a [`Picture`].
 pub const SIDE: usize = 28;
@@ -107,19 +107,57 @@ fn darken(cells: &mut Picture, at: DVec2, share: f64) {
     }
 }
 
-/// The share of each of [`WORDS`] in how a drawing looks. The same from left and right; zeros where nothing was learnt.
-pub(crate) fn words(ink: &Ink) -> [f64; WORDS.len()] {
-    let mut shares = [0.0; WORDS.len()];
-    let Some(sight) = trained() else { return shares };
+/// What is seen of a drawing, the mean of it and of its mirror image. All 0 where nothing was learnt.
+#[derive(Clone, Debug)]
+pub(crate) struct Glance {
+    /// The share of each of [`WORDS`].
+    pub(crate) words: [f64; WORDS.len()],
+    /// How much each unit is stirred.
+    units: Vec<f64>,
+    /// How well each word says what is seen, before the softmax.
+    sums: Vec<f64>,
+}
+
+impl Default for Glance {
+    fn default() -> Self {
+        Self { words: [0.0; WORDS.len()], units: vec![0.0; HIDDEN], sums: vec![0.0; WORDS.len()] }
+    }
+}
+
+impl Glance {
+    /// One number for each of [`mark_names`]: the units, the logarithm of the share of each word.
+    pub(crate) fn marks(&self) -> Vec<f64> {
+        self.units.iter().copied().chain(log_shares(&self.sums)).collect()
+    }
+}
+
+/// How undecided a glance is between words: the entropy of their shares (Shannon 1948), natural units.
+pub(crate) fn entropy(words: &[f64; WORDS.len()]) -> f64 {
+    -words.iter().filter(|p| **p > 0.0).map(|p| p * base::ops::ln(*p)).sum::<f64>()
+}
+
+/// Names of [`Glance::marks`], in their order.
+pub(crate) fn mark_names() -> Vec<String> {
+    let units = (0..HIDDEN).map(|k| format!("glance-{k}"));
+    units.chain(WORDS.iter().map(|(word, _)| format!("glance-{}", word.replace(' ', "-")))).collect()
+}
+
+/// Looks at a drawing. The same from left and right.
+pub(crate) fn look(ink: &Ink) -> Glance {
+    let Some(sight) = trained() else { return Glance::default() };
     let picture = picture(ink);
     let mut mirrored = picture.clone();
     mirrored.chunks_mut(SIDE).for_each(<[f32]>::reverse);
-    let (one, other) = (sight.look(&picture).words, sight.look(&mirrored).words);
-    let sums: Vec<f64> = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) + f64::from(*b)) / 2.0).collect();
+    let (one, other) = (sight.look(&picture), sight.look(&mirrored));
+    let mean = |a: &[f32], b: &[f32]| -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| (f64::from(*a) + f64::from(*b)) / 2.0).collect()
+    };
+    let sums = mean(&one.words, &other.words);
     let powers = powers(&sums);
     let total: f64 = powers.iter().sum();
-    shares.iter_mut().zip(powers).for_each(|(share, power)| *share = power / total);
-    shares
+    let mut words = [0.0; WORDS.len()];
+    words.iter_mut().zip(powers).for_each(|(share, power)| *share = power / total);
+    Glance { words, units: mean(&one.units, &other.units), sums }
 }
 
 /// The share of each of [`Kind::ALL`], of those of its words.
@@ -170,7 +208,7 @@ mod tests {
         assert!(trained().is_some(), "data/glance.csv is of another form: run `cargo xtask train-glance`");
         let bent: Vec<DVec2> = (0..30).map(|k| DVec2::new(f64::from(k * k) / 9.0, f64::from(k))).collect();
         let mirrored = bent.iter().map(|p| DVec2::new(-p.x, p.y)).collect();
-        let seen = |line: Vec<DVec2>| by_kind(&words(&ink(&[line])));
+        let seen = |line: Vec<DVec2>| by_kind(&look(&ink(&[line])).words);
         let (one, other) = (seen(bent), seen(mirrored));
         assert!((one.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         for kind in Kind::ALL {
@@ -192,6 +230,8 @@ mod tests {
 
     #[test]
     fn nothing_drawn_is_no_fault() {
-        assert!(words(&Ink::default()).iter().all(|s| s.is_finite()));
+        let seen = look(&Ink::default());
+        assert!(seen.words.iter().chain(&seen.marks()).all(|s| s.is_finite()));
+        assert_eq!(seen.marks().len(), mark_names().len());
     }
 }

@@ -106,6 +106,6 @@ impl Kind {
 pub struct Scored {
     /// What it would be.
     pub kind: Kind,
-    /// How well it explains the drawing, among all kinds: 0 to 1.
+    /// How well it explains the drawing, among all kinds, or, in what is told of a plant, how likely it is right: 0 to 1.
     pub score: f64,
 }

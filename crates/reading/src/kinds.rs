@@ -235,17 +235,53 @@ impl Model {
 
     /// How well each column explains a row of numbers, before the softmax.
     fn sums(&self, row: &[f64]) -> Vec<f64> {
+        self.weigh(row).sums
+    }
+
+    fn weigh(&self, row: &[f64]) -> Weighed {
         let mut sums = vec![0.0; self.kinds.len() + self.units.len()];
-        for (m, x) in self.rows.iter().zip(row) {
-            let z = ((x - m.mean) / m.spread).clamp(-KIND_FEATURE_LIMIT, KIND_FEATURE_LIMIT);
+        let spreads = self.rows.iter().zip(row);
+        let spreads =
+            spreads.map(|(m, x)| ((x - m.mean) / m.spread).clamp(-KIND_FEATURE_LIMIT, KIND_FEATURE_LIMIT));
+        let spreads: Vec<f64> = spreads.collect();
+        for (m, z) in self.rows.iter().zip(&spreads) {
             sums.iter_mut().zip(&m.coefficients).for_each(|(sum, c)| *sum += c * z);
         }
-        let units = sums.split_off(self.kinds.len());
-        for (unit, coefficients) in units.into_iter().zip(&self.units) {
-            sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += c * unit.max(0.0));
+        let mut units = sums.split_off(self.kinds.len());
+        units.iter_mut().for_each(|u| *u = u.max(0.0));
+        for (unit, coefficients) in units.iter().zip(&self.units) {
+            sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += c * unit);
         }
-        sums
+        Weighed { spreads, units, sums }
     }
+}
+
+/// What the model makes of a row of numbers.
+struct Weighed {
+    /// How many spreads each number is from its mean.
+    spreads: Vec<f64>,
+    /// How much each unit is stirred, 0 or more.
+    units: Vec<f64>,
+    /// How well each column explains the row, before the softmax.
+    sums: Vec<f64>,
+}
+
+/// What the model makes of a row, one number for each of [`mark_names`]: the row in spreads, its units, the logarithm of the
+/// share of each column. Nothing where no model was learnt.
+pub(crate) fn marks(row: &[f64]) -> Vec<f64> {
+    let Some(model) = trained() else { return Vec::new() };
+    let Weighed { mut spreads, units, sums } = model.weigh(row);
+    spreads.extend(units);
+    spreads.extend(log_shares(&sums));
+    spreads
+}
+
+/// Names of [`marks`], in their order.
+pub(crate) fn mark_names() -> Vec<String> {
+    let (units, kinds) = trained().map_or((0, &[][..]), |m| (m.units.len(), &m.kinds[..]));
+    let units = (0..units).map(|k| format!("{UNIT}{k}"));
+    let shares = kinds.iter().map(|k| format!("share-{}", k.map_or(SEVERAL, Kind::word)));
+    kind_feature_names().into_iter().chain(units).chain(shares).collect()
 }
 
 fn trained() -> Option<&'static Model> {
@@ -257,6 +293,13 @@ fn trained() -> Option<&'static Model> {
 pub(crate) fn powers(sums: &[f64]) -> Vec<f64> {
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     sums.iter().map(|s| ops::exp(s - most)).collect()
+}
+
+/// The logarithms of the shares of a softmax.
+pub(crate) fn log_shares(sums: &[f64]) -> Vec<f64> {
+    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let total = most + ops::ln(powers(sums).iter().sum());
+    sums.iter().map(|s| s - total).collect()
 }
 
 /// How well a drawing is explained.

@@ -30,6 +30,7 @@ mod blade;
 mod body;
 mod branches;
 mod built;
+mod confidence;
 mod contour;
 mod corolla;
 mod draft;
@@ -42,6 +43,7 @@ mod kind;
 mod kinds;
 mod look;
 mod near;
+mod no_plant;
 mod outlines;
 mod overlap;
 mod pressed;
@@ -62,11 +64,13 @@ mod validate;
 mod veins;
 
 pub use aside::BESIDE_THE_PLANT;
+pub use confidence::{CONFIDENCE_LIMITS, ConfidenceLimits, EVIDENCE_NAMES, Evidence};
 pub use inertia::AS_SHOWN;
 pub use kept::KeptStrokes;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
-pub use read::{UNLIKE_A_PLANT, kind_row, read, read_again, read_as, read_without};
+pub use no_plant::{NO_PLANT_LIMITS, NoPlantLimits, no_plant_feature_names};
+pub use read::{UNLIKE_A_PLANT, kind_row, no_plant_row, read, read_again, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
     PotReading, Reading, RegionKind, RegionReading, StrokeReading, VeinReading,

@@ -107,7 +107,8 @@ pub(crate) fn ball(reach: f64) -> Vec<(isize, isize)> {
 pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
     let mut drawn = vec![false; cells.count()];
     for pair in lines.iter().flat_map(|l| l.windows(2)) {
-        let steps = whole((pair[0].distance(pair[1]) / (0.5 * cells.size)).ceil()).clamp(1, 4 * (cells.wide + cells.tall));
+        let steps = whole((pair[0].distance(pair[1]) / (0.5 * cells.size)).ceil())
+            .clamp(1, 4 * (cells.wide + cells.tall));
         (0..=steps).for_each(|i| drawn[cells.place(pair[0].lerp(pair[1], i as f64 / steps as f64))] = true);
     }
     drawn
@@ -158,4 +159,3 @@ pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
         }
     }
 }
-

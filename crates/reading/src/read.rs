@@ -7,14 +7,18 @@ use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
 use crate::bare::BareWood;
+use crate::confidence::Evidence;
 use crate::draft::Draft;
+use crate::glance::Glance;
+use crate::no_plant::NO_PLANT_LIMITS;
 use crate::rules::GREEN_LEAVES;
 use crate::silhouette::{Drawn, Shaping, Silhouette};
 use crate::structure::{Composed, Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, glance, inertia, kinds, outlines, pressed, rules, several, silhouette, structure, veins,
+    flowers, glance, inertia, kinds, no_plant, outlines, pressed, rules, several, silhouette, structure,
+    veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -87,6 +91,12 @@ pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
     kinds::kind_features(ink, classes, &first)
 }
 
+/// What a drawing measures, for the model of what is no plant: one number for each of
+/// [`no_plant_feature_names`](crate::no_plant_feature_names).
+pub fn no_plant_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
+    no_plant::row(&kind_row(ink, classes), &glance::look(ink), ink.strokes.len(), sureness(ink, classes))
+}
+
 /// How a drawing is to be read.
 struct Asked<'a> {
     /// The kind that every plant is taken for.
@@ -114,8 +124,9 @@ struct First {
     reading: Reading,
     said: Report,
     shares: kinds::Shares,
-    /// What it looks like at a glance.
-    words: [f64; glance::WORDS.len()],
+    glance: Glance,
+    /// The chance that it is no plant.
+    no_plant: f64,
 }
 
 impl First {
@@ -126,11 +137,22 @@ impl First {
             // As it was read, and as nothing else.
             let kinds = vec![Scored { kind: Kind::of(&reading), score: 1.0 }];
             let shares = kinds::Shares { kinds, ..kinds::Shares::default() };
-            return Self { reading, said, shares, words: [0.0; glance::WORDS.len()] };
+            return Self { reading, said, shares, glance: Glance::default(), no_plant: 0.0 };
         }
-        let words = glance::words(ink);
-        let shares = kinds::shares(&kinds::kind_features(ink, classes, &reading), &glance::by_kind(&words));
-        Self { reading, said, shares, words }
+        let glance = glance::look(ink);
+        let row = kinds::kind_features(ink, classes, &reading);
+        let shares = kinds::shares(&row, &glance::by_kind(&glance.words));
+        let row = no_plant::row(&row, &glance, ink.strokes.len(), sureness(ink, classes));
+        Self { reading, said, shares, glance, no_plant: no_plant::chance(&row) }
+    }
+
+    /// Says if this is no plant, unless the user said which one it is.
+    fn warn_if_no_plant(&self, asked: &Asked<'_>, report: &mut Report) {
+        let limits = NO_PLANT_LIMITS;
+        let is_none = self.no_plant > limits.chance_most || self.shares.no_plant > limits.share_most;
+        if asked.kind.is_none() && is_none {
+            report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
+        }
     }
 
     /// Whether what lies apart is one plant all the same, because one kind explains all of it: berries, a pod with its
@@ -147,11 +169,15 @@ fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repo
 /// Every plant of a drawing.
 fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     if !ink.subjects.is_parted() {
-        return one(asked, ink, classes, First::of(asked, ink, classes), report);
+        let first = First::of(asked, ink, classes);
+        first.warn_if_no_plant(asked, report);
+        return one(asked, ink, classes, first, report);
     }
     let leaflets = |p: &structure::readers::Proposal| p.kind == Kind::Leaf;
     if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(leaflets) {
-        return one(asked, ink, classes, First::of(asked, ink, classes), report);
+        let first = First::of(asked, ink, classes);
+        first.warn_if_no_plant(asked, report);
+        return one(asked, ink, classes, first, report);
     }
     let parts = several::parts(ink, classes);
     let several = parts.len() > 1;
@@ -168,10 +194,22 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
             First::of(asked, &part.ink, &part.classes).shares.no_plant
         });
     }
-    if several && asked.kind.is_none() && asked.is_free(ink, classes) && !left.contains(&true) {
-        let first = First::of(asked, ink, classes);
-        if first.is_one() {
-            return one(asked, ink, classes, first, report);
+    // Of the pieces of a thing some look like plants, and of those of a plant some do not: what stays is judged as a whole.
+    let stay: Vec<usize> = (0..parts.len()).filter(|&k| !left[k]).collect();
+    if let [only] = stay[..] {
+        firsts[only].warn_if_no_plant(asked, report);
+    } else if several && asked.kind.is_none() && asked.is_free(ink, classes) {
+        if left.contains(&true) {
+            let mut rows: Vec<usize> = stay.iter().flat_map(|&k| parts[k].rows.iter().copied()).collect();
+            rows.sort_unstable();
+            let part = several::part(ink, classes, rows);
+            First::of(asked, &part.ink, &part.classes).warn_if_no_plant(asked, report);
+        } else {
+            let first = First::of(asked, ink, classes);
+            first.warn_if_no_plant(asked, report);
+            if first.is_one() {
+                return one(asked, ink, classes, first, report);
+            }
         }
     }
     let mut kept = several::Collected::new(ink, classes);
@@ -195,9 +233,7 @@ const BETTER: f64 = 2.0;
 /// this many times as well.
 const CLEAR: f64 = 0.55;
 const MUCH_BETTER: f64 = 5.0;
-/// What is no plant at least by this share gives a warning.
-const NO_PLANT: f64 = 0.6;
-/// The code of that warning.
+/// The code of the warning that a drawing shows no plant.
 pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
 /// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
 const BUILT: f64 = 6.0;
@@ -224,7 +260,7 @@ const TOLD: usize = 3;
 
 /// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
 fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
-    let First { mut reading, mut said, shares, words } = first;
+    let First { mut reading, mut said, shares, glance, .. } = first;
     let mut kind = Kind::of(&reading);
     // What it is taken for beyond what its strokes say.
     let mut taken = None;
@@ -282,6 +318,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         kind = Kind::of(&tried);
         (reading, said, taken, structure) = (tried, again, None, Some(says));
     }
+    let by_structure = structure.is_some();
     let mut sure = None;
     if free && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores) {
         (reading, said, kind) = (composed, Report::default(), proposed);
@@ -310,9 +347,6 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         None => scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT),
     }
     report.warnings.append(&mut said.warnings);
-    if asked.kind.is_none() && sure.is_none() && no_plant > NO_PLANT {
-        report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
-    }
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
@@ -322,12 +356,21 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
         soften(&mut reading);
     }
-    let readings = readings(kind, &scores);
+    let evidence = Evidence {
+        share: group(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
+        undecided: glance::entropy(&glance.words),
+        no_plant,
+        strokes: ink.strokes.len(),
+        by_structure,
+        by_arrangement: sure.is_some(),
+    };
+    let readings = readings(kind, &evidence, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-    let word = glance::word(kind, &words);
-    reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, word, readings }];
+    let word = glance::word(kind, &glance.words);
+    let height = (high - low).max(0.0);
+    reading.plants = vec![PlantReading { strokes, height, kind, word, evidence, readings }];
     reading
 }
 
@@ -411,16 +454,20 @@ fn sureness(ink: &Ink, classes: &[Classified]) -> f64 {
     if length > 0.0 { sum / length } else { 0.0 }
 }
 
-/// What a plant was read as, and the best of the others; one of each that are built alike. What could not be built, or is
-/// not what the user asked for, explains the drawing no better than what was.
-fn readings(kind: Kind, scores: &[Scored]) -> Vec<Scored> {
+/// What a plant was read as with how likely that is right, and the best of the others; one of each that are built alike. The
+/// others share what is left as they share it among themselves; what could not be built, or is not what the user asked for,
+/// explains the drawing no better than what was.
+fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     let total: f64 = scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE);
     let group = |k: Kind| scores.iter().filter(|s| s.kind.is_like(k)).map(|s| s.score).sum::<f64>() / total;
-    let own = Scored { kind, score: group(kind) };
-    let mut found: Vec<Scored> = vec![own];
+    // The model weighs no kind against another in a drawing of so many strokes.
+    let is_weighed = scores.len() > 1;
+    let own = if is_weighed { evidence.confidence() } else { evidence.share };
+    let left = (1.0 - own) / (1.0 - evidence.share).max(f64::MIN_POSITIVE);
+    let mut found: Vec<Scored> = vec![Scored { kind, score: own }];
     for s in scores {
         if !found.iter().any(|f| f.kind.is_like(s.kind)) {
-            found.push(Scored { kind: s.kind, score: group(s.kind).min(own.score) });
+            found.push(Scored { kind: s.kind, score: (group(s.kind) * left).min(own) });
         }
     }
     base::sort_by(&mut found[1..], |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
@@ -513,13 +560,14 @@ fn by_structure(
 /// share of its kind times the likelihood of the arrangement.
 fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Reading, Kind, f64)> {
     let share = |kind: Kind| scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum::<f64>();
-    let best_other = |kind: Kind| {
-        scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).fold(0.0, f64::max)
-    };
+    let best_other =
+        |kind: Kind| scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).fold(0.0, f64::max);
     let odds = |p: &structure::readers::Proposal| {
         p.likelihood * share(p.kind) / best_other(p.kind).max(f64::MIN_POSITIVE)
     };
-    let chosen = structure::readers::propose(ink).into_iter().filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
+    let chosen = structure::readers::propose(ink)
+        .into_iter()
+        .filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
     let proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
     let score = odds(&proposal) / (1.0 + odds(&proposal));
     let composed = Composed::new(ink, &proposal, score);

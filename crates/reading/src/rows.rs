@@ -7,7 +7,7 @@ use ink::{Source, StrokeClass};
 use plant::AxisKind;
 use serde::{Deserialize, Serialize};
 
-use crate::{Kind, Scored};
+use crate::{Evidence, Kind, Scored};
 
 /// What became of one stroke. The words of the command line's contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -258,6 +258,8 @@ pub struct PlantReading {
     /// Which of its kind it looks like at a glance, by one of [`WORDS`](crate::glance::WORDS), such as a pear; `None` where no word is
     /// likelier than all others of that kind together. 124 of 142 that were told of new drawings are right (`docs/strokes.md`).
     pub word: Option<&'static str>,
-    /// What it may be, at most three: what it was read as first, then the others, the best first.
+    /// What speaks for that kind.
+    pub evidence: Evidence,
+    /// What it may be with how likely that is, at most three: what it was read as first, then the others, the best first.
     pub readings: Vec<Scored>,
 }

@@ -45,7 +45,7 @@ pub struct PlausibilityLimits {
     pub extent_least: f64,
     /// The same: half of it is too much.
     pub extent_most: f64,
-    /// How well a reading explains its drawing: of 44 drawings of people below this, 5 were read right.
+    /// How likely a reading is right: of 51 drawings by people below this, 20 were read right (`docs/strokes.md`).
     pub score_least: f64,
     /// The height of a tree of a scan, metres: what is lower is a seedling, or in another unit.
     pub tree_least_m: f64,
@@ -80,7 +80,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
     unused_most: 0.6,
     extent_least: 0.5,
     extent_most: 1.5,
-    score_least: 0.3,
+    score_least: 0.4,
     tree_least_m: 0.3,
     circles_least: 0.05,
     exponent_least: 1.26,

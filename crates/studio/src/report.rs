@@ -201,7 +201,7 @@ pub struct ReadingReport {
     pub kind: Kind,
     /// How many plants it would show.
     pub plants: u64,
-    /// How well it explains the drawing among all kinds, 0 to 1; of several plants their mean.
+    /// How likely it is right, 0 to 1; of several plants their mean.
     pub score: f64,
 }
 

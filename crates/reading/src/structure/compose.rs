@@ -35,7 +35,11 @@ impl Composed {
             let source = Source::Rule(ARRANGEMENT);
             Classified { class, confidence: score, source, shares, shown: None }
         };
-        Self { classes: classes.iter().map(said).collect(), structure: Structure::of_parts(classes, hidden, proposal.heads.clone()), ink: own }
+        Self {
+            classes: classes.iter().map(said).collect(),
+            structure: Structure::of_parts(classes, hidden, proposal.heads.clone()),
+            ink: own,
+        }
     }
 
     /// What was read of the parts, as a reading of the drawing: in its coordinates, with its strokes.
@@ -80,7 +84,8 @@ fn strokes(ink: &Ink, proposal: &Proposal, parts: &[StrokeReading]) -> Vec<Strok
         };
         said.map_or(left_out, |said| StrokeReading { index, ..*said })
     };
-    let mut rows: Vec<StrokeReading> = ink.strokes.iter().enumerate().map(|(row, s)| read(row, s.index)).collect();
+    let mut rows: Vec<StrokeReading> =
+        ink.strokes.iter().enumerate().map(|(row, s)| read(row, s.index)).collect();
     rows.extend(ink.skipped.iter().map(|&index| read(usize::MAX, index)));
     base::sort_by_key(&mut rows, |s| s.index);
     rows

@@ -168,7 +168,8 @@ impl Faces {
                 kept.push(face);
             }
         }
-        let runs = (0..ink.strokes.len()).flat_map(|k| picture.runs(k, &ink.strokes[k].points, &rows)).collect();
+        let runs =
+            (0..ink.strokes.len()).flat_map(|k| picture.runs(k, &ink.strokes[k].points, &rows)).collect();
         Some(Self { faces: kept, runs, picture })
     }
 

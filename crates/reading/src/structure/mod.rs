@@ -16,10 +16,10 @@
 mod classes;
 mod compose;
 mod faces;
-mod shape;
 mod hidden;
 pub(crate) mod readers;
 mod score;
+mod shape;
 mod sheet;
 
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};

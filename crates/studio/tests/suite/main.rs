@@ -5,6 +5,7 @@ mod missing;
 
 mod again;
 mod colours;
+mod doubts;
 mod fidelity;
 mod levels;
 mod lives;

@@ -27,8 +27,15 @@ struct BloomLimits {
     likelihood: [f64; 2],
 }
 
-const BLOOM: BloomLimits =
-    BloomLimits { petals: 4, alike: 0.4, meet: 0.3, gap: 2.0, reach: 0.6, other: 0.1, likelihood: [ROUND_A_DISC, 200.0] };
+const BLOOM: BloomLimits = BloomLimits {
+    petals: 4,
+    alike: 0.4,
+    meet: 0.3,
+    gap: 2.0,
+    reach: 0.6,
+    other: 0.1,
+    likelihood: [ROUND_A_DISC, 200.0],
+};
 
 /// See [`Proposal::likelihood`]: petals round a disc.
 pub(super) const ROUND_A_DISC: f64 = 4000.0;
@@ -51,7 +58,8 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     };
     let hub = disc.map_or(0.0, |k| (faces[k].shape.area / base::ops::PI).sqrt());
     let reach = |f: &Face| f.outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
-    let touches = |f: &Face| nearest_on_ring(&f.outline, centre).1 < hub + BLOOM.meet * (reach(f) - hub).max(0.0);
+    let touches =
+        |f: &Face| nearest_on_ring(&f.outline, centre).1 < hub + BLOOM.meet * (reach(f) - hub).max(0.0);
     let petals: Vec<usize> = rest().filter(|&k| touches(&faces[k])).collect();
     let areas = || petals.iter().map(|&k| faces[k].shape.area);
     let reaches = || petals.iter().map(|&k| reach(&faces[k]));
@@ -88,9 +96,19 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
         lines
             .into_iter()
             .filter(|(_, line)| line.iter().any(|p| p.distance(centre) > outer + LIMITS.touch))
-            .map(|(stroke, points)| Part { points, class: StrokeClass::Axis, root: None, strokes: vec![stroke] }),
+            .map(|(stroke, points)| Part {
+                points,
+                class: StrokeClass::Axis,
+                root: None,
+                strokes: vec![stroke],
+            }),
     );
-    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood: BLOOM.likelihood[usize::from(disc.is_none())] })
+    Some(Proposal {
+        kind: Kind::Flower,
+        parts,
+        heads,
+        likelihood: BLOOM.likelihood[usize::from(disc.is_none())],
+    })
 }
 
 /// The middle of the largest faces, if they are petals that meet there.

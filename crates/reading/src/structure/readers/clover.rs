@@ -11,8 +11,6 @@ use crate::blade::nearest_on_ring;
 struct CloverLimits {
     /// How many leaflets.
     leaflets: core::ops::RangeInclusive<usize>,
-    /// They cover more than this share of all that is enclosed.
-    whole: f64,
     /// The smallest has more than this share of the area of the largest.
     alike: f64,
     /// They begin within this share of their length from one place.
@@ -24,7 +22,7 @@ struct CloverLimits {
 }
 
 const CLOVER: CloverLimits =
-    CloverLimits { leaflets: 3..=4, whole: 0.9, alike: 0.45, meet: 0.3, notch: 0.55, likelihood: 1e7 };
+    CloverLimits { leaflets: 3..=4, alike: 0.45, meet: 0.3, notch: 0.55, likelihood: 1e7 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let faces = &scene.faces;
@@ -44,7 +42,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     let touches = |p: DVec2| p.distance(middle) < CLOVER.meet * largest.sqrt() + LIMITS.touch;
     let stalks = scene.lines.iter().filter(|l| {
-        touches(l.points[0]) || touches(l.points[l.points.len() - 1])
+        touches(l.points[0])
+            || touches(l.points[l.points.len() - 1])
             || (0..faces.len()).any(|k| scene.touching_end(l, k).is_some())
     });
     let mut parts: Vec<Part> = faces

@@ -67,7 +67,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let below = |p: DVec2| {
         p.y < low.y + 0.3 * (high.y - low.y) && (p.x - low.midpoint(high).x).abs() < 0.3 * (high.x - low.x)
     };
-    let stands = |points: &[DVec2]| bounds(points).is_some_and(|(a, b)| a.y < low.y - 0.02 && below(a.midpoint(b)));
+    let stands =
+        |points: &[DVec2]| bounds(points).is_some_and(|(a, b)| a.y < low.y - 0.02 && below(a.midpoint(b)));
     let trunk_face = (0..scene.faces.len()).find(|&k| !is_tier(k) && stands(&scene.faces[k].outline));
     let lines: Vec<_> = scene.lines.iter().filter(|l| stands(&l.points)).collect();
     if trunk_face.is_none() && lines.is_empty() {
@@ -99,7 +100,9 @@ fn is_crown(face: &Face) -> bool {
         let runs = runs_at(outline, y);
         Some((runs.first()?.0, runs.last()?.1))
     };
-    let Some(levels) = (0..CONIFER.levels).map(level).collect::<Option<Vec<(f64, f64)>>>() else { return false };
+    let Some(levels) = (0..CONIFER.levels).map(level).collect::<Option<Vec<(f64, f64)>>>() else {
+        return false;
+    };
     let widths: Vec<f64> = levels.iter().map(|(a, b)| b - a).collect();
     let even = levels.iter().all(|(a, b)| ((b - apex.x) - (apex.x - a)).abs() < CONIFER.lopsided * size.x);
     let most = widths.iter().copied().fold(0.0, f64::max);

@@ -79,17 +79,21 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     let lines = axes(scene);
-    let is_leaf = |f: &Face| {
-        root_of(scene, f, &lines).filter(|root| is_leaf_from(f, *root))
-    };
+    let is_leaf = |f: &Face| root_of(scene, f, &lines).filter(|root| is_leaf_from(f, *root));
     // The head: the highest face, and all that hang together with it.
     let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    let first = (0..scene.faces.len()).max_by(|&a, &b| top(&scene.faces[a]).total_cmp(&top(&scene.faces[b])))?;
+    let first =
+        (0..scene.faces.len()).max_by(|&a, &b| top(&scene.faces[a]).total_cmp(&top(&scene.faces[b])))?;
     let mut members = vec![first];
     loop {
         let near = |k: usize| {
             let face = &scene.faces[k];
-            members.iter().any(|&m| scene.faces[m].outline.iter().any(|p| nearest_on_ring(&face.outline, *p).1 < 0.3 * LIMITS.touch))
+            members.iter().any(|&m| {
+                scene.faces[m]
+                    .outline
+                    .iter()
+                    .any(|p| nearest_on_ring(&face.outline, *p).1 < 0.3 * LIMITS.touch)
+            })
         };
         let Some(next) = (0..scene.faces.len()).find(|k| !members.contains(k) && near(*k)) else { break };
         members.push(next);
@@ -110,13 +114,15 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     };
     let leads_out = |line: &[DVec2]| line.iter().map(|&p| off_head(p)).fold(0.0, f64::max) > CUP.leads_out;
     let out: Vec<&Vec<DVec2>> = lines.iter().map(|(_, l)| l).filter(|l| leads_out(l)).collect();
-    let from_head = out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < LIMITS.touch).count();
+    let from_head =
+        out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < LIMITS.touch).count();
     if from_head > 1 || out.iter().any(|l| l.iter().any(|p| p.y > low.y + CUP.tips * size.y)) {
         return None;
     }
     let stem = lines.iter().flat_map(|(_, l)| [l[0], l[l.len() - 1]]).find(|&p| {
         at_base(p) && nearest_on_ring(&head.outline, p).1 < LIMITS.touch
-            || lines.iter().any(|(_, l)| l.iter().any(|q| q.y < low.y - LIMITS.touch) && l.contains(&p)) && at_base(p)
+            || lines.iter().any(|(_, l)| l.iter().any(|q| q.y < low.y - LIMITS.touch) && l.contains(&p))
+                && at_base(p)
     });
     let base = match stem {
         Some(p) => nearest_on_ring(&head.outline, p).0,
@@ -126,7 +132,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         }
     };
     let side = |sign: f64| {
-        let half: Vec<DVec2> = head.outline.iter().map(|p| DVec2::new(base.x + (sign * (p.x - base.x)).max(0.0), p.y)).collect();
+        let half: Vec<DVec2> =
+            head.outline.iter().map(|p| DVec2::new(base.x + (sign * (p.x - base.x)).max(0.0), p.y)).collect();
         geom::signed_area(&half).abs()
     };
     let (right, left) = (side(1.0), side(-1.0));
@@ -188,7 +195,11 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
     // Of a petal behind others the tip is enough.
     let in_front: Vec<&&&Face> = petals.iter().filter(|f| is_seen(f)).collect();
     let sound = |f: &&&&Face| f.shape.convexity > CUP.convex && CUP.alike * f.shape.area > largest;
-    if !CUP.petals.contains(&petals.len()) || in_front.is_empty() || !in_front.iter().all(sound) || area(&petals) < CUP.most * whole {
+    if !CUP.petals.contains(&petals.len())
+        || in_front.is_empty()
+        || !in_front.iter().all(sound)
+        || area(&petals) < CUP.most * whole
+    {
         return None;
     }
     let mean = petals.iter().filter_map(|f| tip(f)).sum::<DVec2>() / petals.len() as f64;
@@ -210,8 +221,10 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
 fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> {
     let is_high = |p: &&DVec2, least: f64| p.y > low + least * height;
     let tips = head.shape.corners.iter().filter(|p| is_high(p, CUP.tips)).count();
-    let notches: Vec<DVec2> = head.shape.notches.iter().filter(|p| is_high(p, CUP.notches)).copied().collect();
-    let low_corners = head.shape.corners.iter().filter(|p| !is_high(p, CUP.tips) && p.distance(base) > 0.3 * height);
+    let notches: Vec<DVec2> =
+        head.shape.notches.iter().filter(|p| is_high(p, CUP.notches)).copied().collect();
+    let low_corners =
+        head.shape.corners.iter().filter(|p| !is_high(p, CUP.tips) && p.distance(base) > 0.3 * height);
     if tips + 1 < *CUP.petals.start()
         || notches.is_empty()
         || notches.len() < head.shape.notches.len()
@@ -223,7 +236,9 @@ fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> 
     }
     let n = head.outline.len();
     let nearest = |p: DVec2| {
-        (0..n).min_by(|&a, &b| head.outline[a].distance_squared(p).total_cmp(&head.outline[b].distance_squared(p)))
+        (0..n).min_by(|&a, &b| {
+            head.outline[a].distance_squared(p).total_cmp(&head.outline[b].distance_squared(p))
+        })
     };
     // Counter-clockwise from the base: up the right side, over the tips, down the left.
     let start = nearest(base)?;
@@ -232,7 +247,8 @@ fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> 
     cuts.insert(0, 0);
     cuts.push(n);
     let lobe = |w: &[usize]| {
-        let mut points: Vec<DVec2> = (w[0]..=w[1].min(n - 1)).map(|k| head.outline[(start + k) % n]).collect();
+        let mut points: Vec<DVec2> =
+            (w[0]..=w[1].min(n - 1)).map(|k| head.outline[(start + k) % n]).collect();
         points.push(base);
         (points, head.strokes.clone())
     };

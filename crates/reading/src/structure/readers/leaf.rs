@@ -58,13 +58,16 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         (Some(&(_, root)), _) | (None, Some(&(_, root))) => root,
         (None, None) => return None,
     };
-    if !is_leaf_from(face, root) || petioles.iter().any(|(_, at)| at.distance(root) > LEAF.rib_base * length) {
+    if !is_leaf_from(face, root) || petioles.iter().any(|(_, at)| at.distance(root) > LEAF.rib_base * length)
+    {
         return None;
     }
     let has_rib = rib.is_some_and(|(_, base)| base.distance(root) < LEAF.rib_base * length);
     let likelihood = match has_rib {
         true => LEAF.likelihood[0],
-        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => LEAF.likelihood[1],
+        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => {
+            LEAF.likelihood[1]
+        }
         false => return None,
     };
     let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
@@ -84,6 +87,8 @@ fn rib_base(face: &Face, mark: &Run) -> Option<DVec2> {
     let (base, head) = if off(a) < off(b) { (a, b) } else { (b, a) };
     let tip = face.shape.tip_from(base)?;
     let along = (head - base).normalize_or_zero().dot((tip - base).normalize_or_zero());
-    (off(base) < LIMITS.touch && base.distance(head) > LEAF.rib * face.shape.length() && along > LEAF.rib_along)
+    (off(base) < LIMITS.touch
+        && base.distance(head) > LEAF.rib * face.shape.length()
+        && along > LEAF.rib_along)
         .then_some(base)
 }

@@ -41,7 +41,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let mark = scene.marks_of(row).find_map(|line| scene.touching_end(line, row));
     let root = petiole.map(|(_, at)| at).or(mark)?;
     let length = shape.length();
-    let tips: Vec<f64> = shape.corners.iter().map(|p| p.distance(root)).filter(|d| *d > 0.2 * length).collect();
+    let tips: Vec<f64> =
+        shape.corners.iter().map(|p| p.distance(root)).filter(|d| *d > 0.2 * length).collect();
     let notches: Vec<f64> = shape.notches.iter().map(|p| p.distance(root)).collect();
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
     if tips.len() < LOBED.tips

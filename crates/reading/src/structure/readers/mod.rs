@@ -62,8 +62,13 @@ pub(crate) struct ReaderLimits {
     pub(crate) leaf_slender: [f64; 2],
 }
 
-pub(crate) const LIMITS: ReaderLimits =
-    ReaderLimits { touch: 0.035, most_strokes: 80, speck: 0.01, leaf_convex: 0.84, leaf_slender: [0.12, 0.86] };
+pub(crate) const LIMITS: ReaderLimits = ReaderLimits {
+    touch: 0.035,
+    most_strokes: 80,
+    speck: 0.01,
+    leaf_convex: 0.84,
+    leaf_slender: [0.12, 0.86],
+};
 
 /// What the readers look at.
 pub(crate) struct Scene {
@@ -100,7 +105,15 @@ impl Scene {
         }
         let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
         let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let mut scene = Self { all, faces: kept, lines: Vec::new(), marks: Vec::new(), straight: LiteMap::new(), low, high };
+        let mut scene = Self {
+            all,
+            faces: kept,
+            lines: Vec::new(),
+            marks: Vec::new(),
+            straight: LiteMap::new(),
+            low,
+            high,
+        };
         for (k, stroke) in ink.strokes.iter().enumerate() {
             let (a, b) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
             if a.distance(b) > STRAIGHT * stroke.length {

@@ -60,10 +60,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if low > leaf_low - SPRIG.below * (scene.high.y - scene.low.y) || is_whorl(&leaves) {
         return None;
     }
-    let mut parts: Vec<Part> = leaves
-        .iter()
-        .map(|(face, root)| Part::of_face(face, StrokeClass::Blade, Some(*root)))
-        .collect();
+    let mut parts: Vec<Part> =
+        leaves.iter().map(|(face, root)| Part::of_face(face, StrokeClass::Blade, Some(*root))).collect();
     parts.extend(lines.into_iter().map(|(stroke, points)| Part {
         points,
         class: StrokeClass::Axis,

@@ -109,7 +109,10 @@ fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
     let mut lines = vec![stem];
     lines.extend(petals);
     let found = seen(&lines);
-    assert_eq!(found.first().map(|p| (p.kind, p.heads.iter().map(Vec::len).collect())), Some((Kind::Flower, vec![3])));
+    assert_eq!(
+        found.first().map(|p| (p.kind, p.heads.iter().map(Vec::len).collect())),
+        Some((Kind::Flower, vec![3]))
+    );
 }
 
 #[test]

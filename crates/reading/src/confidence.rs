@@ -1,0 +1,148 @@
+//! How likely a reading is right: `what speaks for it -> the chance that a person would say the same kind`.
+//!
+//! The share that the model of kinds gives to a kind is no such chance: the model saw most of its drawings again and again, and
+//! is as sure of drawings in a style that it never saw, of which half are read wrong. So a logistic regression over what speaks
+//! for a reading is fitted to drawings by people from which the model learnt nothing. Its coefficients are data
+//! (`data/confidence.csv`), fitted by `cargo xtask train-confidence`.
+
+use std::sync::OnceLock;
+
+use base::ops;
+
+/// How far what speaks for a reading is trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConfidenceLimits {
+    /// The log odds of a share among kinds count at most so far from 0.
+    pub share_log_odds_most: f64,
+    /// The least share of no plant that counts.
+    pub no_plant_least: f64,
+    /// The least confidence in a reading by structure, of which kinds, who learnt from doodles, know nothing: of those of fewer
+    /// strokes than [`many_strokes`](Self::many_strokes) about so many are right.
+    pub by_structure_least: f64,
+    /// The same of drawings of as many strokes or more.
+    pub by_structure_of_many: f64,
+    /// The least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see.
+    pub by_arrangement_least: f64,
+    /// The strokes of a botanical illustration, where a doodle has fewer.
+    pub many_strokes: usize,
+}
+
+/// The limits for all drawings.
+pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
+    share_log_odds_most: 12.0,
+    no_plant_least: 1e-6,
+    by_structure_least: 0.35,
+    by_structure_of_many: 0.65,
+    by_arrangement_least: 0.9,
+    many_strokes: 15,
+};
+
+/// What speaks for and against the reading of one plant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// The share of its kind among all, by the whole drawing; what the strokes alone were read as weighs more.
+    pub share: f64,
+    /// How undecided a glance is between words: the entropy of their shares, natural units.
+    pub undecided: f64,
+    /// The share of no plant, by the model of kinds.
+    pub no_plant: f64,
+    /// How many strokes it has.
+    pub strokes: usize,
+    /// Whether its classes follow from the structure of the drawing.
+    pub by_structure: bool,
+    /// Whether its parts were cut by a reader of arrangements.
+    pub by_arrangement: bool,
+}
+
+/// Names of the numbers of [`Evidence::row`], in their order.
+pub const EVIDENCE_NAMES: [&str; 4] = ["one", "share", "undecided", "no-plant"];
+
+impl Evidence {
+    /// What is weighed: 1, the log odds of the share, how undecided a glance is, and the logarithm of the share of no plant.
+    pub fn row(&self) -> [f64; EVIDENCE_NAMES.len()] {
+        let limits = CONFIDENCE_LIMITS;
+        let share = log_odds(self.share, limits.share_log_odds_most);
+        [1.0, share, self.undecided, ops::ln(self.no_plant.max(limits.no_plant_least))]
+    }
+
+    /// The chance that the kind is right: 0 to 1. The share itself where nothing was fitted.
+    pub(crate) fn confidence(&self) -> f64 {
+        let Some(coefficients) = fitted() else { return self.share };
+        let sum: f64 = self.row().iter().zip(coefficients).map(|(x, c)| x * c).sum();
+        let chance = 1.0 / (1.0 + ops::exp(-sum));
+        if self.by_arrangement {
+            return chance.max(CONFIDENCE_LIMITS.by_arrangement_least);
+        }
+        if !self.by_structure {
+            return chance;
+        }
+        let limits = CONFIDENCE_LIMITS;
+        let is_many = self.strokes >= limits.many_strokes;
+        chance.max(if is_many { limits.by_structure_of_many } else { limits.by_structure_least })
+    }
+}
+
+fn log_odds(share: f64, most: f64) -> f64 {
+    if share <= 0.0 {
+        return -most;
+    }
+    ops::ln(share / (1.0 - share).max(f64::MIN_POSITIVE)).clamp(-most, most)
+}
+
+type Coefficients = [f64; EVIDENCE_NAMES.len()];
+
+fn parse(text: &str) -> Option<Coefficients> {
+    let mut lines = text.lines().filter(|l| !l.starts_with('#')).skip(1);
+    let mut found = [0.0; EVIDENCE_NAMES.len()];
+    for (to, name) in found.iter_mut().zip(EVIDENCE_NAMES) {
+        let (own, number) = lines.next()?.split_once(',')?;
+        *to = number.parse().ok().filter(|x: &f64| own == name && x.is_finite())?;
+    }
+    Some(found)
+}
+
+fn fitted() -> Option<&'static Coefficients> {
+    static FITTED: OnceLock<Option<Coefficients>> = OnceLock::new();
+    FITTED.get_or_init(|| parse(include_str!("../data/confidence.csv"))).as_ref()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_speaks_for_a_reading_raises_its_confidence_and_nothing_makes_it_infinite() {
+        assert!(fitted().is_some(), "data/confidence.csv: run `cargo xtask train-confidence`");
+        let own = Evidence {
+            share: 0.7,
+            undecided: 1.0,
+            no_plant: 0.2,
+            strokes: 4,
+            by_structure: false,
+            by_arrangement: false,
+        };
+        let now = own.confidence();
+        assert!(now > 0.0 && now < 1.0);
+        assert!(Evidence { share: 0.9, ..own }.confidence() > now);
+        assert!(Evidence { undecided: 2.0, ..own }.confidence() < now);
+        assert!(Evidence { no_plant: 0.9, ..own }.confidence() < now);
+        for share in [0.0, 1.0, f64::MIN_POSITIVE] {
+            let far = Evidence { share, no_plant: share, ..own }.confidence();
+            assert!(far > 0.0 && far < 1.0, "{far}");
+        }
+    }
+
+    #[test]
+    fn a_reading_by_structure_is_not_told_by_kinds_that_know_nothing_of_it() {
+        let own = Evidence {
+            share: 0.01,
+            undecided: 2.0,
+            no_plant: 0.4,
+            strokes: 40,
+            by_structure: true,
+            by_arrangement: false,
+        };
+        assert!(own.confidence() >= CONFIDENCE_LIMITS.by_structure_of_many);
+        assert!(Evidence { by_structure: false, ..own }.confidence() < own.confidence());
+    }
+}
