@@ -303,7 +303,7 @@ pub(crate) fn gather(
     let mut taken: Vec<bool> = draft.blades.iter().map(|b| b.leaf).collect();
     let usual = base::median(draft.blades.iter().map(|b| b.size).collect()).unwrap_or(0.1);
 
-    known_heads(draft, &mut flowers, &mut roots, &mut taken);
+    known_heads(draft, discs, &mut flowers, &mut roots, &mut taken);
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     off_disc(draft, &mut flowers, &mut roots, &mut taken);
     on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
@@ -335,14 +335,15 @@ pub(crate) fn gather(
     (flowers, roots)
 }
 
-/// Flowers of which the petals are known.
+/// Flowers of which the petals are known, and that have no disc.
 fn known_heads(
     draft: &Draft<'_>,
+    discs: &[(DiscReading, usize)],
     flowers: &mut Vec<FlowerDraft>,
     roots: &mut [Option<DVec2>],
     taken: &mut [bool],
 ) {
-    for head in &draft.heads {
+    for head in draft.heads.iter().filter(|h| !discs.iter().any(|(_, k)| h.contains(k))) {
         let petals: Vec<usize> =
             (0..draft.blades.len()).filter(|&i| head.contains(&draft.blades[i].stroke)).collect();
         for &i in &petals {
@@ -372,8 +373,19 @@ fn by_disc(
     if discs.is_empty() {
         return;
     }
+    let known = |blade: &Sheetlet| {
+        let head = draft.heads.iter().find(|h| h.contains(&blade.stroke))?;
+        discs.iter().position(|(_, k)| head.contains(k))
+    };
+    let first = flowers.len() - discs.len();
     for (i, blade) in draft.blades.iter().enumerate() {
         if taken[i] {
+            continue;
+        }
+        if let Some(disc) = known(blade) {
+            flowers[first + disc].petals.push(i);
+            roots[i] = Some(roots[i].unwrap_or_else(|| blade.nearest(discs[disc].0.centre).0));
+            taken[i] = true;
             continue;
         }
         let mut best: Option<(f64, usize, DVec2)> = None;
@@ -395,7 +407,7 @@ fn by_disc(
             }
         });
         if let Some((_, owner, p)) = best {
-            flowers[owner].petals.push(i);
+            flowers[first + owner].petals.push(i);
             roots[i] = Some(p);
             taken[i] = true;
         }

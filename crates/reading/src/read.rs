@@ -310,15 +310,14 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     {
         (reading, said) = (tree, Report::default());
     }
-    let mut structure = None;
+    let (mut structure, mut is_structural, mut is_cut) = (None, false, false);
     if asked.kind.is_none()
         && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| group(&scores, k))
     {
-        let (tried, again, says) = found;
-        kind = Kind::of(&tried);
-        (reading, said, taken, structure) = (tried, again, None, Some(says));
+        kind = Kind::of(&found.reading);
+        (reading, said, taken) = (found.reading, found.said, None);
+        (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
     }
-    let by_structure = structure.is_some();
     let mut sure = None;
     if free && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores) {
         (reading, said, kind) = (composed, Report::default(), proposed);
@@ -326,6 +325,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     if asked.kind.is_none()
         && sure.is_none()
+        && !is_cut
         && let Some(shown) = inertia::as_shown(ink, classes, &reading)
     {
         let mut again = Report::default();
@@ -361,7 +361,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         undecided: glance::entropy(&glance.words),
         no_plant,
         strokes: ink.strokes.len(),
-        by_structure,
+        by_structure: is_structural,
         by_arrangement: sure.is_some(),
     };
     let readings = readings(kind, &evidence, &scores);
@@ -521,6 +521,14 @@ fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: 
     Some(draft.finish(bearers, vec![], vec![], fruits, vec![]))
 }
 
+/// A reading by structure.
+struct Structural {
+    reading: Reading,
+    said: Report,
+    /// What the structure says of the drawing's own strokes; nothing where some were cut anew.
+    says: Option<Structure>,
+}
+
 /// A plant by the structure of its strokes, where that explains the drawing clearly better than another reading does.
 /// `likely`: the share of a kind.
 fn by_structure(
@@ -528,7 +536,7 @@ fn by_structure(
     (ink, classes): (&Ink, &[Classified]),
     reading: &Reading,
     likely: impl Fn(Kind) -> f64,
-) -> Option<(Reading, Report, Structure)> {
+) -> Option<Structural> {
     let count = ink.strokes.len();
     if !(structure::LIMITS.fewest_strokes..=MOST_STROKES).contains(&count) || asked.off.contains(&READ_AS) {
         return None;
@@ -537,20 +545,44 @@ fn by_structure(
     if !sheet.is_careful() {
         return None;
     }
-    let says = Structure::new(&sheet, classes);
-    if !says.differs(classes) {
-        return None;
+    // What a stroke is was said of it: none is taken for the side of something else.
+    let by_user = classes.iter().any(|c| c.source == Source::User);
+    let mut tubes = if by_user { Vec::new() } else { structure::tubes(ink, &sheet) };
+    // Both sides of a trunk are read as its outline, and its limbs with it.
+    let is_trunk = |k: usize| {
+        classes.get(k).is_some_and(|c| {
+            c.class == StrokeClass::TrunkOutline && c.confidence > structure::LIMITS.believed
+        })
+    };
+    if tubes.iter().any(|t| t.sides.iter().all(|&k| is_trunk(k))) {
+        tubes.clear();
     }
     let mut report = Report::default();
-    let proposal = Proposal { structure: Some(says.clone()), ..Proposal::default() };
-    let tried = attempt(asked, &proposal, ink, classes, &mut report);
-    let score = |r: &Reading| {
-        structure::score(ink, &sheet, r) + structure::LIMITS.weight_of_kind * likely(Kind::of(r))
+    let (tried, says) = if let Some(cut) = Composed::without_sides(ink, classes, &tubes) {
+        let kept = RefCell::default();
+        let own = Asked { kind: None, off: asked.off, kept: &kept };
+        let proposal = Proposal { structure: Some(cut.structure.clone()), ..Proposal::default() };
+        let parts = attempt(&own, &proposal, &cut.ink, &cut.classes, &mut report);
+        (cut.back(ink, parts), None)
+    } else {
+        let says = Structure::new(&sheet, classes);
+        if !says.differs(classes) {
+            return None;
+        }
+        let proposal = Proposal { structure: Some(says.clone()), ..Proposal::default() };
+        (attempt(asked, &proposal, ink, classes, &mut report), Some(says))
     };
+    let score = |r: &Reading, sides: &[usize]| {
+        structure::score(ink, &sheet, r, sides) + structure::LIMITS.weight_of_kind * likely(Kind::of(r))
+    };
+    let sides: Vec<usize> = tubes.iter().flat_map(|t| t.sides).collect();
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
-    let by_user = classes.iter().any(|c| c.source == Source::User);
     let margin = if by_user { 0.0 } else { structure::LIMITS.clearly_better };
-    (score(&tried) >= score(reading) + margin).then_some((tried, report, says))
+    (score(&tried, &[]) >= score(reading, &sides) + margin).then_some(Structural {
+        reading: tried,
+        said: report,
+        says,
+    })
 }
 
 /// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure that is; of the kind that was
@@ -576,7 +608,7 @@ fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Readin
     let how =
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
-    Some((composed.back(ink, &proposal, parts), proposal.kind, score))
+    Some((composed.back(ink, parts), proposal.kind, score))
 }
 
 /// Gives a kind the score of its reader; the others share the rest.

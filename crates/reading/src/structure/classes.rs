@@ -4,8 +4,11 @@ use base::LiteMap;
 use glam::DVec2;
 use ink::{Classified, Source, StrokeClass};
 
+use crate::blade::nearest_on_ring;
+
 use super::LIMITS;
 use super::hidden::hidden_root;
+use super::readers::widest_gap;
 use super::sheet::{Facts, Form, Outline, Sheet};
 
 /// The rule that what a stroke is follows from what it encloses, what covers it and what it lies in.
@@ -37,7 +40,13 @@ impl Structure {
         let said = |k: usize| classes.get(k).copied().unwrap_or_default();
         let by_user = |k: usize| said(k).source == Source::User;
         let found = |k: usize| if by_user(k) { None } else { class_of(sheet, k, said) };
-        let classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
+        let mut classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
+        let heads: Vec<Vec<usize>> =
+            heads(sheet).into_iter().filter(|h| !h.iter().any(|&k| by_user(k))).collect();
+        for head in &heads {
+            head.iter().for_each(|&k| classes[k] = Some(StrokeClass::Blade));
+            classes[head[0]] = Some(StrokeClass::Disc);
+        }
         let mut hidden = LiteMap::new();
         for (k, facts) in sheet.facts.iter().enumerate() {
             if facts.form == Form::Bay
@@ -47,7 +56,7 @@ impl Structure {
                 hidden.insert(k, Hidden { outline: points.clone(), root: hidden_root(points) });
             }
         }
-        Self { classes, hidden, heads: Vec::new() }
+        Self { classes, hidden, heads }
     }
 
     /// What a reader says of the strokes that it made of the drawing: the class of each, and where blades are attached.
@@ -79,6 +88,48 @@ impl Structure {
         !self.hidden.is_empty()
             || self.classes.iter().zip(classes).any(|(own, said)| own.is_some_and(|own| own != said.class))
     }
+}
+
+/// Flower heads: rows of a disc, and of the rays all round it. A disc is an outline that touches many outlines alike; rays of a
+/// second row touch those of the first.
+fn heads(sheet: &Sheet) -> Vec<Vec<usize>> {
+    let outline = |k: usize| sheet.facts[k].outline.as_ref();
+    let touches = |a: usize, b: usize| {
+        let (Some(a), Some(b)) = (outline(a), outline(b)) else { return false };
+        let reach = 2.0 * LIMITS.junction;
+        a.points.iter().any(|&p| nearest_on_ring(&b.points, p).1 < reach)
+    };
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    for disc in (0..sheet.facts.len()).filter(|&k| sheet.facts[k].form == Form::Ring) {
+        let is_free = |k: usize| k != disc && sheet.facts[k].holder != Some(disc) && outline(k).is_some();
+        let mut rays: Vec<usize> =
+            (0..sheet.facts.len()).filter(|&k| is_free(k) && touches(k, disc)).collect();
+        let Some(model) = rays.iter().copied().max_by_key(|&k| alike_among(sheet, k, &rays)) else {
+            continue;
+        };
+        let alike = sheet.alike(model);
+        rays.retain(|k| alike.contains(k));
+        let Some(centre) = outline(disc).map(|o| geom::centroid(&o.points)) else { continue };
+        let ways = rays.iter().filter_map(|&k| outline(k)).map(|o| geom::centroid(&o.points) - centre);
+        if rays.len() < LIMITS.rays || widest_gap(ways) > LIMITS.ray_gap {
+            continue;
+        }
+        let second: Vec<usize> = alike
+            .iter()
+            .copied()
+            .filter(|&k| is_free(k) && !rays.contains(&k) && rays.iter().any(|&r| touches(k, r)))
+            .collect();
+        rays.extend(second);
+        if !found.iter().flatten().any(|k| rays.contains(k) || *k == disc) {
+            found.push(core::iter::once(disc).chain(rays).collect());
+        }
+    }
+    found
+}
+
+/// How many of some outlines are like one.
+fn alike_among(sheet: &Sheet, k: usize, among: &[usize]) -> usize {
+    sheet.alike(k).iter().filter(|j| among.contains(j)).count()
 }
 
 /// What one stroke is, if its structure says so.

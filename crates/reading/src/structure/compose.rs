@@ -1,26 +1,30 @@
 //! From the parts that a reader proposes to ink of their own, and from what was read of that back to the drawing.
 
 use base::LiteMap;
+use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass};
 
-use super::classes::{Hidden, Structure};
+use super::classes::{Hidden, STRUCTURE, Structure};
 use super::readers::{ARRANGEMENT, Proposal};
+use super::sheet::Sheet;
+use super::tubes::Tube;
 use crate::several::Back;
 use crate::{OrganWord, Reading, StrokeReading};
 
-/// The parts of a proposal as strokes of their own.
+/// Ink that was cut anew from the strokes of a drawing, and what is said of it.
 pub(crate) struct Composed {
     pub(crate) ink: Ink,
     pub(crate) classes: Vec<Classified>,
     pub(crate) structure: Structure,
+    /// Of each of its strokes the rows of those that it is made of, the first most of it.
+    made_of: Vec<Vec<usize>>,
 }
 
 impl Composed {
-    /// `score`: how sure the proposal is, 0 to 1.
+    /// The parts of a proposal as strokes of their own. `score`: how sure the proposal is, 0 to 1.
     pub(crate) fn new(ink: &Ink, proposal: &Proposal, score: f64) -> Self {
-        let main = |strokes: &[usize]| strokes.first().copied().unwrap_or(0);
-        let lines: Vec<_> = proposal.parts.iter().map(|p| (p.points.clone(), main(&p.strokes))).collect();
-        let own = ink.with_lines(&lines);
+        let made_of: Vec<Vec<usize>> = proposal.parts.iter().map(|p| p.strokes.clone()).collect();
+        let own = ink.with_lines(&lines(proposal.parts.iter().map(|p| p.points.clone()), &made_of));
         let to_own = |p| own.map.to_ink(ink.map.to_drawing(p));
         let mut hidden = LiteMap::new();
         for (row, part) in proposal.parts.iter().enumerate() {
@@ -30,23 +34,35 @@ impl Composed {
             }
         }
         let classes: Vec<StrokeClass> = proposal.parts.iter().map(|p| p.class).collect();
-        let said = |&class: &StrokeClass| {
-            let shares = StrokeClass::ALL.map(|c| if c == class { score } else { 0.0 });
-            let source = Source::Rule(ARRANGEMENT);
-            Classified { class, confidence: score, source, shares, shown: None }
-        };
-        Self {
-            classes: classes.iter().map(said).collect(),
-            structure: Structure::of_parts(classes, hidden, proposal.heads.clone()),
-            ink: own,
+        let classified = classes.iter().map(|&class| said(class, score, ARRANGEMENT)).collect();
+        let structure = Structure::of_parts(classes, hidden, proposal.heads.clone());
+        Self { ink: own, classes: classified, structure, made_of }
+    }
+
+    /// The strokes of a drawing with one line in place of both sides of each tube; `None` where there are no tubes.
+    pub(crate) fn without_sides(ink: &Ink, classes: &[Classified], tubes: &[Tube]) -> Option<Self> {
+        if tubes.is_empty() {
+            return None;
         }
+        let is_side = |k: &usize| tubes.iter().any(|t| t.sides.contains(k));
+        let kept: Vec<usize> = (0..ink.strokes.len()).filter(|k| !is_side(k)).collect();
+        let mut made_of: Vec<Vec<usize>> = kept.iter().map(|&k| vec![k]).collect();
+        made_of.extend(tubes.iter().map(|t| t.sides.to_vec()));
+        let points = kept.iter().map(|&k| ink.strokes[k].points.clone());
+        let points = points.chain(tubes.iter().map(|t| t.middle.clone()));
+        let own = ink.with_lines(&lines(points, &made_of));
+        let mut classified: Vec<Classified> =
+            kept.iter().map(|&k| classes.get(k).copied().unwrap_or_default()).collect();
+        classified.extend(tubes.iter().map(|_| said(StrokeClass::Axis, 1.0, STRUCTURE)));
+        let structure = Structure::new(&Sheet::new(&own), &classified);
+        Some(Self { ink: own, classes: classified, structure, made_of })
     }
 
     /// What was read of the parts, as a reading of the drawing: in its coordinates, with its strokes.
-    pub(crate) fn back(&self, ink: &Ink, proposal: &Proposal, parts: Reading) -> Reading {
+    pub(crate) fn back(&self, ink: &Ink, parts: Reading) -> Reading {
         let mut reading = Reading::default();
         Back { whole: ink.map, part: self.ink.map }.add(&mut reading, parts);
-        let row = |part: u32| proposal.parts.get(part as usize)?.strokes.first().copied();
+        let row = |part: u32| self.made_of.get(part as usize)?.first().copied();
         let index = |source: &mut Option<u32>| {
             *source = source.and_then(row).and_then(|k| ink.strokes.get(k)).map(|s| s.index);
         };
@@ -61,32 +77,44 @@ impl Composed {
         reading.fruits.iter_mut().for_each(|f| index(&mut f.source));
         reading.pots.iter_mut().for_each(|p| index(&mut p.source));
         reading.thorns.iter_mut().for_each(|t| index(&mut t.2));
-        reading.strokes = strokes(ink, proposal, &reading.strokes);
+        reading.strokes = self.strokes(ink, &reading.strokes);
         reading
+    }
+
+    /// What became of each stroke of the drawing: what became of the first part that is made of it, those of which it is most
+    /// first.
+    fn strokes(&self, ink: &Ink, parts: &[StrokeReading]) -> Vec<StrokeReading> {
+        let part_of = |row: usize| {
+            let place = |part: usize| self.made_of[part].iter().position(|&k| k == row);
+            let made = (0..self.made_of.len()).filter_map(|part| Some((place(part)?, part)));
+            made.min().map(|(_, part)| part)
+        };
+        let read = |row: usize, index: u32| {
+            let said = part_of(row).and_then(|part| parts.iter().find(|s| s.index as usize == part));
+            let left_out = StrokeReading {
+                index,
+                class: StrokeClass::Other,
+                organ: OrganWord::Ignored,
+                confidence: 0.0,
+                source: Source::Classifier,
+            };
+            said.map_or(left_out, |said| StrokeReading { index, ..*said })
+        };
+        let mut rows: Vec<StrokeReading> =
+            ink.strokes.iter().enumerate().map(|(row, s)| read(row, s.index)).collect();
+        rows.extend(ink.skipped.iter().map(|&index| read(usize::MAX, index)));
+        base::sort_by_key(&mut rows, |s| s.index);
+        rows
     }
 }
 
-/// What became of each stroke of the drawing: what became of the first part that is made of it, those of which it is most first.
-fn strokes(ink: &Ink, proposal: &Proposal, parts: &[StrokeReading]) -> Vec<StrokeReading> {
-    let part_of = |row: usize| {
-        let place = |part: usize| proposal.parts[part].strokes.iter().position(|&k| k == row);
-        let made = (0..proposal.parts.len()).filter_map(|part| Some((place(part)?, part)));
-        made.min().map(|(_, part)| part)
-    };
-    let read = |row: usize, index: u32| {
-        let said = part_of(row).and_then(|part| parts.iter().find(|s| s.index as usize == part));
-        let left_out = StrokeReading {
-            index,
-            class: StrokeClass::Other,
-            organ: OrganWord::Ignored,
-            confidence: 0.0,
-            source: Source::Classifier,
-        };
-        said.map_or(left_out, |said| StrokeReading { index, ..*said })
-    };
-    let mut rows: Vec<StrokeReading> =
-        ink.strokes.iter().enumerate().map(|(row, s)| read(row, s.index)).collect();
-    rows.extend(ink.skipped.iter().map(|&index| read(usize::MAX, index)));
-    base::sort_by_key(&mut rows, |s| s.index);
-    rows
+/// Lines, each with the stroke that it is most of.
+fn lines(points: impl Iterator<Item = Vec<DVec2>>, made_of: &[Vec<usize>]) -> Vec<(Vec<DVec2>, usize)> {
+    points.zip(made_of).map(|(points, rows)| (points, rows.first().copied().unwrap_or(0))).collect()
+}
+
+/// A class that a rule gives a line.
+fn said(class: StrokeClass, score: f64, rule: &'static str) -> Classified {
+    let shares = StrokeClass::ALL.map(|c| if c == class { score } else { 0.0 });
+    Classified { class, confidence: score, source: Source::Rule(rule), shares, shown: None }
 }

@@ -9,6 +9,7 @@
 //! | `hidden` | outlines completed behind what covers them |
 //! | `classes` | what strokes are by these facts |
 //! | `score` | how well a reading explains the drawing |
+//! | `tubes` | stems that were drawn by both their sides |
 //! | `faces`, `shape` | what lines enclose together, and the form of outlines |
 //! | `readers` | plants that are known by the arrangement of their faces and lines |
 //! | `compose` | from the parts that a reader proposes to a reading |
@@ -21,11 +22,13 @@ pub(crate) mod readers;
 mod score;
 mod shape;
 mod sheet;
+mod tubes;
 
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
 pub(crate) use compose::Composed;
 pub(crate) use score::score;
 pub(crate) use sheet::Sheet;
+pub(crate) use tubes::tubes;
 
 /// What separates the forms of strokes, and when structure decides. Lengths are in ink units (the drawing's diagonal is 1).
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +65,9 @@ pub(crate) struct StructureLimits {
     pub(crate) plump: f64,
     /// Repeated round outlines larger than this share of the squared diagonal are petals or leaves.
     pub(crate) small_area: f64,
+    /// A flower head has so many rays at least, and no wider angle than this between neighbours, radians.
+    pub(crate) rays: usize,
+    pub(crate) ray_gap: f64,
     /// A class of the stroke classifier that structure does not contradict stands if its share is above this.
     pub(crate) believed: f64,
     /// What the share of the kind of plant (0 to 1) adds to the score of a reading of that kind.
@@ -87,6 +93,8 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     round: 0.85,
     plump: 0.72,
     small_area: 0.0015,
+    rays: 7,
+    ray_gap: 1.6,
     believed: 0.5,
     weight_of_kind: 0.02,
     clearly_better: 0.02,

@@ -11,17 +11,21 @@ use crate::{OrganWord, Reading};
 const UNDER_A_SOLID: f64 = 0.3;
 /// What a stroke is worth whose organ hangs on nothing, where there is something to hang on.
 const FLOATS: f64 = 0.5;
+/// What a line is worth that is one side of an axis and became an axis of its own.
+const ONE_SIDE: f64 = 0.5;
 /// How much of the score is lost where outlines that are alike became organs of several kinds.
 const UNLIKE: f64 = 0.4;
 
 /// How well a reading explains the ink: 0 (nothing) to 1 (every stroke is a part of its own that is attached, and what is alike
-/// is of one kind). Kinds of plants play no part. Cost: pairs of outlines.
-pub(crate) fn score(ink: &Ink, sheet: &Sheet, reading: &Reading) -> f64 {
+/// is of one kind). Kinds of plants play no part. `sides`: rows of lines that are two sides of one axis each, and were read as axes of
+/// their own. Cost: pairs of outlines.
+pub(crate) fn score(ink: &Ink, sheet: &Sheet, reading: &Reading, sides: &[usize]) -> f64 {
     let organs = Organs::new(ink, reading);
     let (mut sum, mut whole) = (0.0, 0.0);
     for (k, stroke) in ink.strokes.iter().enumerate() {
         whole += stroke.length;
-        sum += stroke.length * organs.worth(sheet, k);
+        let share = if sides.contains(&k) { ONE_SIDE } else { 1.0 };
+        sum += stroke.length * share * organs.worth(sheet, k);
     }
     let explained = if whole > 0.0 { sum / whole } else { 0.0 };
     explained * (1.0 - UNLIKE * organs.disagreement(sheet))

@@ -5,7 +5,7 @@ use ink::StrokeClass;
 
 use super::super::faces::Face;
 use super::sprig::{axes, root_of};
-use super::{LIMITS, Part, Proposal, Scene, clover, is_leaf_from};
+use super::{LIMITS, Part, Proposal, Scene, clover, is_leaf_from, widest_gap};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
@@ -117,13 +117,4 @@ fn meeting_place(scene: &Scene) -> Option<DVec2> {
     let large: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > BLOOM.alike * largest).collect();
     (large.len() >= BLOOM.petals)
         .then(|| large.iter().map(|f| f.shape.middle).sum::<DVec2>() / large.len() as f64)
-}
-
-/// The widest angle between neighbouring directions, radians.
-pub(super) fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
-    let mut angles: Vec<f64> = ways.map(|d| base::ops::atan2(d.y, d.x)).collect();
-    base::sort_by(&mut angles, f64::total_cmp);
-    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return base::ops::TAU };
-    let seam = first + base::ops::TAU - last;
-    angles.windows(2).map(|w| w[1] - w[0]).fold(seam, f64::max)
 }

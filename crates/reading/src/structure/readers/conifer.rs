@@ -19,6 +19,8 @@ struct ConiferLimits {
     centred: f64,
     /// and is narrower than this at a tenth of the height below the top.
     pointed: f64,
+    /// Its foot is wider than this share of the widest level.
+    foot: f64,
     /// It is widest below this height.
     widest: f64,
     /// At each level, left and right of the apex differ by less than this share of the width.
@@ -40,6 +42,7 @@ const CONIFER: ConiferLimits = ConiferLimits {
     tier: 0.12,
     centred: 0.12,
     pointed: 0.42,
+    foot: 0.4,
     widest: 0.45,
     lopsided: 0.22,
     tall: 0.75,
@@ -116,6 +119,7 @@ fn is_crown(face: &Face) -> bool {
     centred
         && even
         && tiered
+        && widths[CONIFER.levels - 1] > CONIFER.foot * most
         && widths[1] < CONIFER.pointed * most
         && widest as f64 > (1.0 - CONIFER.widest) * CONIFER.levels as f64
         && size.y > CONIFER.tall * size.x

@@ -193,6 +193,15 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     found
 }
 
+/// The widest angle between neighbouring directions, radians.
+pub(crate) fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
+    let mut angles: Vec<f64> = ways.map(|d| base::ops::atan2(d.y, d.x)).collect();
+    base::sort_by(&mut angles, f64::total_cmp);
+    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return base::ops::TAU };
+    let seam = first + base::ops::TAU - last;
+    angles.windows(2).map(|w| w[1] - w[0]).fold(seam, f64::max)
+}
+
 /// How long all these lines are.
 pub(crate) fn length_of<'a>(lines: impl Iterator<Item = &'a Run>) -> f64 {
     lines.map(|l| polyline_length(&l.points)).sum()

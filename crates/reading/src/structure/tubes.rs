@@ -1,0 +1,109 @@
+//! Stems, branches and trunks that were drawn by both their sides: two lines that run side by side become one.
+
+use geom::{bounds, closest_on_polyline, polyline_length};
+use glam::DVec2;
+use ink::{Ink, StrokeMode};
+
+use super::sheet::{Form, Sheet};
+
+/// When two lines are the sides of one axis. Lengths are in ink units (the drawing's diagonal is 1).
+struct TubeLimits {
+    /// Sides are nearer than this to one another,
+    apart: f64,
+    /// and run side by side over more than this share of the shorter one, and over so many times their distance.
+    along: f64,
+    slender: f64,
+    /// Their distance is nowhere less than this share of the greatest: a leaf narrows to its tip.
+    narrow: f64,
+    /// A third line that is as near, so many times the distance, makes them hatching, veins or a bundle.
+    third: f64,
+    /// Its ends are farther apart than this share of its length: half a circle has 0.64.
+    straight: f64,
+    /// The shorter side is at least so long.
+    length: f64,
+    /// Places of a line that are looked at, at least.
+    places: usize,
+}
+
+const LIMITS: TubeLimits = TubeLimits {
+    apart: 0.09,
+    along: 0.7,
+    slender: 3.5,
+    narrow: 0.4,
+    third: 1.6,
+    straight: 0.6,
+    length: 0.06,
+    places: 12,
+};
+
+/// An axis between two lines.
+#[derive(Clone, Debug)]
+pub(crate) struct Tube {
+    /// Rows of its sides.
+    pub(crate) sides: [usize; 2],
+    /// The line in the middle between them.
+    pub(crate) middle: Vec<DVec2>,
+    /// How far they are apart, on average.
+    pub(crate) width: f64,
+}
+
+/// All pairs of sides. Cost: pairs of lines that are near, their points each.
+pub(crate) fn tubes(ink: &Ink, sheet: &Sheet) -> Vec<Tube> {
+    let lines: Vec<usize> = (0..ink.strokes.len())
+        .filter(|&k| {
+            let facts = &sheet.facts[k];
+            facts.form == Form::Line && facts.holder.is_none() && ink.strokes[k].mode == StrokeMode::Parts
+        })
+        .filter(|&k| ink.strokes[k].length > LIMITS.length)
+        .collect();
+    let mut found: Vec<Tube> = Vec::new();
+    for (i, &a) in lines.iter().enumerate() {
+        for &b in &lines[i + 1..] {
+            found.extend(tube(ink, a, b));
+        }
+    }
+    // Lines with several partners are hatching or a bundle.
+    let partners = |k: usize, near: f64| {
+        found.iter().filter(|t| t.sides.contains(&k) && t.width < LIMITS.third * near).count()
+    };
+    found.iter().filter(|t| t.sides.iter().all(|&k| partners(k, t.width) == 1)).cloned().collect()
+}
+
+/// Two lines as the sides of one axis, if they run side by side.
+fn tube(ink: &Ink, a: usize, b: usize) -> Option<Tube> {
+    let (one, other) = (&ink.strokes[a], &ink.strokes[b]);
+    let (short, long) = if one.length < other.length { (one, other) } else { (other, one) };
+    let (low, high) = bounds(&short.points)?;
+    let (from, to) = bounds(&long.points)?;
+    if (low - LIMITS.apart).cmpgt(to).any() || (high + LIMITS.apart).cmplt(from).any() {
+        return None;
+    }
+    let step = (short.points.len() / (3 * LIMITS.places)).max(1);
+    let mut pairs: Vec<(DVec2, DVec2)> = Vec::new();
+    let mut places = 0_usize;
+    let last = long.points.len() - 1;
+    for (i, &p) in short.points.iter().enumerate() {
+        if i % step != 0 && i + 1 != short.points.len() {
+            continue;
+        }
+        places += 1;
+        let q = closest_on_polyline(&long.points, p)?.point;
+        let is_end = q.distance(long.points[0]) < long.step || q.distance(long.points[last]) < long.step;
+        if p.distance(q) < LIMITS.apart && !is_end {
+            pairs.push((p, q));
+        }
+    }
+    if places < LIMITS.places || (pairs.len() as f64) < LIMITS.along * places as f64 {
+        return None;
+    }
+    let widths = || pairs.iter().map(|(p, q)| p.distance(*q));
+    let width = widths().sum::<f64>() / pairs.len() as f64;
+    let (least, most) = widths().fold((f64::INFINITY, 0.0_f64), |(l, m), w| (l.min(w), m.max(w)));
+    let middle: Vec<DVec2> = pairs.iter().map(|(p, q)| p.midpoint(*q)).collect();
+    let length = polyline_length(&middle);
+    // The line between leads on: it does not run to and fro.
+    let reach = middle[0].distance(middle[middle.len() - 1]);
+    let leads_on = reach > LIMITS.straight * length;
+    let long_enough = length > LIMITS.slender * width;
+    (least > LIMITS.narrow * most && long_enough && leads_on).then_some(Tube { sides: [a, b], middle, width })
+}
