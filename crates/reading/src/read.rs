@@ -319,7 +319,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
     }
     let mut sure = None;
-    if free && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores) {
+    if free
+        && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores)
+        && (proposed != kind || explains_better(ink, &composed, &reading))
+    {
         (reading, said, kind) = (composed, Report::default(), proposed);
         sure = Some(score);
     }
@@ -609,6 +612,13 @@ fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Readin
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
     Some((composed.back(ink, parts), proposal.kind, score))
+}
+
+/// Whether a reading explains the ink clearly better than another one of the same kind.
+fn explains_better(ink: &Ink, own: &Reading, other: &Reading) -> bool {
+    let sheet = Sheet::new(ink);
+    let score = |r: &Reading| structure::score(ink, &sheet, r, &[]);
+    score(own) > score(other) + structure::LIMITS.clearly_better
 }
 
 /// Gives a kind the score of its reader; the others share the rest.

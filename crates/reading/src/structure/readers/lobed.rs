@@ -4,6 +4,7 @@ use ink::StrokeClass;
 
 use super::{Part, Proposal, Scene, length_of};
 use crate::Kind;
+use crate::blade::nearest_on_ring;
 
 /// What a palmately lobed leaf must have.
 struct LobedLimits {
@@ -16,6 +17,8 @@ struct LobedLimits {
     convexity: f64,
     /// Notches lie nearer to the base than this share of the distance of the tips, on average.
     cut: f64,
+    /// Its petiole, or its midrib, ends nearer than this to its outline, ink units.
+    attached: f64,
     /// Its petiole is at most this share of its length.
     petiole: f64,
     /// See [`Proposal::likelihood`].
@@ -28,6 +31,7 @@ const LOBED: LobedLimits = LobedLimits {
     notches: 4,
     convexity: 0.72,
     cut: 0.72,
+    attached: 0.08,
     petiole: 1.0,
     likelihood: 4000.0,
 };
@@ -37,9 +41,13 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > LOBED.whole * total)?;
     let face = &scene.faces[row];
     let shape = &face.shape;
-    let petiole = scene.lines.iter().find_map(|line| Some((line, scene.touching_end(line, row)?)));
-    let mark = scene.marks_of(row).find_map(|line| scene.touching_end(line, row));
-    let root = petiole.map(|(_, at)| at).or(mark)?;
+    let ends = scene
+        .lines
+        .iter()
+        .chain(scene.marks_of(row))
+        .flat_map(|l| [l.points[0], l.points[l.points.len() - 1]]);
+    let nearest = ends.map(|p| nearest_on_ring(&face.outline, p)).min_by(|a, b| a.1.total_cmp(&b.1));
+    let (root, _) = nearest.filter(|(_, off)| *off < LOBED.attached)?;
     let length = shape.length();
     let tips: Vec<f64> =
         shape.corners.iter().map(|p| p.distance(root)).filter(|d| *d > 0.2 * length).collect();

@@ -16,7 +16,7 @@ mod tests;
 use base::LiteMap;
 use geom::{bounds, polyline_length};
 use glam::DVec2;
-use ink::{Ink, StrokeClass};
+use ink::{Ink, StrokeClass, StrokeMode};
 
 use super::faces::{Face, Faces, Place, Run};
 use crate::Kind;
@@ -86,9 +86,14 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// `None` for drawings of too many strokes, and where nothing is enclosed.
+    /// `None` for drawings of too many strokes or with contours, and where nothing is enclosed.
     pub(crate) fn new(ink: &Ink) -> Option<Self> {
-        if ink.strokes.is_empty() || ink.strokes.len() > LIMITS.most_strokes {
+        // Contours that are to be filled say themselves what they are.
+        let is_part = |s: &ink::InkStroke| s.mode == StrokeMode::Parts;
+        if ink.strokes.is_empty()
+            || ink.strokes.len() > LIMITS.most_strokes
+            || !ink.strokes.iter().all(is_part)
+        {
             return None;
         }
         let all = Faces::new(ink)?;

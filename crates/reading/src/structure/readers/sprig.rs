@@ -8,6 +8,7 @@ use super::super::faces::Face;
 use super::{LIMITS, Part, Proposal, Scene, is_leaf_from};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
+use crate::thresholds::FEWEST_PETALS;
 
 /// What a sprig must have.
 struct SprigLimits {
@@ -19,14 +20,14 @@ struct SprigLimits {
     stem: f64,
     /// and the lines reach at least this share of the drawing's height below the middle of the lowest leaf.
     below: f64,
-    /// So many leaves in one place, all round it, are petals.
-    petals: usize,
+    /// Leaves begin in one place within this share of their length.
+    one_place: f64,
     /// See [`Proposal::likelihood`].
     likelihood: f64,
 }
 
 const SPRIG: SprigLimits =
-    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, petals: 4, likelihood: 5000.0 };
+    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, one_place: 0.3, likelihood: 1500.0 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let lines: Vec<(usize, Vec<DVec2>)> = axes(scene);
@@ -57,7 +58,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     let low = lines.iter().flat_map(|(_, l)| l).map(|p| p.y).fold(f64::INFINITY, f64::min);
     let leaf_low = leaves.iter().map(|(f, _)| f.shape.middle.y).fold(f64::INFINITY, f64::min);
-    if low > leaf_low - SPRIG.below * (scene.high.y - scene.low.y) || is_whorl(&leaves) {
+    if low > leaf_low - SPRIG.below * (scene.high.y - scene.low.y) || has_whorl(&leaves) {
         return None;
     }
     let mut parts: Vec<Part> =
@@ -115,13 +116,11 @@ pub(super) fn root_of(scene: &Scene, face: &Face, lines: &[(usize, Vec<DVec2>)])
     end.or_else(along).or_else(marked).map(|(p, _)| p)
 }
 
-/// Whether many leaves begin in one place and stand all round it: petals.
-fn is_whorl(leaves: &[(&Face, DVec2)]) -> bool {
-    if leaves.len() < SPRIG.petals {
-        return false;
-    }
-    let middle = leaves.iter().map(|(_, r)| *r).sum::<DVec2>() / leaves.len() as f64;
-    let out: DVec2 = leaves.iter().map(|(f, _)| (f.shape.middle - middle).normalize_or_zero()).sum();
-    let near = leaves.iter().all(|(f, r)| r.distance(middle) < 0.35 * f.shape.length());
-    near && out.length() < 0.35 * leaves.len() as f64
+/// Whether some leaves begin in one place, as petals do (He and Cheng 2021, section 4.1: more than two).
+fn has_whorl(leaves: &[(&Face, DVec2)]) -> bool {
+    let begins_at = |p: DVec2| {
+        let near = |(f, root): &&(&Face, DVec2)| root.distance(p) < SPRIG.one_place * f.shape.length();
+        leaves.iter().filter(near).count()
+    };
+    leaves.iter().any(|(_, root)| begins_at(*root) >= FEWEST_PETALS)
 }
