@@ -29,6 +29,14 @@ pub(crate) fn as_shown(ink: &Ink, classes: &[Classified], free: &Reading) -> Opt
     differs.then_some(kept)
 }
 
+/// Whether a reading makes of every stroke the class that it was shown as.
+pub(crate) fn agrees(ink: &Ink, classes: &[Classified], reading: &Reading) -> bool {
+    ink.strokes.iter().zip(classes).all(|(stroke, said)| {
+        let now = class_of(reading, stroke.index).map(|c| c.class);
+        said.shown.is_none_or(|shown| now == Some(shown))
+    })
+}
+
 fn class_of(reading: &Reading, index: u32) -> Option<&crate::StrokeReading> {
     let at = reading.strokes.binary_search_by_key(&index, |s| s.index).ok()?;
     reading.strokes.get(at)

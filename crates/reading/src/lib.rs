@@ -70,10 +70,13 @@ pub use kept::KeptStrokes;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
 pub use no_plant::{NO_PLANT_LIMITS, NoPlantLimits, no_plant_feature_names};
-pub use read::{UNLIKE_A_PLANT, kind_row, no_plant_row, read, read_again, read_as, read_without};
+pub use read::{
+    UNLIKE_A_PLANT, kind_row, no_plant_row, read, read_again, read_as, read_but_last, read_without,
+};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
     PotReading, Reading, RegionKind, RegionReading, StrokeReading, VeinReading,
 };
 pub use rules::{READ_AS, RULES, Rule};
+pub use structure::ARRANGEMENT;
 pub use validate::ReadingFault;

@@ -16,9 +16,9 @@ use crate::silhouette::{Drawn, Shaping, Silhouette};
 use crate::structure::{Composed, Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
-    BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach,
-    flowers, glance, inertia, kinds, no_plant, outlines, pressed, rules, several, silhouette, structure,
-    veins,
+    BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, OrganWord, PlantReading, READ_AS, Reading, Scored,
+    StrokeReading, aside, attach, flowers, glance, inertia, kinds, no_plant, outlines, pressed, rules,
+    several, silhouette, structure, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -70,6 +70,26 @@ pub fn read_again(
     let reading = whole(&asked, ink, &other, report);
     *kept = asked.kept.take();
     kept.forget();
+    reading
+}
+
+/// As [`read_again`], of a drawing whose last stroke is still under the pen: it is left out, and changes nothing.
+pub fn read_but_last(
+    (ink, classes): (&Ink, &[Classified]),
+    kept: &mut KeptStrokes,
+    report: &mut Report,
+) -> Reading {
+    let Some(last) = ink.strokes.last() else { return Reading::default() };
+    let part = several::part(ink, classes, (0..ink.strokes.len() - 1).collect());
+    let mut whole = several::Collected::new(ink, classes);
+    whole.add(&part, read_again(None, &[], (&part.ink, &part.classes), kept, report));
+    let mut reading = whole.finish(report);
+    let said = classes.get(ink.strokes.len() - 1).copied().unwrap_or_default();
+    let (index, organ) = (last.index, OrganWord::Ignored);
+    let (class, confidence, source) = (said.class, said.confidence, said.source);
+    if let Err(at) = reading.strokes.binary_search_by_key(&index, |s| s.index) {
+        reading.strokes.insert(at, StrokeReading { index, class, organ, confidence, source });
+    }
     reading
 }
 
@@ -320,8 +340,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     let mut sure = None;
     if free
+        && !classes.iter().any(Classified::is_sure)
         && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores)
         && (proposed != kind || explains_better(ink, &composed, &reading))
+        && inertia::agrees(ink, classes, &composed)
     {
         (reading, said, kind) = (composed, Report::default(), proposed);
         sure = Some(score);
@@ -605,7 +627,7 @@ fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Readin
         .filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
     let proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
     let score = odds(&proposal) / (1.0 + odds(&proposal));
-    let composed = Composed::new(ink, &proposal, score);
+    let composed = Composed::new(ink, &proposal);
     let kept = RefCell::default();
     let own = Asked { kind: Some(proposal.kind), off: asked.off, kept: &kept };
     let how =

@@ -102,6 +102,8 @@ enum Taken {
     Strokes,
     /// For a kind that explains the whole better.
     For(Kind),
+    /// For what the arrangement of its faces and lines says.
+    Arranged,
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
@@ -136,7 +138,14 @@ struct Kept<K, V> {
 fn taken(reading: &Reading) -> Option<Taken> {
     let [plant] = &reading.plants[..] else { return None };
     let again = |s: &reading::StrokeReading| s.source == ink::Source::Rule(reading::READ_AS);
-    Some(if reading.strokes.iter().any(again) { Taken::For(plant.kind) } else { Taken::Strokes })
+    let arranged = |s: &reading::StrokeReading| s.source == ink::Source::Rule(reading::ARRANGEMENT);
+    Some(if reading.strokes.iter().any(again) {
+        Taken::For(plant.kind)
+    } else if reading.strokes.iter().any(arranged) {
+        Taken::Arranged
+    } else {
+        Taken::Strokes
+    })
 }
 
 impl Evaluator {
@@ -255,6 +264,7 @@ impl Evaluator {
         let mut reading =
             report.stage("structure", run.clock, |r| match self.taken.filter(|_| read_as.is_none()) {
                 Some(Taken::For(kind)) => reading::read_again(Some(kind), &[], (ink, &classes), kept, r),
+                Some(Taken::Arranged) => reading::read_but_last((ink, &classes), kept, r),
                 Some(Taken::Strokes) => {
                     reading::read_again(None, &[reading::READ_AS], (ink, &classes), kept, r)
                 }

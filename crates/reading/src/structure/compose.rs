@@ -8,6 +8,7 @@ use super::classes::{Hidden, STRUCTURE, Structure};
 use super::readers::{ARRANGEMENT, Proposal};
 use super::sheet::Sheet;
 use super::tubes::Tube;
+use crate::confidence::CONFIDENCE_LIMITS;
 use crate::several::Back;
 use crate::{OrganWord, Reading, StrokeReading};
 
@@ -21,8 +22,8 @@ pub(crate) struct Composed {
 }
 
 impl Composed {
-    /// The parts of a proposal as strokes of their own. `score`: how sure the proposal is, 0 to 1.
-    pub(crate) fn new(ink: &Ink, proposal: &Proposal, score: f64) -> Self {
+    /// The parts of a proposal as strokes of their own.
+    pub(crate) fn new(ink: &Ink, proposal: &Proposal) -> Self {
         let made_of: Vec<Vec<usize>> = proposal.parts.iter().map(|p| p.strokes.clone()).collect();
         let own = ink.with_lines(&lines(proposal.parts.iter().map(|p| p.points.clone()), &made_of));
         let to_own = |p| own.map.to_ink(ink.map.to_drawing(p));
@@ -34,7 +35,10 @@ impl Composed {
             }
         }
         let classes: Vec<StrokeClass> = proposal.parts.iter().map(|p| p.class).collect();
-        let classified = classes.iter().map(|&class| said(class, score, ARRANGEMENT)).collect();
+        let classified = classes
+            .iter()
+            .map(|&class| said(class, CONFIDENCE_LIMITS.by_arrangement_least, ARRANGEMENT))
+            .collect();
         let structure = Structure::of_parts(classes, hidden, proposal.heads.clone());
         Self { ink: own, classes: classified, structure, made_of }
     }

@@ -26,6 +26,7 @@ mod tubes;
 
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
 pub(crate) use compose::Composed;
+pub use readers::ARRANGEMENT;
 pub(crate) use score::score;
 pub(crate) use sheet::Sheet;
 pub(crate) use tubes::tubes;

@@ -56,7 +56,7 @@ fn petals_drawn_behind_a_disc_become_petals() {
     assert!(organs >= 8, "{organs} petals and leaves, {:?}", Kind::of(&reading));
     assert_eq!(reading.validate().count(), 0);
     let sheet = Sheet::new(&ink);
-    assert!(score(&ink, &sheet, &reading) > 0.9);
+    assert!(score(&ink, &sheet, &reading, &[]) > 0.9);
 }
 
 #[test]

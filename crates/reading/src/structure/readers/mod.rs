@@ -23,8 +23,8 @@ use crate::Kind;
 use crate::blade::nearest_on_ring;
 use crate::thresholds::STRAIGHT;
 
-/// The rule that a stroke is what the arrangement of faces and lines makes it.
-pub(crate) const ARRANGEMENT: &str = "arrangement";
+/// The source of a class that follows from the arrangement of faces and lines.
+pub const ARRANGEMENT: &str = "arrangement";
 
 /// One part of a plant.
 #[derive(Clone, Debug)]
