@@ -339,14 +339,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
     }
     let mut sure = None;
-    if free
-        && !classes.iter().any(Classified::is_sure)
-        && let Some((composed, proposed, score)) = by_readers(asked, ink, &scores)
+    if let Some((composed, proposed, score)) = by_readers(asked, (ink, classes), &scores)
         && (proposed != kind || explains_better(ink, &composed, &reading))
-        && inertia::agrees(ink, classes, &composed)
     {
-        (reading, said, kind) = (composed, Report::default(), proposed);
-        sure = Some(score);
+        (reading, said, kind, sure) = (composed, Report::default(), proposed, Some(score));
     }
     if asked.kind.is_none()
         && sure.is_none()
@@ -375,12 +371,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
-    if kind == Kind::Vegetable && free {
-        silhouette::one_body(ink, &mut reading);
-    }
-    if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
-        soften(&mut reading);
-    }
+    as_body(ink, kind, free, &mut reading);
     let evidence = Evidence {
         share: group(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
         undecided: glance::entropy(&glance.words),
@@ -390,13 +381,32 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_arrangement: sure.is_some(),
     };
     let readings = readings(kind, &evidence, &scores);
+    reading.plants = vec![described(ink, kind, (evidence, readings), &glance)];
+    reading
+}
+
+/// A vegetable is one body, if no class was set by hand; and what is no wood is none.
+fn as_body(ink: &Ink, kind: Kind, free: bool, reading: &mut Reading) {
+    if kind == Kind::Vegetable && free {
+        silhouette::one_body(ink, reading);
+    }
+    if matches!(kind, Kind::Cactus | Kind::Fruit | Kind::Vegetable) {
+        soften(reading);
+    }
+}
+
+/// What is told of one plant.
+fn described(
+    ink: &Ink,
+    kind: Kind,
+    (evidence, readings): (Evidence, Vec<Scored>),
+    glance: &Glance,
+) -> PlantReading {
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     let word = glance::word(kind, &glance.words);
-    let height = (high - low).max(0.0);
-    reading.plants = vec![PlantReading { strokes, height, kind, word, evidence, readings }];
-    reading
+    PlantReading { strokes, height: (high - low).max(0.0), kind, word, evidence, readings }
 }
 
 /// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood is a tree, bare or
@@ -615,7 +625,14 @@ fn by_structure(
 ///
 /// `scores`: how likely each kind is otherwise. A reading stands where it is likelier than the likeliest of the others (Bayes): the
 /// share of its kind times the likelihood of the arrangement.
-fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Reading, Kind, f64)> {
+fn by_readers(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    scores: &[Scored],
+) -> Option<(Reading, Kind, f64)> {
+    if !asked.is_free(ink, classes) || classes.iter().any(Classified::is_sure) {
+        return None;
+    }
     let share = |kind: Kind| scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum::<f64>();
     let best_other =
         |kind: Kind| scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).fold(0.0, f64::max);
@@ -633,7 +650,8 @@ fn by_readers(asked: &Asked<'_>, ink: &Ink, scores: &[Scored]) -> Option<(Readin
     let how =
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
-    Some((composed.back(ink, parts), proposal.kind, score))
+    let reading = composed.back(ink, parts);
+    inertia::agrees(ink, classes, &reading).then_some((reading, proposal.kind, score))
 }
 
 /// Whether a reading explains the ink clearly better than another one of the same kind.

@@ -91,7 +91,7 @@ fn corners(even: &[DVec2]) -> (Vec<DVec2>, Vec<DVec2>) {
         let is_peak = |&i: &usize| {
             let own = sign * turns[i];
             own > least
-                && (1..=SPAN).all(|d| own > sign * turns[(i + d) % n] || own == sign * turns[(i + d) % n])
+                && (1..=SPAN).all(|d| own >= sign * turns[(i + d) % n])
                 && (1..=SPAN).all(|d| own > sign * turns[(i + n - d) % n])
         };
         (0..n).filter(is_peak).map(|i| even[i]).collect::<Vec<_>>()

@@ -21,6 +21,8 @@ struct BloomLimits {
     gap: f64,
     /// Petals reach out alike: the shortest more than this share of the longest.
     reach: f64,
+    /// The disc is at most so many times as large as the largest petal.
+    disc: f64,
     /// What is neither petal, disc nor leaf covers less than this share of all that is enclosed.
     other: f64,
     /// See [`Proposal::likelihood`], round a disc and without one.
@@ -33,6 +35,7 @@ const BLOOM: BloomLimits = BloomLimits {
     meet: 0.3,
     gap: 2.0,
     reach: 0.6,
+    disc: 3.0,
     other: 0.1,
     likelihood: [ROUND_A_DISC, 200.0],
 };
@@ -68,7 +71,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     if petals.len() < BLOOM.petals
         || least(&mut areas()) < BLOOM.alike * most(&mut areas())
         || least(&mut reaches()) < BLOOM.reach * most(&mut reaches())
-        || disc.is_some_and(|k| faces[k].shape.area > 3.0 * most(&mut areas()))
+        || disc.is_some_and(|k| faces[k].shape.area > BLOOM.disc * most(&mut areas()))
         || widest_gap(petals.iter().map(|&k| faces[k].shape.middle - centre)) > BLOOM.gap
     {
         return None;

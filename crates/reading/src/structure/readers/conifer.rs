@@ -33,6 +33,12 @@ struct ConiferLimits {
     levels: usize,
     /// A triangle fills this much of its box; more than that is a dome.
     full: f64,
+    /// Its trunk is in the lowest part of it, this near to its middle, and reaches below it by more than that, ink units.
+    trunk_low: f64,
+    trunk_middle: f64,
+    trunk_below: f64,
+    /// No line outside is longer than this.
+    longest_line: f64,
     /// See [`Proposal::likelihood`].
     likelihood: f64,
 }
@@ -49,6 +55,10 @@ const CONIFER: ConiferLimits = ConiferLimits {
     tiers: 0.45,
     levels: 16,
     full: 0.68,
+    trunk_low: 0.3,
+    trunk_middle: 0.3,
+    trunk_below: 0.02,
+    longest_line: 0.6,
     likelihood: 5000.0,
 };
 
@@ -72,16 +82,18 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let (low, high) = bounds(&face.outline)?;
     // The trunk: lines or a face below the crown, in its middle.
     let below = |p: DVec2| {
-        p.y < low.y + 0.3 * (high.y - low.y) && (p.x - low.midpoint(high).x).abs() < 0.3 * (high.x - low.x)
+        p.y < low.y + CONIFER.trunk_low * (high.y - low.y)
+            && (p.x - low.midpoint(high).x).abs() < CONIFER.trunk_middle * (high.x - low.x)
     };
-    let stands =
-        |points: &[DVec2]| bounds(points).is_some_and(|(a, b)| a.y < low.y - 0.02 && below(a.midpoint(b)));
+    let stands = |points: &[DVec2]| {
+        bounds(points).is_some_and(|(a, b)| a.y < low.y - CONIFER.trunk_below && below(a.midpoint(b)))
+    };
     let trunk_face = (0..scene.faces.len()).find(|&k| !is_tier(k) && stands(&scene.faces[k].outline));
     let lines: Vec<_> = scene.lines.iter().filter(|l| stands(&l.points)).collect();
     if trunk_face.is_none() && lines.is_empty() {
         return None;
     }
-    if scene.lines.iter().any(|l| polyline_length(&l.points) > 0.6 * (high.y - low.y)) {
+    if scene.lines.iter().any(|l| polyline_length(&l.points) > CONIFER.longest_line * (high.y - low.y)) {
         return None;
     }
     let mut parts = vec![Part::of_face(&face, StrokeClass::Crown, None)];

@@ -39,7 +39,11 @@ struct CupLimits {
     most: f64,
     /// The halves of the head left and right of its base differ by less than this share of it.
     lopsided: f64,
-    /// One face is at least so convex, with at most so many notches.
+    /// Faces hang together that come nearer than this share of what touches.
+    adjoining: f64,
+    /// One face has no corner in its lower half but within this of its base,
+    low_corner: f64,
+    /// and is at least so convex, with at most so many notches.
     whole_convex: f64,
     most_notches: usize,
     /// The head is at least so high and so wide, shares of the drawing's diagonal.
@@ -65,6 +69,8 @@ const CUP: CupLimits = CupLimits {
     seen: 0.4,
     most: 0.6,
     lopsided: 0.35,
+    adjoining: 0.3,
+    low_corner: 0.3,
     whole_convex: 0.78,
     most_notches: 3,
     size: 0.2,
@@ -92,7 +98,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
                 scene.faces[m]
                     .outline
                     .iter()
-                    .any(|p| nearest_on_ring(&face.outline, *p).1 < 0.3 * LIMITS.touch)
+                    .any(|p| nearest_on_ring(&face.outline, *p).1 < CUP.adjoining * LIMITS.touch)
             })
         };
         let Some(next) = (0..scene.faces.len()).find(|k| !members.contains(k) && near(*k)) else { break };
@@ -223,8 +229,11 @@ fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> 
     let tips = head.shape.corners.iter().filter(|p| is_high(p, CUP.tips)).count();
     let notches: Vec<DVec2> =
         head.shape.notches.iter().filter(|p| is_high(p, CUP.notches)).copied().collect();
-    let low_corners =
-        head.shape.corners.iter().filter(|p| !is_high(p, CUP.tips) && p.distance(base) > 0.3 * height);
+    let low_corners = head
+        .shape
+        .corners
+        .iter()
+        .filter(|p| !is_high(p, CUP.tips) && p.distance(base) > CUP.low_corner * height);
     if tips + 1 < *CUP.petals.start()
         || notches.is_empty()
         || notches.len() < head.shape.notches.len()

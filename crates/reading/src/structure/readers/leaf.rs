@@ -54,10 +54,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let ribs: Vec<(&Run, DVec2)> =
         scene.marks_of(row).filter_map(|mark| Some((mark, rib_base(face, mark)?))).collect();
     let rib = ribs.iter().max_by(|a, b| reach(a.0).total_cmp(&reach(b.0)));
-    let root = match (petiole, rib) {
-        (Some(&(_, root)), _) | (None, Some(&(_, root))) => root,
-        (None, None) => return None,
-    };
+    let &(_, root) = petiole.or(rib)?;
     if !is_leaf_from(face, root) || petioles.iter().any(|(_, at)| at.distance(root) > LEAF.rib_base * length)
     {
         return None;

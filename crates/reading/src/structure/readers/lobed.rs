@@ -10,6 +10,8 @@ use crate::blade::nearest_on_ring;
 struct LobedLimits {
     /// It covers more than this share of all that is enclosed.
     whole: f64,
+    /// A tip lies farther from the base than this share of its length.
+    out: f64,
     /// How many tips, and how many notches between them at least.
     tips: usize,
     notches: usize,
@@ -27,6 +29,7 @@ struct LobedLimits {
 
 const LOBED: LobedLimits = LobedLimits {
     whole: 0.9,
+    out: 0.2,
     tips: 5,
     notches: 4,
     convexity: 0.72,
@@ -50,7 +53,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let (root, _) = nearest.filter(|(_, off)| *off < LOBED.attached)?;
     let length = shape.length();
     let tips: Vec<f64> =
-        shape.corners.iter().map(|p| p.distance(root)).filter(|d| *d > 0.2 * length).collect();
+        shape.corners.iter().map(|p| p.distance(root)).filter(|d| *d > LOBED.out * length).collect();
     let notches: Vec<f64> = shape.notches.iter().map(|p| p.distance(root)).collect();
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
     if tips.len() < LOBED.tips
