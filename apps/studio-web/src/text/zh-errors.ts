@@ -354,7 +354,8 @@ export const zhWarnings: Record<string, string> = {
   'filled-outline': '{count} 个填充的形状是变宽画笔的笔画：取了它们的中心线，宽度作为压力',
   'off-sheet': '{count} 个形状在画纸之外，已略去',
   'paper-left-out': '{count} 条线是纸面（页面、边框、卡片、天空、地面、格线），已略去',
-  'traced-ink': '{count} 个填充的形状是描摹的墨迹：取了它们的中心线',
+  'traced-ink':
+    '{count} 个填充的形状是描摹的墨迹：取了它们的中心线；版画和描摹的扫描图大多会被误读：若植物不对，请用笔画出它的轮廓',
   'drawn-twice': '{count} 条线画了两遍：各算一笔',
   'pieces-joined': '{count} 段端点相接的线连成了较长的笔画',
   'colour-under-line': '{count} 个色块在线条之下：线条取了它们的颜色',

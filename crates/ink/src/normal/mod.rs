@@ -158,7 +158,10 @@ impl Change {
                 "{count} filled shapes are strokes of a variable-width pen: their centre lines were taken, \
                  and their widths as pressure"
             ),
-            Self::TracedInk => format!("{count} filled shapes are traced ink: centre lines were taken"),
+            Self::TracedInk => format!(
+                "{count} filled shapes are traced ink: centre lines were taken; engravings and traced scans are \
+                 mostly misread: if the plant is wrong, draw its outlines with a pen"
+            ),
             Self::DrawnTwice => format!("{count} lines were drawn twice: each is one stroke"),
             Self::Joined => format!("{count} pieces whose ends meet were joined to longer strokes"),
             Self::Colour => format!("{count} coloured areas lie under lines: the lines have their colour"),
