@@ -16,7 +16,9 @@ def inside(folder: "str | os.PathLike[str]", name: Any) -> str:
     as well: who opens it says so.
     """
     if not isinstance(name, str) or name in ("", ".", "..") or "/" in name or "\\" in name or "\0" in name:
-        raise ValueError(f"{os.fspath(folder)}: {name!r} is not the name of a file beside its manifest; download the data set again")
+        raise ValueError(
+            f"{os.fspath(folder)}: {name!r} is not the name of a file beside its manifest; download the data set again"
+        )
     path = os.path.join(folder, name)
     real = os.path.realpath(path)
     if os.path.dirname(real) != os.path.realpath(folder):

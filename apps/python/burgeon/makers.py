@@ -296,7 +296,8 @@ def scan(
     ``unit`` (m, cm, mm) with ``up`` (z, y); a ``Cloud`` of ours has ``up="y"``. ``leaves``: what ``grow`` takes, a species
     whose leaves it gets (default: bare); ``at``: where the stem stands, in the two coordinates that are not up (default: the
     largest thing on the ground); ``cell``: edge of the cubes that the cloud is seen in, metres, 0.001 to 1; ``gap``: widest
-    gap that is bridged, metres, 0 to 5; ``trust_paths``: of ``leaves``, as in ``grow``. ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
+    gap that is bridged, metres, 0 to 5; ``trust_paths``: of ``leaves``, as in ``grow``.
+    ``plant.found`` tells what became of the points, ``plant.place`` where it stood.
     """
     if at is not None:
         if isinstance(at, (str, bytes)) or not hasattr(at, "__len__") or len(at) != 2:
