@@ -150,7 +150,7 @@ def test_the_core_itself_refuses_what_is_none(small, data):
     """The private module, too: whatever it is called with, it ends in an error of Python."""
     from burgeon import _burgeon
 
-    raws = (small._raw, small._raw.model(), _burgeon.RawLaw.fit("x", [("x", [0.0, 1.0, 2.0, 4.0], [0.1, 0.2, 0.3, 0.35])]))
+    raws = (small._raw, small._raw.model(), _burgeon.RawLaw.fit("x", [("x", [0.0, 1.0, 2.0, 4.0], [0.1, 0.2, 0.3, 0.35])], 1.0))
     functions = [(n, f) for n, f in vars(_burgeon).items() if callable(f) and not inspect.isclass(f) and n != "set_threads"]
     _name, call = data.draw(st.sampled_from(functions + [(n, getattr(raw, n)) for raw in raws for n, _ in methods(raw)]))
     count = len(inspect.signature(call).parameters)

@@ -245,7 +245,7 @@ def test_what_a_spec_names_lies_below_it_or_is_trusted(root, shown, tmp_path):
         assert refused.value.code == "file-refused"
         assert bg.grow(spec, **SMALL, trust_paths=True).digest == beside
     (tmp_path / "box.obj").write_text("v 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n")
-    spec.write_text("[[obstacles]]\nshape = 'mesh'\nfile = '../box.obj'\n" + shown("hazel"))
+    spec.write_text(shown("hazel") + "\n[[obstacles]]\nshape = 'mesh'\nfile = '../box.obj'\n")
     with pytest.raises(bg.SpecError, match="box.obj.*not below its folder"):
         bg.grow(spec, **SMALL)
     assert bg.grow(spec, **SMALL, trust_paths=True).digest
