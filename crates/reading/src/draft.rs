@@ -546,14 +546,7 @@ impl<'a> Draft<'a> {
                 color: r.color,
             })
             .collect();
-        let skipped = self.ink.skipped.iter().map(|&index| StrokeReading {
-            index,
-            class: StrokeClass::Other,
-            organ: OrganWord::Ignored,
-            confidence: 0.0,
-            source: Source::Classifier,
-        });
-        strokes.extend(skipped);
+        strokes.extend(self.ink.skipped.iter().copied().map(StrokeReading::left_out));
         base::sort_by_key(&mut strokes, |s| s.index);
         Reading {
             strokes,

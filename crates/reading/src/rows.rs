@@ -82,6 +82,19 @@ pub struct StrokeReading {
     pub source: Source,
 }
 
+impl StrokeReading {
+    /// A stroke that nothing was made of.
+    pub(crate) const fn left_out(index: u32) -> Self {
+        Self {
+            index,
+            class: StrokeClass::Other,
+            organ: OrganWord::Ignored,
+            confidence: 0.0,
+            source: Source::Classifier,
+        }
+    }
+}
+
 /// Where something is borne: a place along an axis of the reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attachment {

@@ -98,13 +98,7 @@ impl<'a> Collected<'a> {
                 plant.strokes.insert(at, own.index);
             }
         }
-        all.strokes.extend(ink.skipped.iter().map(|&index| StrokeReading {
-            index,
-            class: StrokeClass::Other,
-            organ: OrganWord::Ignored,
-            confidence: 0.0,
-            source: Source::Classifier,
-        }));
+        all.strokes.extend(ink.skipped.iter().copied().map(StrokeReading::left_out));
         base::sort_by_key(&mut all.strokes, |s| s.index);
         self.all
     }

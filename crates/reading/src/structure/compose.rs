@@ -10,7 +10,7 @@ use super::sheet::Sheet;
 use super::tubes::Tube;
 use crate::confidence::CONFIDENCE_LIMITS;
 use crate::several::Back;
-use crate::{OrganWord, Reading, StrokeReading};
+use crate::{Reading, StrokeReading};
 
 /// Ink that was cut anew from the strokes of a drawing, and what is said of it.
 pub(crate) struct Composed {
@@ -95,18 +95,11 @@ impl Composed {
         };
         let read = |row: usize, index: u32| {
             let said = part_of(row).and_then(|part| parts.iter().find(|s| s.index as usize == part));
-            let left_out = StrokeReading {
-                index,
-                class: StrokeClass::Other,
-                organ: OrganWord::Ignored,
-                confidence: 0.0,
-                source: Source::Classifier,
-            };
-            said.map_or(left_out, |said| StrokeReading { index, ..*said })
+            said.map_or(StrokeReading::left_out(index), |said| StrokeReading { index, ..*said })
         };
         let mut rows: Vec<StrokeReading> =
             ink.strokes.iter().enumerate().map(|(row, s)| read(row, s.index)).collect();
-        rows.extend(ink.skipped.iter().map(|&index| read(usize::MAX, index)));
+        rows.extend(ink.skipped.iter().copied().map(StrokeReading::left_out));
         base::sort_by_key(&mut rows, |s| s.index);
         rows
     }
