@@ -47,6 +47,15 @@ impl Cells {
         (v.max(0.0) as usize).min(n - 1)
     }
 
+    /// Goes along a line by half a cell at most, however far apart its points are.
+    pub(crate) fn walk(&self, line: &[DVec2], mut visit: impl FnMut(DVec2)) {
+        for pair in line.windows(2) {
+            let steps = whole((pair[0].distance(pair[1]) / (0.5 * self.size)).ceil());
+            let steps = steps.clamp(1, 4 * (self.wide + self.tall));
+            (0..=steps).for_each(|i| visit(pair[0].lerp(pair[1], i as f64 / steps as f64)));
+        }
+    }
+
     /// Steps from a cell to all cells within a ball, and those beside it.
     pub(crate) fn around(&self, at: usize, ball: &[(isize, isize)]) -> impl Iterator<Item = usize> {
         let (x, y, wide, tall) = (at % self.wide, at / self.wide, self.wide, self.tall);
@@ -106,10 +115,8 @@ pub(crate) fn ball(reach: f64) -> Vec<(isize, isize)> {
 /// Cells through which lines run.
 pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
     let mut drawn = vec![false; cells.count()];
-    for pair in lines.iter().flat_map(|l| l.windows(2)) {
-        let steps = whole((pair[0].distance(pair[1]) / (0.5 * cells.size)).ceil())
-            .clamp(1, 4 * (cells.wide + cells.tall));
-        (0..=steps).for_each(|i| drawn[cells.place(pair[0].lerp(pair[1], i as f64 / steps as f64))] = true);
+    for line in lines {
+        cells.walk(line, |at| drawn[cells.place(at)] = true);
     }
     drawn
 }

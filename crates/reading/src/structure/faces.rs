@@ -39,6 +39,8 @@ struct FaceLimits {
     seam: isize,
     /// Faces of fewer cells are ink that ran together.
     dirt: usize,
+    /// Corners of an outline lie within this of its cells, in cells.
+    calm: f64,
     /// Runs of a line shorter than this are of the run before.
     run: f64,
     /// What lies on either side of a line is looked for at these distances, in cells.
@@ -66,6 +68,7 @@ const LIMITS: FaceLimits = FaceLimits {
     clear: 4.0,
     seam: 3,
     dirt: 24,
+    calm: 0.3,
     run: 0.02,
     sides: [1.6, 2.6, 3.6],
     vein: 0.2,
@@ -117,7 +120,7 @@ pub(crate) struct Run {
 pub(crate) struct Faces {
     pub(crate) faces: Vec<Face>,
     pub(crate) runs: Vec<Run>,
-    picture: Picture,
+    pub(crate) picture: Picture,
 }
 
 /// One stroke's way through a cell.
@@ -129,7 +132,7 @@ struct Mark {
 
 /// The picture: what each cell belongs to, and where a line runs through it.
 #[derive(Clone, Debug)]
-struct Picture {
+pub(crate) struct Picture {
     cells: Cells,
     label: Vec<u32>,
     marks: Vec<Option<Mark>>,
@@ -172,32 +175,27 @@ impl Faces {
             (0..ink.strokes.len()).flat_map(|k| picture.runs(k, &ink.strokes[k].points, &rows)).collect();
         Some(Self { faces: kept, runs, picture })
     }
-
-    /// Several faces as one: what their outlines enclose together. `None` where they do not hang together by their ink.
-    pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
-        let labels: Vec<u32> = faces.iter().flat_map(|f| f.labels.iter().copied()).collect();
-        let whole = self.picture.face(&labels)?;
-        let parts: f64 = faces.iter().map(|f| f.shape.area).sum();
-        (whole.shape.area > WHOLE * parts).then_some(whole)
-    }
 }
 
 /// The outline around several faces has at least this share of their area, or it is that of one of them.
 const WHOLE: f64 = 0.9;
 
 impl Picture {
+    /// Several faces as one: what their outlines enclose together. `None` where they do not hang together by their ink.
+    pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
+        let labels: Vec<u32> = faces.iter().flat_map(|f| f.labels.iter().copied()).collect();
+        let whole = self.face(&labels)?;
+        let parts: f64 = faces.iter().map(|f| f.shape.area).sum();
+        (whole.shape.area > WHOLE * parts).then_some(whole)
+    }
+
     fn draw(&mut self, line: &[DVec2], stroke: usize) {
-        for pair in line.windows(2) {
-            let steps = (pair[0].distance(pair[1]) / (0.5 * self.cells.size)).ceil().clamp(1.0, 4096.0);
-            let mut step = 0.0;
-            while step <= steps {
-                let at = pair[0].lerp(pair[1], step / steps);
-                let cell = self.cells.place(at);
-                self.label[cell] = INK;
-                self.marks[cell].get_or_insert(Mark { stroke, at });
-                step += 1.0;
-            }
-        }
+        let Self { cells, label, marks } = self;
+        cells.walk(line, |at| {
+            let cell = cells.place(at);
+            label[cell] = INK;
+            marks[cell].get_or_insert(Mark { stroke, at });
+        });
     }
 
     /// Where a line that stops short would have gone on to: the first ink ahead of its end, if it is near.
@@ -268,7 +266,7 @@ impl Picture {
             Some(mark.at)
         };
         let line: Vec<DVec2> = rim.into_iter().filter_map(along).collect();
-        let outline = simple_outline(&simplify(&line, 0.3 * self.cells.size))?;
+        let outline = simple_outline(&simplify(&line, LIMITS.calm * self.cells.size))?;
         let shape = Shape::new(&outline)?;
         let mut strokes: Vec<(usize, usize)> = owners.iter().map(|(k, n)| (*k, *n)).collect();
         base::sort_by_key(&mut strokes, |(k, n)| (core::cmp::Reverse(*n), *k));

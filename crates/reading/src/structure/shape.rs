@@ -42,18 +42,19 @@ impl Shape {
         }
         let mut closed = outline.to_vec();
         closed.extend(outline.first());
-        let step = perimeter(outline) / ROUND as f64;
+        let perimeter = perimeter(outline);
+        let step = perimeter / ROUND as f64;
         let mut even = resample(&closed, step);
+        let slenderness = slenderness(&even);
         even.pop();
-        let even = smooth_gaussian_closed(&even, 1, step * step);
-        let (corners, notches) = corners(&even);
+        let (corners, notches) = corners(&smooth_gaussian_closed(&even, 1, step * step));
         let (a, b) = geom::farthest_pair(outline)?;
         Some(Self {
             area,
-            perimeter: perimeter(outline),
+            perimeter,
             middle: centroid(outline),
             convexity: area / signed_area(&hull).max(f64::MIN_POSITIVE),
-            slenderness: slenderness(outline_points(&closed, step).as_slice()),
+            slenderness,
             corners,
             notches,
             ends: [outline[a], outline[b]],
@@ -70,10 +71,6 @@ impl Shape {
         let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(root).total_cmp(&b.distance_squared(root));
         self.corners.iter().max_by(far).copied()
     }
-}
-
-fn outline_points(closed: &[DVec2], step: f64) -> Vec<DVec2> {
-    resample(closed, step)
 }
 
 /// Corners and notches of an outline of even steps: the sharpest place of each.

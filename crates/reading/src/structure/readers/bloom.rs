@@ -4,8 +4,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::sprig::{axes, root_of};
-use super::{LIMITS, Part, Proposal, Scene, clover, is_leaf_from, widest_gap};
+use super::{LIMITS, Part, Proposal, Scene, widest_gap};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
@@ -44,9 +43,6 @@ const BLOOM: BloomLimits = BloomLimits {
 pub(super) const ROUND_A_DISC: f64 = 4000.0;
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    if clover::propose(scene).is_some() {
-        return None;
-    }
     let discs = (0..scene.faces.len()).map(Some).chain([None]);
     discs.filter_map(|disc| around(scene, disc)).max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))
 }
@@ -76,19 +72,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     {
         return None;
     }
-    let lines = axes(scene);
-    let total: f64 = faces.iter().map(|f| f.shape.area).sum();
-    let mut parts: Vec<Part> = Vec::new();
-    let mut other = 0.0;
-    for k in rest().filter(|k| !petals.contains(k)) {
-        match root_of(scene, &faces[k], &lines).filter(|root| is_leaf_from(&faces[k], *root)) {
-            Some(root) => parts.push(Part::of_face(&faces[k], StrokeClass::Blade, Some(root))),
-            None => other += faces[k].shape.area,
-        }
-    }
-    if other > BLOOM.other * total {
-        return None;
-    }
+    let mut parts = scene.leaves_among(rest().filter(|k| !petals.contains(k)), BLOOM.other)?;
     let first = parts.len();
     let to_centre = |f: &Face| Some(nearest_on_ring(&f.outline, centre).0);
     parts.extend(petals.iter().map(|&k| Part::of_face(&faces[k], StrokeClass::Blade, to_centre(&faces[k]))));
@@ -96,15 +80,11 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     parts.extend(disc.map(|k| Part::of_face(&faces[k], StrokeClass::Disc, None)));
     let outer = most(&mut reaches());
     parts.extend(
-        lines
-            .into_iter()
-            .filter(|(_, line)| line.iter().any(|p| p.distance(centre) > outer + LIMITS.touch))
-            .map(|(stroke, points)| Part {
-                points,
-                class: StrokeClass::Axis,
-                root: None,
-                strokes: vec![stroke],
-            }),
+        scene
+            .axes
+            .iter()
+            .filter(|axis| axis.points.iter().any(|p| p.distance(centre) > outer + LIMITS.touch))
+            .map(Part::of_axis),
     );
     Some(Proposal {
         kind: Kind::Flower,

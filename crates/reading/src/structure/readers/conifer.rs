@@ -5,7 +5,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{Part, Proposal, Scene, lobed};
+use super::{Part, Proposal, Scene};
 use crate::Kind;
 use crate::contour::runs_at;
 
@@ -63,10 +63,6 @@ const CONIFER: ConiferLimits = ConiferLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    // Lobes that spread from the foot are fingers, not tiers.
-    if lobed::propose(scene).is_some() {
-        return None;
-    }
     let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
     let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
     // One outline, or tiers one over the other.

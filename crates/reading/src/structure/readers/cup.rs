@@ -5,8 +5,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::sprig::{axes, root_of};
-use super::{LIMITS, Part, Proposal, Scene, bloom, clover, is_leaf_from};
+use super::{Axis, LIMITS, Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
@@ -79,13 +78,6 @@ const CUP: CupLimits = CupLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    // Petals all round a disc are seen from the front.
-    let from_front = |p: Proposal| p.likelihood >= bloom::ROUND_A_DISC;
-    if clover::propose(scene).is_some() || bloom::propose(scene).is_some_and(from_front) {
-        return None;
-    }
-    let lines = axes(scene);
-    let is_leaf = |f: &Face| root_of(scene, f, &lines).filter(|root| is_leaf_from(f, *root));
     // The head: the highest face, and all that hang together with it.
     let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
     let first =
@@ -119,17 +111,18 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         if geom::contains(&head.outline, p) { 0.0 } else { nearest_on_ring(&head.outline, p).1 }
     };
     let leads_out = |line: &[DVec2]| line.iter().map(|&p| off_head(p)).fold(0.0, f64::max) > CUP.leads_out;
-    let out: Vec<&Vec<DVec2>> = lines.iter().map(|(_, l)| l).filter(|l| leads_out(l)).collect();
+    let out: Vec<&Vec<DVec2>> = scene.axes.iter().map(|a| &a.points).filter(|l| leads_out(l)).collect();
     let from_head =
         out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < LIMITS.touch).count();
     if from_head > 1 || out.iter().any(|l| l.iter().any(|p| p.y > low.y + CUP.tips * size.y)) {
         return None;
     }
-    let stem = lines.iter().flat_map(|(_, l)| [l[0], l[l.len() - 1]]).find(|&p| {
-        at_base(p) && nearest_on_ring(&head.outline, p).1 < LIMITS.touch
-            || lines.iter().any(|(_, l)| l.iter().any(|q| q.y < low.y - LIMITS.touch) && l.contains(&p))
-                && at_base(p)
-    });
+    let goes_below = |axis: &Axis| axis.points.iter().any(|q| q.y < low.y - LIMITS.touch);
+    let is_stem_end = |p: DVec2| {
+        nearest_on_ring(&head.outline, p).1 < LIMITS.touch
+            || scene.axes.iter().any(|a| goes_below(a) && a.points.contains(&p))
+    };
+    let stem = scene.axes.iter().flat_map(Axis::ends).find(|&p| at_base(p) && is_stem_end(p));
     let base = match stem {
         Some(p) => nearest_on_ring(&head.outline, p).0,
         None => {
@@ -158,28 +151,12 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         .map(|(points, strokes)| Part { points, class: StrokeClass::Blade, root: Some(base), strokes })
         .collect();
     let heads = vec![(0..parts.len()).collect()];
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
-    let beside = (0..scene.faces.len()).filter(|k| !members.contains(k)).map(|k| scene.faces[k].shape.area);
-    if beside.fold(0.0, f64::max) > head.shape.area {
+    let beside = || (0..scene.faces.len()).filter(|k| !members.contains(k));
+    if beside().map(|k| scene.faces[k].shape.area).fold(0.0, f64::max) > head.shape.area {
         return None;
     }
-    let mut other = 0.0;
-    for k in (0..scene.faces.len()).filter(|k| !members.contains(k)) {
-        let face = &scene.faces[k];
-        match is_leaf(face) {
-            Some(root) => parts.push(Part::of_face(face, StrokeClass::Blade, Some(root))),
-            None => other += face.shape.area,
-        }
-    }
-    if other > CUP.other * total {
-        return None;
-    }
-    parts.extend(lines.into_iter().map(|(stroke, points)| Part {
-        points,
-        class: StrokeClass::Axis,
-        root: None,
-        strokes: vec![stroke],
-    }));
+    parts.extend(scene.leaves_among(beside(), CUP.other)?);
+    parts.extend(scene.axes.iter().map(Part::of_axis));
     let likelihood = CUP.likelihood[usize::from(in_front < CUP.in_front)];
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood })
 }

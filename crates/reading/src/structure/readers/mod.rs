@@ -13,12 +13,11 @@ mod sprig;
 #[cfg(test)]
 mod tests;
 
-use base::LiteMap;
-use geom::{bounds, polyline_length};
+use geom::{bounds, distance_to_polyline, polyline_length};
 use glam::DVec2;
 use ink::{Ink, StrokeClass, StrokeMode};
 
-use super::faces::{Face, Faces, Place, Run};
+use super::faces::{Face, Faces, Picture, Place, Run};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 use crate::thresholds::STRAIGHT;
@@ -70,17 +69,32 @@ pub(crate) const LIMITS: ReaderLimits = ReaderLimits {
     leaf_slender: [0.12, 0.86],
 };
 
+/// A line that may be a stem.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    pub(crate) stroke: usize,
+    pub(crate) points: Vec<DVec2>,
+}
+
+impl Axis {
+    /// Where it begins and where it ends.
+    pub(crate) fn ends(&self) -> [DVec2; 2] {
+        [self.points[0], self.points[self.points.len() - 1]]
+    }
+}
+
 /// What the readers look at.
 pub(crate) struct Scene {
-    all: Faces,
+    picture: Picture,
     /// Faces that are no specks.
     pub(crate) faces: Vec<Face>,
     /// Lines outside all faces.
     pub(crate) lines: Vec<Run>,
     /// Lines within a face: its row among `faces`.
     pub(crate) marks: Vec<(usize, Run)>,
-    /// Strokes that lead from one end to the other without a detour.
-    pub(crate) straight: LiteMap<usize, Vec<DVec2>>,
+    /// Lines that may be stems: strokes that lead from one end to the other without a detour and run outside of the faces for a
+    /// part of their way, whole; of other strokes what runs outside.
+    pub(crate) axes: Vec<Axis>,
     pub(crate) low: DVec2,
     pub(crate) high: DVec2,
 }
@@ -96,8 +110,7 @@ impl Scene {
         {
             return None;
         }
-        let all = Faces::new(ink)?;
-        let (faces, runs) = (all.faces.clone(), all.runs.clone());
+        let Faces { faces, runs, picture } = Faces::new(ink)?;
         let area: f64 = faces.iter().map(|f| f.shape.area).sum();
         let mut rows = Vec::with_capacity(faces.len());
         let mut kept = Vec::new();
@@ -110,33 +123,16 @@ impl Scene {
         }
         let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
         let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let mut scene = Self {
-            all,
-            faces: kept,
-            lines: Vec::new(),
-            marks: Vec::new(),
-            straight: LiteMap::new(),
-            low,
-            high,
-        };
-        for (k, stroke) in ink.strokes.iter().enumerate() {
-            let (a, b) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
-            if a.distance(b) > STRAIGHT * stroke.length {
-                scene.straight.insert(k, stroke.points.clone());
-            }
-        }
+        let (mut lines, mut marks) = (Vec::new(), Vec::new());
         for run in runs {
             match run.place {
-                Place::Outside => scene.lines.push(run),
-                Place::Within(face) => {
-                    if let Some(face) = rows[face] {
-                        scene.marks.push((face, run));
-                    }
-                }
+                Place::Outside => lines.push(run),
+                Place::Within(face) => marks.extend(rows[face].map(|face| (face, run))),
                 Place::Between => {}
             }
         }
-        (!scene.faces.is_empty()).then_some(scene)
+        let axes = axes(ink, &lines);
+        (!kept.is_empty()).then_some(Self { picture, faces: kept, lines, marks, axes, low, high })
     }
 
     /// The end of a line that touches a face, if one does.
@@ -148,7 +144,50 @@ impl Scene {
 
     /// Several faces as one, if they hang together.
     pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
-        self.all.union(faces)
+        self.picture.union(faces)
+    }
+
+    /// Where a leaf is attached: its point nearest to a stem's end, or to a stem that passes it, or to the end of its vein.
+    pub(crate) fn root_of(&self, face: &Face) -> Option<DVec2> {
+        let nearest = |p: DVec2| nearest_on_ring(&face.outline, p);
+        let end = self
+            .axes
+            .iter()
+            .flat_map(Axis::ends)
+            .map(nearest)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|(_, d)| *d < LIMITS.touch);
+        let along = || {
+            let off = |p: DVec2| {
+                let lines = self.axes.iter().filter_map(|a| distance_to_polyline(&a.points, p));
+                lines.fold(f64::INFINITY, f64::min)
+            };
+            let nearest = face.outline.iter().map(|&p| (p, off(p))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+            (nearest.1 < LIMITS.touch).then_some(nearest)
+        };
+        let marked = || {
+            let row = self.faces.iter().position(|f| core::ptr::eq(f, face))?;
+            let ends = self.marks_of(row).flat_map(|m| [m.points[0], m.points[m.points.len() - 1]]);
+            ends.map(nearest).min_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        end.or_else(along).or_else(marked).map(|(p, _)| p)
+    }
+
+    /// Faces that are leaves on stems, as parts; `None` where others among them cover more than a share of all that is enclosed.
+    pub(crate) fn leaves_among(
+        &self,
+        rows: impl Iterator<Item = usize>,
+        most_other: f64,
+    ) -> Option<Vec<Part>> {
+        let (mut leaves, mut other) = (Vec::new(), 0.0);
+        for face in rows.map(|k| &self.faces[k]) {
+            match self.root_of(face).filter(|root| is_leaf_from(face, *root)) {
+                Some(root) => leaves.push(Part::of_face(face, StrokeClass::Blade, Some(root))),
+                None => other += face.shape.area,
+            }
+        }
+        let total: f64 = self.faces.iter().map(|f| f.shape.area).sum();
+        (other <= most_other * total).then_some(leaves)
     }
 
     /// Lines within a face.
@@ -157,7 +196,37 @@ impl Scene {
     }
 }
 
+/// See [`Scene::axes`].
+fn axes(ink: &Ink, lines: &[Run]) -> Vec<Axis> {
+    let is_straight = |stroke: usize| {
+        let s = &ink.strokes[stroke];
+        s.points[0].distance(s.points[s.points.len() - 1]) > STRAIGHT * s.length
+    };
+    let mut found: Vec<Axis> = Vec::new();
+    for run in lines {
+        let stroke = run.stroke;
+        if is_straight(stroke) {
+            if !found.iter().any(|axis| axis.stroke == stroke) {
+                found.push(Axis { stroke, points: ink.strokes[stroke].points.clone() });
+            }
+            continue;
+        }
+        match found.last_mut() {
+            Some(axis) if axis.stroke == stroke && axis.ends()[1].distance(run.points[0]) < LIMITS.touch => {
+                axis.points.extend(&run.points);
+            }
+            _ => found.push(Axis { stroke, points: run.points.clone() }),
+        }
+    }
+    found
+}
+
 impl Part {
+    pub(crate) fn of_axis(axis: &Axis) -> Self {
+        let strokes = vec![axis.stroke];
+        Self { points: axis.points.clone(), class: StrokeClass::Axis, root: None, strokes }
+    }
+
     pub(crate) fn of_run(run: &Run, class: StrokeClass) -> Self {
         Self { points: run.points.clone(), class, root: None, strokes: vec![run.stroke] }
     }
@@ -181,19 +250,20 @@ pub(crate) fn is_leaf_from(face: &Face, root: DVec2) -> bool {
 /// The tip of a leaf lies farther from its root than this share of the farthest point.
 const TIP: f64 = 0.88;
 
-/// What the readers propose for a drawing, the surest first.
+/// What the readers propose for a drawing, the surest first. What one sees may be part of what another looks for: the one that
+/// needs more rules the other out.
 pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     let Some(scene) = Scene::new(ink) else { return Vec::new() };
-    let readers = [
-        leaf::propose,
-        clover::propose,
-        lobed::propose,
-        bloom::propose,
-        cup::propose,
-        sprig::propose,
-        conifer::propose,
-    ];
-    let mut found: Vec<Proposal> = readers.iter().filter_map(|reader| reader(&scene)).collect();
+    let clover = clover::propose(&scene);
+    let lobed = lobed::propose(&scene);
+    let bloom = if clover.is_none() { bloom::propose(&scene) } else { None };
+    // Petals all round a disc are seen from the front.
+    let is_from_front = bloom.as_ref().is_some_and(|b| b.likelihood >= bloom::ROUND_A_DISC);
+    let cup = if clover.is_none() && !is_from_front { cup::propose(&scene) } else { None };
+    // Lobes that spread from the foot are fingers, not tiers.
+    let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
+    let all = [leaf::propose(&scene), clover, lobed, bloom, cup, sprig::propose(&scene), conifer];
+    let mut found: Vec<Proposal> = all.into_iter().flatten().collect();
     base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));
     found
 }
