@@ -57,11 +57,15 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         let right = own.iter().filter(|j| j.is_right).count();
         say(&format!("by structure, of {name} strokes: {right} of {} right", own.len()));
     }
+    let arranged: Vec<&Judged> = judged.iter().filter(|j| j.evidence.by_arrangement).collect();
+    let right = arranged.iter().filter(|j| j.is_right).count();
+    say(&format!("by arrangement: {right} of {} right", arranged.len()));
     if at_the_end {
         tell(&judged, &|j| j.score);
         return Ok(());
     }
-    judged.retain(|j| !j.evidence.by_structure);
+    // Both have a least confidence of their own.
+    judged.retain(|j| !j.evidence.by_structure && !j.evidence.by_arrangement);
     let told = |score: &dyn Fn(&Judged) -> f64| tell(&judged, score);
     say("the share of the kind:");
     told(&|j| j.evidence.share);
