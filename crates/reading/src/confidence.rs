@@ -21,7 +21,8 @@ pub struct ConfidenceLimits {
     pub by_structure_least: f64,
     /// The same of drawings of as many strokes or more.
     pub by_structure_of_many: f64,
-    /// The least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see.
+    /// The least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see: of 57 by people
+    /// whose kind is known 46 are right (`cargo xtask train-confidence`, and `--end`).
     pub by_arrangement_least: f64,
     /// The strokes of a botanical illustration, where a doodle has fewer.
     pub many_strokes: usize,
@@ -33,7 +34,7 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     no_plant_least: 1e-6,
     by_structure_least: 0.35,
     by_structure_of_many: 0.65,
-    by_arrangement_least: 0.9,
+    by_arrangement_least: 0.8,
     many_strokes: 15,
 };
 
