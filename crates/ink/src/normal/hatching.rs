@@ -1,5 +1,6 @@
 //! Strokes that shade an outline: parallel lines, zigzag, dots.
 
+use base::LiteMap;
 use glam::DVec2;
 
 use super::{Change, Extent, LIMITS, Work, chord_of, is_closed, length_of, places};
@@ -130,20 +131,41 @@ impl Work {
         if hatches.len() < LIMITS.hatches {
             return;
         }
-        let middles: Vec<DVec2> = hatches.iter().map(|h| h.from.midpoint(h.to)).collect();
-        let Some(outline) = around(&middles, outlines) else { return };
-        let near = AT_EDGE * outline.extent.size().min_element();
+        // Outlines side by side may be hatched one after the other, in one direction.
+        let mut by_outline: LiteMap<usize, Vec<Hatch>> = LiteMap::new();
+        for hatch in hatches {
+            if let Some(row) = outlines.iter().position(|o| o.holds(hatch.from.midpoint(hatch.to))) {
+                by_outline.entry(row).or_default().push(hatch);
+            }
+        }
+        for (row, hatches) in by_outline {
+            let outline = &outlines[row];
+            if !outline.is_hatched_by(&hatches) {
+                continue;
+            }
+            hatches.iter().for_each(|h| out[h.figure][h.line] = true);
+            let color = self.figures[hatches[0].figure].like.color;
+            colors.extend(color.map(|c| (outline.figure, c)));
+        }
+    }
+}
+
+impl Outline {
+    fn holds(&self, p: DVec2) -> bool {
+        let is_boxed = self.extent.lo.cmple(p).all() && self.extent.hi.cmpge(p).all();
+        is_boxed && geom::contains(&self.points, p)
+    }
+
+    /// Whether enough lines run across it from edge to edge.
+    fn is_hatched_by(&self, hatches: &[Hatch]) -> bool {
+        let near = AT_EDGE * self.extent.size().min_element();
         let at_edge = |p: DVec2| {
-            geom::closest_on_polyline(&outline.points, p).is_some_and(|c| c.point.distance(p) <= near)
+            geom::closest_on_polyline(&self.points, p).is_some_and(|c| c.point.distance(p) <= near)
         };
         let across = hatches.iter().filter(|h| at_edge(h.from) && at_edge(h.to)).count();
         #[expect(clippy::cast_precision_loss, reason = "numbers of strokes")]
-        if (across as f64) < MOST * hatches.len() as f64 {
-            return;
-        }
-        hatches.iter().for_each(|h| out[h.figure][h.line] = true);
-        let color = self.figures[hatches[0].figure].like.color;
-        colors.extend(color.map(|c| (outline.figure, c)));
+        let is_most = across as f64 >= MOST * hatches.len() as f64;
+        hatches.len() >= LIMITS.hatches && is_most
     }
 }
 
@@ -152,11 +174,8 @@ fn around<'a>(points: &[DVec2], outlines: &'a [Outline]) -> Option<&'a Outline> 
     let some: Vec<DVec2> = super::some_of(points, 24).collect();
     #[expect(clippy::cast_precision_loss, reason = "a few points")]
     let holds = |o: &&Outline| {
-        let inside = some.iter().filter(|p| {
-            let boxed = o.extent.lo.cmple(**p).all() && o.extent.hi.cmpge(**p).all();
-            boxed && geom::contains(&o.points, **p)
-        });
-        inside.count() as f64 >= MOST * some.len() as f64
+        let inside = some.iter().filter(|p| o.holds(**p)).count();
+        inside as f64 >= MOST * some.len() as f64
     };
     outlines.iter().find(holds)
 }

@@ -33,6 +33,12 @@ struct Limits {
     straight: f64,
     /// Two ends meet within this.
     meet: f64,
+    /// The ends of an outline lie within this share of its length.
+    gap: f64,
+    /// A hand that closes an outline draws on past its beginning over at most this share of its length.
+    overshoot: f64,
+    /// An outline encloses at least this area, as a share of its length squared: a leaf of 1 : 8 has 0.02.
+    round: f64,
     /// Two ends of an outline in pieces meet within this share of the shorter piece.
     meet_share: f64,
     /// A polyline in segments has at least this many of them, one after the other.
@@ -66,6 +72,9 @@ struct Limits {
 const LIMITS: Limits = Limits {
     straight: 0.985,
     meet: 0.012,
+    gap: 0.06,
+    overshoot: 0.2,
+    round: 0.018,
     meet_share: 0.12,
     segments: 6,
     segment: 0.04,
@@ -317,9 +326,30 @@ fn chord_of(line: &[InkSample]) -> DVec2 {
     }
 }
 
-/// Whether the ends of a line meet.
+/// Whether the ends of a line meet, or a hand drew on past the beginning of an outline.
 fn is_closed(line: &[InkSample]) -> bool {
-    line.len() > 3 && chord_of(line).length() <= 0.06 * length_of(line)
+    if line.len() <= 3 {
+        return false;
+    }
+    let length = length_of(line);
+    chord_of(line).length() <= LIMITS.gap * length || overshoots(&places(line), length)
+}
+
+/// Whether a line encloses something and one of its ends lies on the part of it about the other end.
+fn overshoots(line: &[DVec2], length: f64) -> bool {
+    let lies_on_beginning = |line: &[DVec2]| {
+        let mut way = 0.0;
+        let count = line.windows(2).take_while(|w| {
+            way += w[0].distance(w[1]);
+            way <= LIMITS.overshoot * length
+        });
+        let beginning = &line[..=count.count()];
+        let end = line.last().and_then(|p| geom::distance_to_polyline(beginning, *p));
+        end.is_some_and(|d| d <= LIMITS.gap * length)
+    };
+    let encloses = geom::signed_area(line).abs() >= LIMITS.round * length * length;
+    encloses
+        && (lies_on_beginning(line) || lies_on_beginning(&line.iter().rev().copied().collect::<Vec<_>>()))
 }
 
 /// Up to `n` samples at even numbers of a line.

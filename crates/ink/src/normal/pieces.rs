@@ -16,19 +16,17 @@ const MEET_EXACTLY: f64 = 1e-3;
 const MEET_SEGMENT: f64 = 0.1;
 /// Most pieces of an outline.
 const PIECES: usize = 3;
-/// An outline of pieces has at least this area for its length squared: a leaf of 1 : 8 has 0.02.
-const ROUND: f64 = 0.018;
 
 impl Work {
     /// Sub-paths of one figure that go the same way: programs that imitate a hand draw each line twice.
     pub(super) fn merge_repeats(&mut self) {
         let mut out = self.none_out();
         for (figure, out) in self.figures.iter().zip(&mut out) {
-            if !figure.lined {
-                continue;
-            }
             for l in 1..figure.lines.len() {
-                if !out[l - 1] && goes_along(&figure.lines[l - 1], &figure.lines[l]) {
+                let (before, line) = (&figure.lines[l - 1], &figure.lines[l]);
+                // The edges of a thin ring lie as near: one runs against the other, or areas count by turns.
+                let is_painted = figure.fill.is_some_and(|f| !f.even_odd) && is_turned_alike(before, line);
+                if (figure.lined || is_painted) && !out[l - 1] && goes_along(before, line) {
                     out[l] = true;
                 }
             }
@@ -107,6 +105,11 @@ impl Work {
         self.figures = figures;
         joined
     }
+}
+
+/// Whether two outlines run round in the same direction.
+fn is_turned_alike(a: &[InkSample], b: &[InkSample]) -> bool {
+    geom::signed_area(&places(a)) * geom::signed_area(&places(b)) > 0.0
 }
 
 fn is_like(a: &Figure, b: &Figure) -> bool {
@@ -230,7 +233,7 @@ fn outline_of(pieces: &[Figure], diagonal: f64) -> Option<Vec<InkSample>> {
         let start = *way.first()?;
         way.push(start);
         let length = length_of(&way);
-        (geom::signed_area(&places(&way)).abs() >= ROUND * length * length).then_some(way)
+        (geom::signed_area(&places(&way)).abs() >= LIMITS.round * length * length).then_some(way)
     })
 }
 

@@ -47,6 +47,55 @@ fn solid_leaves_of_one_area_stay_outlines() {
     assert_eq!((normal.strokes.len(), counts(&normal)), (9, vec![]));
 }
 
+/// Slanting lines across a ring, from edge to edge.
+fn hatches(centre: DVec2, radius: f64) -> Vec<Vec<InkSample>> {
+    let slant = DVec2::new(0.8, 0.6);
+    let across = |k: i32| {
+        let x = radius * 0.2 * f64::from(k);
+        let y = (radius * radius - x * x).sqrt();
+        [DVec2::new(x, -y), DVec2::new(x, y)].map(|p| (centre + p.rotate(slant)).into()).to_vec()
+    };
+    (-3..=3).map(across).collect()
+}
+
+#[test]
+fn neighbours_that_are_hatched_one_after_the_other_are_shaded_both() {
+    let centres = [DVec2::ZERO, DVec2::new(20.5, 0.0)];
+    let outlines = centres.map(|c| lined(vec![ring(c, 10.0, 40)]));
+    let lines = centres.map(|c| hatches(c, 10.0)).concat();
+    let normal = normalise(outlines.into_iter().chain([lined(lines)]).collect(), None);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (2, vec![(Change::Hatching, 14)]));
+}
+
+#[test]
+fn an_outline_that_a_hand_drew_on_past_its_beginning_is_closed() {
+    let mut outline = ring(DVec2::ZERO, 10.0, 40);
+    let beyond: Vec<InkSample> = (1..6).map(|k| (outline[k].at * 1.03).into()).collect();
+    outline.extend(beyond);
+    assert!(is_closed(&outline));
+    outline.reverse();
+    assert!(is_closed(&outline));
+    let open = &ring(DVec2::ZERO, 10.0, 40)[..30];
+    assert!(!is_closed(open));
+    let hook = line(&[[0.0, 0.0], [10.0, 0.0], [10.0, 0.5], [3.0, 0.5]]);
+    assert!(!is_closed(&hook));
+}
+
+#[test]
+fn an_area_that_is_painted_twice_is_one_and_a_thin_ring_is_not_solid() {
+    let paint = |lines, even_odd| {
+        let fill = Some(Fill { color: Some([200, 0, 0]), said: true, opacity: 1.0, even_odd });
+        normalise(vec![Figure { lines, fill, ..Figure::default() }], None)
+    };
+    let twice = vec![ring(DVec2::ZERO, 10.0, 40), ring(DVec2::new(0.1, 0.0), 10.1, 40)];
+    assert_eq!(counts(&paint(twice.clone(), false)), [(Change::DrawnTwice, 1)]);
+    assert!(!counts(&paint(twice, true)).contains(&(Change::DrawnTwice, 1)));
+    let mut inner = ring(DVec2::ZERO, 9.8, 40);
+    inner.reverse();
+    let thin = vec![ring(DVec2::ZERO, 10.0, 40), inner];
+    assert!(!counts(&paint(thin, false)).contains(&(Change::DrawnTwice, 1)));
+}
+
 #[test]
 fn not_everything_is_paper() {
     let page = line(&[[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [0.0, 0.0]]);
