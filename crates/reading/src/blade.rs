@@ -99,26 +99,10 @@ impl Sheetlet {
             .then(|| Self { rib: Some(rest.to_vec()), ..blade })
     }
 
-    /// A lens round a line: a frond or grass blade that was drawn as one stroke of the pen. `None` for a line
-    /// without length.
+    /// See [`lens`].
     pub(crate) fn lens(line: &[DVec2], stroke: usize, half_width: f64) -> Option<Self> {
-        let spine = resample(&simplify(line, 0.002), geom::polyline_length(line) / 16.0);
-        let n = spine.len();
-        if n <= 2 {
-            return None;
-        }
-        let side = |i: usize, sign: f64| {
-            let along = (spine[(i + 1).min(n - 1)] - spine[i.saturating_sub(1)]).normalize_or_zero();
-            #[expect(clippy::cast_precision_loss, reason = "a few dozen points")]
-            let t = i as f64 / (n - 1) as f64;
-            // Widest at a third, pointed at both ends.
-            let w = half_width * 2.6 * t.sqrt() * (1.0 - t) * (1.0 - 0.25 * t);
-            spine[i] + along.perp() * (sign * w)
-        };
-        let mut ring: Vec<DVec2> = (0..n).map(|i| side(i, -1.0)).collect();
-        ring.extend((1..n - 1).rev().map(|i| side(i, 1.0)));
-        let mut lens = Self::new(&ring, stroke)?;
-        lens.root = Some(spine[0]);
+        let mut lens = Self::new(&lens(line, half_width)?, stroke)?;
+        lens.root = line.first().copied();
         Some(lens)
     }
 
@@ -169,6 +153,26 @@ impl Sheetlet {
     pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         nearest_on_ring(&self.outline, p)
     }
+}
+
+/// The outline of a frond or grass blade that was drawn as one stroke of the pen: widest at a third, pointed at both ends. `None`
+/// for a line without length.
+pub(crate) fn lens(line: &[DVec2], half_width: f64) -> Option<Vec<DVec2>> {
+    let spine = resample(&simplify(line, 0.002), geom::polyline_length(line) / 16.0);
+    let n = spine.len();
+    if n <= 2 {
+        return None;
+    }
+    let side = |i: usize, sign: f64| {
+        let along = (spine[(i + 1).min(n - 1)] - spine[i.saturating_sub(1)]).normalize_or_zero();
+        #[expect(clippy::cast_precision_loss, reason = "a few dozen points")]
+        let t = i as f64 / (n - 1) as f64;
+        let w = half_width * 2.6 * t.sqrt() * (1.0 - t) * (1.0 - 0.25 * t);
+        spine[i] + along.perp() * (sign * w)
+    };
+    let mut ring: Vec<DVec2> = (0..n).map(|i| side(i, -1.0)).collect();
+    ring.extend((1..n - 1).rev().map(|i| side(i, 1.0)));
+    Some(ring)
 }
 
 /// The point of a closed outline nearest to `p`, and its distance.

@@ -193,8 +193,9 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);
     }
-    let leaflets = |p: &structure::readers::Proposal| p.kind == Kind::Leaf;
-    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(leaflets) {
+    // Leaflets of one leaf and petals of one flower may stand apart.
+    let is_apart = |p: &structure::readers::Proposal| matches!(p.kind, Kind::Leaf | Kind::Flower);
+    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(is_apart) {
         let first = First::of(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);

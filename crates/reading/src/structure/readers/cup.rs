@@ -14,6 +14,8 @@ struct CupLimits {
     /// The stem is attached below this height, in the middle of the head (a share of its width to either side).
     base: f64,
     middle: f64,
+    /// Without a stem it is at this height at least so wide, a share of its width: a crown stands on a trunk.
+    foot: [f64; 2],
     /// Its tips lie above this height.
     tips: f64,
     /// Its notches lie above this height.
@@ -38,8 +40,6 @@ struct CupLimits {
     most: f64,
     /// The halves of the head left and right of its base differ by less than this share of it.
     lopsided: f64,
-    /// Faces hang together that come nearer than this share of what touches.
-    adjoining: f64,
     /// One face has no corner in its lower half but within this of its base,
     low_corner: f64,
     /// and is at least so convex, with at most so many notches.
@@ -56,6 +56,7 @@ struct CupLimits {
 const CUP: CupLimits = CupLimits {
     base: 0.3,
     middle: 0.3,
+    foot: [0.15, 0.3],
     tips: 0.5,
     notches: 0.35,
     petals: 3..=9,
@@ -68,7 +69,6 @@ const CUP: CupLimits = CupLimits {
     seen: 0.4,
     most: 0.6,
     lopsided: 0.35,
-    adjoining: 0.3,
     low_corner: 0.3,
     whole_convex: 0.78,
     most_notches: 3,
@@ -78,26 +78,8 @@ const CUP: CupLimits = CupLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    // The head: the highest face, and all that hang together with it.
-    let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    let first =
-        (0..scene.faces.len()).max_by(|&a, &b| top(&scene.faces[a]).total_cmp(&top(&scene.faces[b])))?;
-    let mut members = vec![first];
-    loop {
-        let near = |k: usize| {
-            let face = &scene.faces[k];
-            members.iter().any(|&m| {
-                scene.faces[m]
-                    .outline
-                    .iter()
-                    .any(|p| nearest_on_ring(&face.outline, *p).1 < CUP.adjoining * LIMITS.touch)
-            })
-        };
-        let Some(next) = (0..scene.faces.len()).find(|k| !members.contains(k) && near(*k)) else { break };
-        members.push(next);
-    }
+    let (members, head) = scene.highest_group()?;
     let faces: Vec<&Face> = members.iter().map(|&k| &scene.faces[k]).collect();
-    let head = if let [one] = faces[..] { one.clone() } else { scene.union(&faces)? };
     let (low, high) = geom::bounds(&head.outline)?;
     let size = high - low;
     if size.min_element() < CUP.size {
@@ -130,6 +112,10 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
             nearest_on_ring(&head.outline, middle).0
         }
     };
+    let foot = crate::contour::runs_at(&head.outline, low.y + CUP.foot[0] * size.y);
+    if stem.is_none() && foot.iter().map(|(a, b)| b - a).sum::<f64>() < CUP.foot[1] * size.x {
+        return None;
+    }
     let side = |sign: f64| {
         let half: Vec<DVec2> =
             head.outline.iter().map(|p| DVec2::new(base.x + (sign * (p.x - base.x)).max(0.0), p.y)).collect();

@@ -7,9 +7,12 @@ mod bloom;
 mod clover;
 mod conifer;
 mod cup;
+mod head;
 mod leaf;
 mod lobed;
+mod palm;
 mod sprig;
+mod taproot;
 #[cfg(test)]
 mod tests;
 
@@ -52,6 +55,8 @@ pub(crate) struct Proposal {
 pub(crate) struct ReaderLimits {
     /// A line that ends nearer than this to an outline touches it.
     pub(crate) touch: f64,
+    /// Faces nearer to one another than this hang together.
+    pub(crate) adjoining: f64,
     /// A drawing of more strokes is no icon, and no single leaf.
     pub(crate) most_strokes: usize,
     /// Faces below this share of the area of all are dirt, or shade.
@@ -63,6 +68,7 @@ pub(crate) struct ReaderLimits {
 
 pub(crate) const LIMITS: ReaderLimits = ReaderLimits {
     touch: 0.035,
+    adjoining: 0.0105,
     most_strokes: 80,
     speck: 0.01,
     leaf_convex: 0.84,
@@ -147,6 +153,19 @@ impl Scene {
         self.picture.union(faces)
     }
 
+    /// The corner of a leaf that lies on a stem, the one nearest to the foot of the stem: the side of a leaf may touch it, too, and
+    /// the tip of a grain in an ear.
+    fn corner_on_stem(&self, face: &Face) -> Option<DVec2> {
+        let corner_on = |axis: &Axis| {
+            let foot = axis.ends().into_iter().min_by(|p, q| p.y.total_cmp(&q.y))?;
+            let is_on =
+                |p: &&DVec2| distance_to_polyline(&axis.points, **p).is_some_and(|d| d < LIMITS.touch);
+            let corners = face.shape.corners.iter().filter(is_on);
+            corners.min_by(|a, b| a.distance(foot).total_cmp(&b.distance(foot))).copied()
+        };
+        self.axes.iter().find_map(corner_on)
+    }
+
     /// Where a leaf is attached: its point nearest to a stem's end, or to a stem that passes it, or to the end of its vein.
     pub(crate) fn root_of(&self, face: &Face) -> Option<DVec2> {
         let nearest = |p: DVec2| nearest_on_ring(&face.outline, p);
@@ -170,7 +189,7 @@ impl Scene {
             let ends = self.marks_of(row).flat_map(|m| [m.points[0], m.points[m.points.len() - 1]]);
             ends.map(nearest).min_by(|a, b| a.1.total_cmp(&b.1))
         };
-        end.or_else(along).or_else(marked).map(|(p, _)| p)
+        self.corner_on_stem(face).or_else(|| end.or_else(along).or_else(marked).map(|(p, _)| p))
     }
 
     /// Faces that are leaves on stems, as parts; `None` where others among them cover more than a share of all that is enclosed.
@@ -188,6 +207,25 @@ impl Scene {
         }
         let total: f64 = self.faces.iter().map(|f| f.shape.area).sum();
         (other <= most_other * total).then_some(leaves)
+    }
+
+    /// The highest face and all that hang together with it: their rows, and all of them as one.
+    pub(crate) fn highest_group(&self) -> Option<(Vec<usize>, Face)> {
+        let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let first =
+            (0..self.faces.len()).max_by(|&a, &b| top(&self.faces[a]).total_cmp(&top(&self.faces[b])))?;
+        let adjoins = |a: &Face, b: &Face| {
+            a.outline.iter().any(|p| nearest_on_ring(&b.outline, *p).1 < LIMITS.adjoining)
+        };
+        let mut members = vec![first];
+        let is_next =
+            |members: &[usize], k: usize| members.iter().any(|&m| adjoins(&self.faces[m], &self.faces[k]));
+        while let Some(next) = (0..self.faces.len()).find(|k| !members.contains(k) && is_next(&members, *k)) {
+            members.push(next);
+        }
+        let faces: Vec<&Face> = members.iter().map(|&k| &self.faces[k]).collect();
+        let head = if let [one] = faces[..] { one.clone() } else { self.union(&faces)? };
+        Some((members, head))
     }
 
     /// Lines within a face.
@@ -262,8 +300,10 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     let cup = if clover.is_none() && !is_from_front { cup::propose(&scene) } else { None };
     // Lobes that spread from the foot are fingers, not tiers.
     let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
-    let all = [leaf::propose(&scene), clover, lobed, bloom, cup, sprig::propose(&scene), conifer];
-    let mut found: Vec<Proposal> = all.into_iter().flatten().collect();
+    let head = if cup.is_none() && !is_from_front { head::propose(&scene) } else { None };
+    let others = [leaf::propose, sprig::propose, palm::propose, taproot::propose].map(|read| read(&scene));
+    let mut found: Vec<Proposal> =
+        [clover, lobed, bloom, cup, head, conifer].into_iter().chain(others).flatten().collect();
     base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));
     found
 }

@@ -116,6 +116,73 @@ fn petals_that_rise_from_a_stem_are_one_flower_seen_from_the_side() {
 }
 
 #[test]
+fn arcs_that_fan_out_from_a_trunk_of_two_sides_are_a_palm_and_scallops_are_not() {
+    let trunk = [p(-0.6, 0.0), p(0.6, 0.0)].map(|foot| vec![foot, p(foot.x * 0.5, 7.0)]);
+    let arcs = [
+        arc(p(0.0, 7.0), p(2.5, 8.5), p(4.5, 6.0)),
+        arc(p(0.0, 7.0), p(-2.5, 8.5), p(-4.5, 6.0)),
+        arc(p(0.0, 7.0), p(0.5, 10.0), p(2.5, 10.5)),
+    ];
+    let frond = leaf(p(0.0, 7.0), p(-3.0, 10.0), 0.25);
+    let mut lines = trunk.to_vec();
+    lines.extend(arcs);
+    lines.push(frond.clone());
+    let found = seen(&lines);
+    assert_eq!(found.first().map(|p| (p.kind, p.parts.len())), Some((Kind::Palm, 6)));
+    let scallops = |x: f64| {
+        let bay = |k: f64| arc(p(x * k, 7.0), p(x * (k + 0.5), 9.0), p(x * (k + 1.0), 7.0));
+        [0.0, 1.0, 2.0].map(bay).concat()
+    };
+    let mut lines = trunk.to_vec();
+    lines.extend([scallops(1.5), scallops(-1.5), frond]);
+    assert_ne!(first(&lines), Some(Kind::Palm));
+}
+
+#[test]
+fn a_body_that_tapers_away_from_its_leaves_is_a_root_and_one_with_spines_is_not() {
+    let body = [p(-1.6, 6.0), p(-1.2, 7.0), p(0.0, 7.3), p(1.2, 7.0), p(1.6, 6.0), p(0.0, 0.0), p(-1.6, 6.0)];
+    let leaves = [p(-1.2, 9.0), p(0.0, 9.4), p(1.2, 9.0)].map(|tip| vec![p(tip.x * 0.2, 7.3), tip]);
+    let mut lines = vec![body.to_vec()];
+    lines.extend(leaves);
+    assert_eq!(first(&lines), Some(Kind::Vegetable));
+    let spines = [p(-1.5, 6.0), p(1.2, 5.0), p(-0.8, 3.0)].map(|foot| vec![foot, foot + p(foot.x, 0.3)]);
+    let mut lines = vec![body.to_vec()];
+    lines.extend(spines);
+    assert_eq!(first(&lines), None);
+    // With the tip upwards it is a bud, or a flame.
+    let upside_down = |line: &Vec<DVec2>| line.iter().map(|q| p(q.x, -q.y)).collect::<Vec<_>>();
+    let turned: Vec<Vec<DVec2>> = lines.iter().map(upside_down).collect();
+    assert_eq!(first(&turned), None);
+}
+
+#[test]
+fn a_round_head_over_leaves_on_a_stem_is_a_flower_and_one_without_leaves_may_be_a_tree() {
+    let stem = vec![p(0.0, 0.0), p(0.0, 6.0)];
+    let (head, heart) = (ring(p(0.0, 8.5), 2.5), ring(p(0.4, 8.8), 1.0));
+    let whorl = arc(p(-0.6, 8.8), p(-1.0, 10.6), p(1.4, 10.5));
+    let leaf = leaf(p(0.0, 2.0), p(2.6, 3.8), 0.5);
+    let rose = [stem, head, heart, whorl, leaf];
+    assert_eq!(first(&rose), Some(Kind::Flower));
+    assert_eq!(first(&rose[..2]), None);
+}
+
+#[test]
+fn grains_in_pairs_along_a_stem_begin_on_it_with_their_lower_corner() {
+    let mut lines = vec![vec![p(0.0, 0.0), p(0.0, 8.0)]];
+    for k in 0..4 {
+        let base = p(0.0, 2.0 + 1.6 * f64::from(k));
+        lines.extend([2.0, -2.0].map(|x| leaf(base, base + p(x * 0.6, 2.0), 0.5)));
+    }
+    let found = seen(&lines);
+    let ear = found.first().expect("an ear");
+    assert_eq!((ear.kind, ear.parts.iter().filter(|p| p.root.is_some()).count()), (Kind::Stem, 8));
+    // In ink units, as the roots are.
+    let ink = cleaned(&lines);
+    let stem = ink.strokes[0].points[0].x;
+    assert!(ear.parts.iter().filter_map(|p| p.root).all(|root| (root.x - stem).abs() < 0.01));
+}
+
+#[test]
 fn what_encloses_nothing_or_has_no_extent_gives_no_proposal() {
     assert!(seen(&[]).is_empty());
     assert!(seen(&[vec![DVec2::ZERO, DVec2::ZERO]]).is_empty());

@@ -1,0 +1,165 @@
+//! A palm: fronds that spread from the top of a trunk that was drawn by both its sides.
+
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::Face;
+use super::{Axis, LIMITS, Part, Proposal, Scene, widest_gap};
+use crate::Kind;
+use crate::attach::LENS;
+use crate::blade::{lens, nearest_on_ring};
+
+/// What a palm must have. Shares of the height of the drawing where nothing else is said.
+struct PalmLimits {
+    /// How many fronds at least.
+    fronds: usize,
+    /// A trunk is at least so high, and begins below this height.
+    high: f64,
+    foot: f64,
+    /// A trunk that is a face is more slender than this (width over length).
+    slender: f64,
+    /// The sides of a trunk are nearer to one another than this share of its height, at the foot and at the top.
+    apart: f64,
+    /// A frond begins this near to the top of the trunk, a share of its own length.
+    near: f64,
+    /// Its farthest point from there is farther than this share of its length: it begins with its end, not with its side.
+    end_on: f64,
+    /// A frond that is a face is more slender than this, and at least so convex.
+    narrow: f64,
+    convex: f64,
+    /// A frond that is a line bends one way: the hull goes round it within this share of its length and chord.
+    one_way: f64,
+    /// Fronds leave no wider angle free than this, radians: half a circle and what the trunk takes.
+    gap: f64,
+    /// What is neither trunk nor frond covers less than this share of all that is enclosed.
+    other: f64,
+    /// See [`Proposal::likelihood`].
+    likelihood: f64,
+}
+
+const PALM: PalmLimits = PalmLimits {
+    fronds: 3,
+    high: 0.35,
+    foot: 0.3,
+    slender: 0.42,
+    apart: 0.25,
+    near: 0.4,
+    end_on: 0.75,
+    narrow: 0.75,
+    convex: 0.6,
+    one_way: 0.92,
+    gap: 4.3,
+    other: 0.15,
+    likelihood: 3000.0,
+};
+
+/// A trunk that was found.
+struct Trunk {
+    top: DVec2,
+    /// Half its width there.
+    half_width: f64,
+    parts: Vec<Part>,
+    /// Rows of the face and of the axes that it is.
+    face: Option<usize>,
+    sides: Vec<usize>,
+}
+
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
+    let trunk = trunk_of_face(scene).or_else(|| trunk_of_sides(scene))?;
+    let (mut parts, mut ways, mut other) = (Vec::new(), Vec::new(), 0.0);
+    for face in (0..scene.faces.len()).filter(|k| Some(*k) != trunk.face).map(|k| &scene.faces[k]) {
+        match frond_root(face, &trunk) {
+            Some(root) => {
+                ways.push(face.shape.middle - trunk.top);
+                parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
+            }
+            None => other += face.shape.area,
+        }
+    }
+    for axis in (0..scene.axes.len()).filter(|k| !trunk.sides.contains(k)).map(|k| &scene.axes[k]) {
+        if let Some(frond) = frond_of_line(axis, &trunk) {
+            ways.extend(frond.points.get(frond.points.len() / 2).map(|p| *p - trunk.top));
+            parts.push(frond);
+        }
+    }
+    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
+    if ways.len() < PALM.fronds
+        || other > PALM.other * total
+        || widest_gap(ways.iter().copied()) > PALM.gap
+        || !(ways.iter().any(|w| w.x > 0.0) && ways.iter().any(|w| w.x < 0.0))
+    {
+        return None;
+    }
+    parts.extend(trunk.parts);
+    parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
+    Some(Proposal { kind: Kind::Palm, parts, heads: Vec::new(), likelihood: PALM.likelihood })
+}
+
+/// A narrow face that stands on the ground.
+fn trunk_of_face(scene: &Scene) -> Option<Trunk> {
+    let height = scene.high.y - scene.low.y;
+    let stands = |face: &Face| {
+        let (low, high) = geom::bounds(&face.outline)?;
+        let is_trunk = face.shape.slenderness < PALM.slender
+            && high.y - low.y > PALM.high * height
+            && low.y < scene.low.y + PALM.foot * height;
+        is_trunk.then_some(())
+    };
+    let face = (0..scene.faces.len()).find(|&k| stands(&scene.faces[k]).is_some())?;
+    let shape = &scene.faces[face].shape;
+    let top = if shape.ends[0].y > shape.ends[1].y { shape.ends[0] } else { shape.ends[1] };
+    let half_width = 0.5 * shape.area / shape.length();
+    let part = Part::of_face(&scene.faces[face], StrokeClass::TrunkOutline, None);
+    Some(Trunk { top, half_width, parts: vec![part], face: Some(face), sides: Vec::new() })
+}
+
+/// Two lines that rise side by side.
+fn trunk_of_sides(scene: &Scene) -> Option<Trunk> {
+    let height = scene.high.y - scene.low.y;
+    let upright = |axis: &Axis| {
+        let [a, b] = axis.ends();
+        let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
+        let rises = top.y - foot.y > PALM.high * height && foot.y < scene.low.y + PALM.foot * height;
+        rises.then_some((foot, top))
+    };
+    let sides: Vec<(usize, DVec2, DVec2)> = (0..scene.axes.len())
+        .filter_map(|k| upright(&scene.axes[k]).map(|(foot, top)| (k, foot, top)))
+        .collect();
+    let [(a, left, one), (b, right, other)] = sides[..] else { return None };
+    let apart = PALM.apart * (one.midpoint(other).y - left.midpoint(right).y);
+    if left.distance(right) > apart || one.distance(other) > apart {
+        return None;
+    }
+    let parts = [a, b].map(|k| Part { class: StrokeClass::TrunkOutline, ..Part::of_axis(&scene.axes[k]) });
+    let half_width = 0.5 * one.distance(other);
+    Some(Trunk { top: one.midpoint(other), half_width, parts: parts.into(), face: None, sides: vec![a, b] })
+}
+
+/// Where a face begins at the top of the trunk, if it is a frond.
+fn frond_root(face: &Face, trunk: &Trunk) -> Option<DVec2> {
+    let (root, off) = nearest_on_ring(&face.outline, trunk.top);
+    let length = face.shape.length();
+    let far = face.outline.iter().map(|p| p.distance(root)).fold(0.0, f64::max);
+    (face.shape.slenderness < PALM.narrow
+        && face.shape.convexity > PALM.convex
+        && off - trunk.half_width < (PALM.near * length).max(LIMITS.touch)
+        && far > PALM.end_on * length)
+        .then_some(root)
+}
+
+/// A frond that was drawn as one line, if it begins at the top of the trunk.
+fn frond_of_line(axis: &Axis, trunk: &Trunk) -> Option<Part> {
+    let mut line = axis.points.clone();
+    if axis.ends()[1].distance(trunk.top) < axis.ends()[0].distance(trunk.top) {
+        line.reverse();
+    }
+    let length = geom::polyline_length(&line);
+    // A line that bends one way is as long as its hull goes round, less its chord.
+    let chord = axis.ends()[0].distance(axis.ends()[1]);
+    if geom::perimeter(&geom::convex_hull(&line)) < PALM.one_way * (length + chord) {
+        return None;
+    }
+    let is_near = line[0].distance(trunk.top) - trunk.half_width < (PALM.near * length).max(LIMITS.touch);
+    let points = lens(&line, LENS * length).filter(|_| is_near)?;
+    Some(Part { points, class: StrokeClass::Blade, root: Some(line[0]), strokes: vec![axis.stroke] })
+}

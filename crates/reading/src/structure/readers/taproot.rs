@@ -1,0 +1,91 @@
+//! A root with its leaves (carrot, radish, turnip): a body that tapers away from where lines or leaves stand on it.
+
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::super::faces::Face;
+use super::{LIMITS, Part, Proposal, Scene};
+use crate::Kind;
+use crate::blade::nearest_on_ring;
+
+/// What a root must have.
+struct TaprootLimits {
+    /// Its body covers more than this share of all that is enclosed,
+    whole: f64,
+    /// is at least so convex,
+    convex: f64,
+    /// and at least so slender.
+    slender: f64,
+    /// Near its tip it is narrower than this share of what it is near its leaves.
+    taper: f64,
+    /// Both places, shares of the way from the leaves to the tip.
+    places: [f64; 2],
+    /// So many lines or leaves stand on it at least,
+    leaves: usize,
+    /// within this share of its length of one another.
+    together: f64,
+    /// They begin this near to it, ink units.
+    near: f64,
+    /// See [`Proposal::likelihood`].
+    likelihood: f64,
+}
+
+const TAPROOT: TaprootLimits = TaprootLimits {
+    whole: 0.6,
+    convex: 0.9,
+    slender: 0.6,
+    taper: 0.5,
+    places: [0.25, 0.85],
+    leaves: 2,
+    together: 0.15,
+    near: 0.06,
+    likelihood: 2000.0,
+};
+
+pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
+    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
+    let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > TAPROOT.whole * total)?;
+    let body = &scene.faces[row];
+    if body.shape.convexity < TAPROOT.convex || body.shape.slenderness > TAPROOT.slender {
+        return None;
+    }
+    let on_body = |p: DVec2| Some(nearest_on_ring(&body.outline, p)).filter(|(_, off)| *off < TAPROOT.near);
+    let nearest = |points: &[DVec2]| {
+        points.iter().filter_map(|&p| on_body(p)).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(p, _)| p)
+    };
+    let (mut parts, mut feet) = (Vec::new(), Vec::new());
+    // Where the tip is thin, its own outline encloses nothing.
+    for line in scene.lines.iter().filter(|l| !body.strokes.contains(&l.stroke)) {
+        let ends = [line.points[0], line.points[line.points.len() - 1]];
+        feet.push(nearest(&ends)?);
+        parts.push(Part::of_run(line, StrokeClass::Axis));
+    }
+    for face in (0..scene.faces.len()).filter(|k| *k != row).map(|k| &scene.faces[k]) {
+        let root = nearest(&face.outline)?;
+        feet.push(root);
+        parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
+    }
+    let top = feet.iter().sum::<DVec2>() / feet.len().max(1) as f64;
+    let length = body.shape.length();
+    let is_together = feet.iter().all(|p| p.distance(top) < TAPROOT.together * length);
+    if feet.len() < TAPROOT.leaves || !is_together || !tapers_from(body, top) {
+        return None;
+    }
+    parts.insert(0, Part::of_face(body, StrokeClass::Fruit, None));
+    Some(Proposal { kind: Kind::Vegetable, parts, heads: Vec::new(), likelihood: TAPROOT.likelihood })
+}
+
+/// Whether a body narrows downwards from a place on it to the point that is farthest from there.
+fn tapers_from(body: &Face, top: DVec2) -> bool {
+    let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(top).total_cmp(&b.distance_squared(top));
+    let Some(tip) = body.outline.iter().max_by(far).copied() else { return false };
+    let along = (tip - top).normalize_or_zero();
+    // From the leaves upright, so that a level of the turned outline is a section across.
+    let turned: Vec<DVec2> =
+        body.outline.iter().map(|&p| DVec2::new((p - top).dot(along.perp()), (p - top).dot(along))).collect();
+    let [wide, narrow] = TAPROOT.places.map(|share| {
+        let runs = crate::contour::runs_at(&turned, share * tip.distance(top));
+        runs.iter().map(|(a, b)| b - a).sum::<f64>()
+    });
+    tip.y < top.y - LIMITS.touch && narrow < TAPROOT.taper * wide
+}
