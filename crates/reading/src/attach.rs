@@ -6,7 +6,7 @@ use glam::DVec2;
 use ink::{Ink, StrokeClass};
 use plant::AxisKind;
 
-use crate::blade::{Sheetlet, found_midrib, midrib, tip};
+use crate::blade::{LENS, Sheetlet, found_midrib, midrib, tip};
 use crate::branches::{Line, oriented};
 use crate::draft::Draft;
 use crate::flowers::{FlowerDraft, whorls};
@@ -24,8 +24,6 @@ use crate::{
 const SESSILE: f64 = 0.02;
 /// As [`SESSILE`], as a share of the leaf's size: large leaves leave a larger gap.
 const SESSILE_SHARE: f64 = 0.08;
-/// A leaf or petal drawn as one line is half as wide as this share of its length.
-pub(crate) const LENS: f64 = 0.055;
 /// Petals that were drawn as lines are at least so many and at most so many; each begins within so many radii of the disc, points
 /// away from its middle by more than this cosine, and reaches at most so many times as far as the usual one.
 const FEWEST_RAYS: usize = 5;

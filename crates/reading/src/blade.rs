@@ -155,6 +155,9 @@ impl Sheetlet {
     }
 }
 
+/// A leaf or petal drawn as one line is half as wide as this share of its length.
+pub(crate) const LENS: f64 = 0.055;
+
 /// The outline of a frond or grass blade that was drawn as one stroke of the pen: widest at a third, pointed at both ends. `None`
 /// for a line without length.
 pub(crate) fn lens(line: &[DVec2], half_width: f64) -> Option<Vec<DVec2>> {

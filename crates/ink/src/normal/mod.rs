@@ -5,6 +5,7 @@
 //! | step | module |
 //! |---|---|
 //! | outside the sheet, pages, frames, ruling | `paper` |
+//! | rims of stickers, layers under the whole drawing | `backing` |
 //! | outlines of a pen's stroke, traced ink | `ribbon`, `traced` |
 //! | a line drawn twice, segments, outlines in pieces | `pieces` |
 //! | colour under a line, shade over colour | `colour` |
@@ -13,6 +14,7 @@
 //! A figure is what a file says of one element and is never changed in place by what is near it: each step judges the
 //! figures as they came to it and says what is left.
 
+mod backing;
 mod colour;
 mod hatching;
 mod paper;
@@ -206,6 +208,7 @@ pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>) -> Normal 
     work.figures.iter_mut().for_each(drop_points);
     work.off_sheet();
     work.leave_paper_out();
+    work.leave_backings_out();
     work.take_pen_outlines();
     work.take_traced_ink();
     work.merge_repeats();

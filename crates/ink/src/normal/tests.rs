@@ -97,6 +97,23 @@ fn an_area_that_is_painted_twice_is_one_and_a_thin_ring_is_not_solid() {
 }
 
 #[test]
+fn the_rim_of_a_sticker_is_left_out_and_a_leaf_under_its_spots_stays() {
+    let discs = |radius: f64| [-6.0, 6.0].map(|x| ring(DVec2::new(x, 0.0), radius, 40));
+    let rim = |wide: f64| {
+        let bone = |k: u32| {
+            let (sin, cos) = ops::sin_cos(ops::TAU * f64::from(k) / 60.0);
+            (DVec2::new(6.0 * cos.signum(), 0.0) + DVec2::new(cos, sin) * (8.0 + wide)).into()
+        };
+        area(vec![(0..=60).map(bone).collect()], [255; 3])
+    };
+    let upon = |radius| discs(radius).map(|d| area(vec![d], [200, 0, 0])).to_vec();
+    let sticker = normalise([vec![rim(1.0)], upon(8.0)].concat(), None);
+    assert_eq!((sticker.strokes.len(), counts(&sticker)), (2, vec![(Change::Paper, 1)]));
+    let leaf = normalise([vec![rim(1.0)], upon(2.0)].concat(), None);
+    assert_eq!(leaf.strokes.len(), 3);
+}
+
+#[test]
 fn not_everything_is_paper() {
     let page = line(&[[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [0.0, 0.0]]);
     let normal = normalise(vec![lined(vec![page])], Some((DVec2::ZERO, DVec2::splat(9.0))));

@@ -24,7 +24,9 @@ struct BloomLimits {
     disc: f64,
     /// What is neither petal, disc nor leaf covers less than this share of all that is enclosed.
     other: f64,
-    /// See [`Proposal::likelihood`], round a disc and without one.
+    /// So many petals all round are no chance, with a disc or without.
+    many: usize,
+    /// See [`Proposal::likelihood`], round a disc or of many petals, and of few without a disc.
     likelihood: [f64; 2],
 }
 
@@ -36,6 +38,7 @@ const BLOOM: BloomLimits = BloomLimits {
     reach: 0.6,
     disc: 3.0,
     other: 0.1,
+    many: 8,
     likelihood: [ROUND_A_DISC, 200.0],
 };
 
@@ -90,7 +93,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
         kind: Kind::Flower,
         parts,
         heads,
-        likelihood: BLOOM.likelihood[usize::from(disc.is_none())],
+        likelihood: BLOOM.likelihood[usize::from(disc.is_none() && petals.len() < BLOOM.many)],
     })
 }
 

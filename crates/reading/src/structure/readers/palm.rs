@@ -6,8 +6,7 @@ use ink::StrokeClass;
 use super::super::faces::Face;
 use super::{Axis, LIMITS, Part, Proposal, Scene, widest_gap};
 use crate::Kind;
-use crate::attach::LENS;
-use crate::blade::{lens, nearest_on_ring};
+use crate::blade::{LENS, lens, nearest_on_ring};
 
 /// What a palm must have. Shares of the height of the drawing where nothing else is said.
 struct PalmLimits {
