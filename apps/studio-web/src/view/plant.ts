@@ -129,23 +129,15 @@ export class Looks {
   }
 }
 
-/** The columns of a plant's meshes on the graphics card, by the names of the parts; copies share them. */
-export type Shapes = Map<string, THREE.BufferGeometry>;
+/** The columns of a plant's meshes on the graphics card, in the order of its parts, whose names may repeat; copies share them. */
+export type Shapes = THREE.BufferGeometry[];
 
 /** Puts columns into shapes, in the place of what they were. */
-export function fillShapes(shapes: Shapes, view: PlantView, parts: PartArrays[]): void {
-  const names = new Set(view.parts.map((p) => p.name));
-  for (const [name, geometry] of shapes) {
-    if (names.has(name)) continue;
-    geometry.dispose();
-    shapes.delete(name);
-  }
-  view.parts.forEach(({ name }, i) => {
-    const columns = parts[i];
-    if (!columns) return;
-    const geometry = shapes.get(name) ?? new THREE.BufferGeometry();
-    shapes.set(name, geometry);
-    fill(geometry, columns);
+export function fillShapes(shapes: Shapes, parts: readonly PartArrays[]): void {
+  for (const geometry of shapes.splice(parts.length)) geometry.dispose();
+  parts.forEach((columns, i) => {
+    shapes[i] ??= new THREE.BufferGeometry();
+    fill(shapes[i], columns);
   });
 }
 
@@ -156,8 +148,10 @@ export class PlantMeshes {
   readonly group = new THREE.Group();
   readonly obstacles = new THREE.Group();
   view: PlantView | undefined;
-  shapes: Shapes = new Map();
+  shapes: Shapes = [];
 
+  /** One for each of its parts. */
+  private readonly meshes: THREE.Mesh[] = [];
   private carrying: Carrying | undefined;
 
   constructor(private readonly looks: Looks) {
@@ -173,10 +167,7 @@ export class PlantMeshes {
   carry(mesh: number, rows: HeldRows): void {
     this.putBack();
     if (this.view?.mesh !== mesh || rows.length === 0) return;
-    const meshes = this.view.parts.map(
-      ({ name }) => this.group.children.find((m) => m.name === name) as THREE.Mesh | undefined,
-    );
-    this.carrying = new Carrying(mesh, this.group, meshes, rows);
+    this.carrying = new Carrying(mesh, this.group, this.meshes, rows);
   }
 
   pose(pose: CarriedPose): void {
@@ -192,25 +183,18 @@ export class PlantMeshes {
   /** Shows these shapes with the materials of the view. */
   update(view: PlantView, shapes: Shapes): void {
     this.putBack();
+    this.view = view;
     this.shapes = shapes;
-    const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
-    for (const { name, material } of view.parts) {
-      const geometry = shapes.get(name);
-      const look = view.materials[material];
-      if (!geometry || !look) continue;
-      let mesh = old.get(name);
-      old.delete(name);
-      if (!mesh) {
-        mesh = new THREE.Mesh();
-        mesh.name = name;
-        mesh.castShadow = true;
-        mesh.receiveShadow = true;
-        this.group.add(mesh);
-      }
+    for (const mesh of this.meshes.splice(shapes.length)) mesh.removeFromParent();
+    shapes.forEach((geometry, i) => {
+      const mesh = this.meshes[i] ?? new THREE.Mesh();
       mesh.geometry = geometry;
-      mesh.material = this.looks.material(look, geometry.hasAttribute('color'));
-    }
-    for (const mesh of old.values()) this.group.remove(mesh);
+      mesh.name = view.parts[i]?.name ?? '';
+      mesh.castShadow = mesh.receiveShadow = true;
+      this.meshes[i] = mesh;
+      this.group.add(mesh);
+    });
+    this.relook();
   }
 
   /** The box around it and what it grows around, metres of the scene; empty where it is not seen. */
@@ -232,11 +216,11 @@ export class PlantMeshes {
 
   /** Takes its materials anew. */
   relook(): void {
-    for (const mesh of this.group.children as THREE.Mesh[]) {
-      const part = this.view?.parts.find((p) => p.name === mesh.name);
+    this.meshes.forEach((mesh, i) => {
+      const part = this.view?.parts[i];
       const look = part && this.view?.materials[part.material];
       if (look) mesh.material = this.looks.material(look, mesh.geometry.hasAttribute('color'));
-    }
+    });
   }
 
   /** What the plant grows around; `corners` has the triangles of those that are meshes. */
