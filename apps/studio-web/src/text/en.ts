@@ -338,6 +338,11 @@ export const en = {
   'photo.size': 'Size',
   'photo.paint': 'Traced parts take its colours',
   'photo.move': 'Drag on the sheet moves it',
+  'games.title': 'For games',
+  'games.working': 'Writing three levels of detail and the views from all sides …',
+  'games.hint':
+    'Packed binary glTF (EXT_meshopt_compression), for Godot, three.js and Babylon; not for Blender.',
+  'games.save': 'Save, {size} MB',
   'export.title': 'Export',
   'export.levels': 'Levels of detail',
   'export.levels.one': 'one, as shown',

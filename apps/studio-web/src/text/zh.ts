@@ -334,6 +334,11 @@ export const zh: Record<TextKey, string> = {
   'photo.size': '大小',
   'photo.paint': '描出的部分取用颜色',
   'photo.move': '在画纸上拖动照片',
+  'games.title': '用于游戏',
+  'games.working': '正在写出三个细节层次和各方向视图…',
+  'games.hint':
+    '压缩的二进制 glTF（EXT_meshopt_compression），适用于 Godot、three.js 和 Babylon；Blender 不支持。',
+  'games.save': '保存，{size} MB',
   'export.title': '导出植物',
   'export.levels': '细节层级',
   'export.levels.one': '一级，与所见相同',
