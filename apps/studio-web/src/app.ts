@@ -27,6 +27,7 @@ import { Show, whyNot } from './show';
 import { setSetting } from './store';
 import { currentLanguage, setLanguage, t, tell, tOf } from './text';
 import { Theme } from './theme';
+import type { Half } from './halves';
 import { SHEET_TOOLS } from './tools';
 import { endTour, firstRun, tour } from './tour';
 import { download, note } from './ui';
@@ -75,6 +76,7 @@ export class App implements Page {
   /** The export that is seen before it is written. */
   private preview: ExportPreview | undefined;
   private tool: Tool = 'parts';
+  private readonly panelSizes = new ResizeObserver(() => this.seeBesidePanels());
   /** To which the gizmo is bound. */
   private axis: 'x' | 'z' | undefined;
   private started = false;
@@ -113,11 +115,6 @@ export class App implements Page {
 
   /** Listens, and starts the worker. */
   begin(): void {
-    const { list } = this;
-    // The plant is shown beside the list, not behind it.
-    new ResizeObserver(() => this.view?.setInset(list.isFolded ? 0 : list.element.offsetWidth + 12)).observe(
-      list.element,
-    );
     this.files.listen(document.body);
     listenForKeys(this);
     document.addEventListener('paste', (e) => this.clipboard.paste(e));
@@ -340,7 +337,7 @@ export class App implements Page {
 
   private opened(): void {
     this.sheet.fit();
-    this.view?.frameNow();
+    this.view?.begin();
   }
 
   private makeWriting(): Writing {
@@ -378,6 +375,7 @@ export class App implements Page {
       drawn: () => {
         this.shaping?.drawn();
         this.balls?.drawn();
+        this.show?.extent(this.view?.extent());
       },
       front: (on) => this.show.press('front', on),
       walked: (mode) => this.scenery.walked(mode),
@@ -388,6 +386,7 @@ export class App implements Page {
       place: (plant, position, yaw_deg, scale) =>
         session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] }),
       carry: (plants, how) => session.stage({ scene: { carry: [plants, how] } }),
+      zoomed: (by, right, down) => this.sheet.zoomAbout(by, right, down),
       placeEnd: () => session.commit(),
       obstacle: (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] }),
     });
@@ -495,7 +494,28 @@ export class App implements Page {
   /** The page in the language of now. */
   private build(): Parts {
     const pieces = { card: this.card.element, panel: this.panel.element, list: this.list.element };
-    return buildPage(this.host, this, pieces);
+    const parts = buildPage(this.host, this, pieces);
+    this.panelSizes.disconnect();
+    for (const panel of [this.list.element, parts.viewTools]) this.panelSizes.observe(panel);
+    return parts;
+  }
+
+  /** Plants are shown beside the panels of the view and not behind them. */
+  private seeBesidePanels(): void {
+    const { view, list } = this;
+    if (!view) return;
+    const { viewTools } = this.show.parts;
+    const [outer, tools] = [view.element, viewTools].map((e) => e.getBoundingClientRect()) as [
+      DOMRect,
+      DOMRect,
+    ];
+    const seen = viewTools.offsetWidth > 0;
+    const upright = tools.height > tools.width;
+    view.setCovered({
+      left: list.isFolded ? 0 : list.element.getBoundingClientRect().right - outer.left,
+      right: seen && upright ? outer.right - tools.left : 0,
+      bottom: seen && !upright ? outer.bottom - tools.top : 0,
+    });
   }
 
   private showAll(): void {
@@ -545,6 +565,10 @@ export class App implements Page {
   choose(strokes: number[]): void {
     this.setTool('select');
     this.sheet.select(strokes);
+  }
+
+  fill(half: Half): void {
+    this.show.parts.halves.fill(half);
   }
 
   toggleMirror(): void {

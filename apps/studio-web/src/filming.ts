@@ -265,8 +265,9 @@ async function film(
   const growing = shot === 'growth' ? course : undefined;
   const size = { width, height, transparent: sheet && wanted.transparent };
   const { view } = page;
+  const front = view.isFront;
   // What is seen from the front alone does not turn.
-  if (shot === 'turn') view.setFront(false);
+  if (shot === 'turn') view.leaveFront();
   try {
     const run = async (): Promise<void> => {
       let before = '';
@@ -298,10 +299,15 @@ async function film(
   } catch (e) {
     tape.cancel();
     throw e;
+  } finally {
+    view.setFront(front);
   }
 }
 
-/** The plant as it is at its end gives the size; afterwards it is as it was, and no step of undo is left. */
+/**
+ * A view that was composed by hand stays as it is; else the plant as it is at its end gives the size. Afterwards it is as it was,
+ * and no step of undo is left.
+ */
 async function throughGrowth(
   page: FilmingPage,
   course: Course,

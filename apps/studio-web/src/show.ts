@@ -14,12 +14,15 @@ import { statsTable } from './stats';
 import { hasText, number, t, tOf, warning } from './text';
 import type { Theme } from './theme';
 import { el, icon, popover, relabel } from './ui';
+import type { PlantView } from './view/view';
 import type { ViewModes } from './viewmode';
 import type { Door } from './vr/door';
 import type { DocumentState, WarningView } from './wire';
 
 /** A flash of work shorter than this only disturbs. */
 const MOMENT_MS = 200;
+/** Between what lies over the view and its edge, pixels. */
+const EDGE = 10;
 /** The day to which a drawn flower opens when it is told to. */
 const OPEN_DAY = 6;
 
@@ -148,14 +151,25 @@ export class Show {
   /** The way into a headset is shown where there is one. */
   headset(): void {
     const { modes } = this.shown.door;
-    // Without a view there is no button.
-    const b = this.parts.buttons.get('headset');
-    if (b) b.hidden = !modes.includes('immersive-vr');
+    this.parts.buttons.get('headset')!.hidden = !modes.includes('immersive-vr');
     document.body.dataset['headsets'] = modes.join(' ');
   }
 
   emptySheet(): void {
     this.parts.empty.hidden = !this.shown.sheet.isEmpty || !this.shown.session.drawn;
+  }
+
+  /** How large the plant is, in metres, beside its foot where there is room. */
+  extent(seen: ReturnType<PlantView['extent']>): void {
+    const { extent } = this.parts;
+    extent.hidden = seen === undefined;
+    if (!seen) return;
+    const metres = (m: number): string => m.toPrecision(m < 1 ? 2 : 3);
+    extent.textContent = t('view.extent', { high: metres(seen.high), wide: metres(seen.wide) });
+    const { clientWidth = 0, clientHeight = 0 } = extent.parentElement ?? {};
+    const [right, low] = [clientWidth - extent.offsetWidth - EDGE, clientHeight - extent.offsetHeight - EDGE];
+    extent.style.left = `${Math.max(EDGE, Math.min(seen.x + EDGE, right))}px`;
+    extent.style.top = `${Math.max(EDGE, Math.min(seen.y - extent.offsetHeight, low))}px`;
   }
 
   /** The name of the model that is viewed instead of the plant, if one is. */

@@ -93,6 +93,12 @@ export class Sheet {
   private penSeen = false;
   private penDown = false;
   private space = false;
+  /** The pointer is over it. */
+  private hovered = false;
+  /** The focus was moved by keys since something was pressed. */
+  private tabbed = false;
+  /** Its width and height, pixels. */
+  private room: [number, number] = [0, 0];
   private pinch: { distance: number; x: number; y: number } | undefined;
   private draftOrgan: string | undefined;
   /** A stroke that was lifted and is not in the document yet: shown until it is. */
@@ -287,7 +293,7 @@ export class Sheet {
   /** The part of the drawing that is seen. */
   seen(): Box {
     const [left, top] = toDrawing(this.view, 0, 0);
-    const [right, bottom] = toDrawing(this.view, this.element.clientWidth, this.element.clientHeight);
+    const [right, bottom] = toDrawing(this.view, ...this.room);
     return { left, top, right, bottom };
   }
 
@@ -306,7 +312,7 @@ export class Sheet {
         }
       : undefined;
     const box = this.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
-    const { clientWidth: w, clientHeight: h } = this.element;
+    const [w, h] = this.room;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
     this.redraw('all');
     this.events.viewport();
@@ -561,7 +567,16 @@ export class Sheet {
 
   private wheel(e: WheelEvent): void {
     e.preventDefault();
-    const [x, y] = this.place(e);
+    this.turnWheel(e, ...this.place(e));
+  }
+
+  /** The wheel is turned over the front view: right of its middle and below it, in shares of its height. */
+  zoomAbout(e: WheelEvent, right: number, down: number): void {
+    const [w, h] = this.room;
+    this.turnWheel(e, w / 2 + right * h, h / 2 + down * h);
+  }
+
+  private turnWheel(e: WheelEvent, x: number, y: number): void {
     if (e.shiftKey) this.view = { ...this.view, x: this.view.x - (e.deltaX || e.deltaY), y: this.view.y };
     else this.view = zoomed(this.view, Math.exp(-e.deltaY * (e.ctrlKey ? 0.01 : 0.0015)), x, y);
     this.moved();
@@ -608,11 +623,14 @@ export class Sheet {
   private resize(): void {
     const ratio = Math.min(3, devicePixelRatio || 1);
     const { clientWidth: w, clientHeight: h } = this.element;
+    // Where the view fills the page, the sheet is as it was.
+    if (w === 0 || h === 0) return;
+    this.room = [w, h];
     for (const canvas of [this.base, this.top]) {
       canvas.width = Math.max(1, Math.round(w * ratio));
       canvas.height = Math.max(1, Math.round(h * ratio));
     }
-    if (!this.placed && w > 0) {
+    if (!this.placed) {
       this.placed = true;
       this.fit();
     }

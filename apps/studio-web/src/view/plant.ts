@@ -9,11 +9,20 @@ export type Buildable = Pick<Sent, 'parts' | 'textures'> & {
   readonly view: Pick<PlantView, 'parts' | 'materials'>;
 };
 
+/** Whether a surface has its colours from a photograph, by the name that the core gives it. */
+const isTraced = ({ name, kind, texture }: MaterialView): boolean =>
+  texture !== null && name === `${kind}-traced`;
+
+type Look = THREE.MeshStandardMaterial | THREE.MeshLambertMaterial | THREE.MeshBasicMaterial;
+
 /** Textures and materials of all plants. */
 export class Looks {
+  /** What photographs write into alpha: 0 where a picture is toned later, which leaves them as they are. */
+  readonly photoAlpha = { value: 1 };
   private textures = new Map<number, THREE.DataTexture>();
-  private materials = new Map<string, THREE.MeshStandardMaterial | THREE.MeshLambertMaterial>();
+  private materials = new Map<string, Look>();
   private wire = false;
+  private photosLit = true;
 
   /** `matt`: without gloss, which costs a machine without a graphics card as much as all else. */
   constructor(private matt: boolean) {}
@@ -21,6 +30,16 @@ export class Looks {
   /** Materials of the other kind from now on; plants have to take them. */
   setMatt(matt: boolean): void {
     this.matt = matt;
+    this.dropMaterials();
+  }
+
+  /** Whether light falls on photographs, which have light and shade of their own; plants have to take the other materials. */
+  setPhotosLit(lit: boolean): void {
+    this.photosLit = lit;
+    this.dropMaterials();
+  }
+
+  private dropMaterials(): void {
     for (const m of this.materials.values()) m.dispose();
     this.materials.clear();
   }
@@ -48,9 +67,8 @@ export class Looks {
   /** A new worker numbers its textures anew. */
   forget(): void {
     for (const t of this.textures.values()) t.dispose();
-    for (const m of this.materials.values()) m.dispose();
     this.textures.clear();
-    this.materials.clear();
+    this.dropMaterials();
   }
 
   /** Forgets textures that nothing shows any more, and what is made of them. */
@@ -63,7 +81,8 @@ export class Looks {
       this.textures.delete(number);
     }
     for (const [key, material] of this.materials) {
-      const { map, normalMap, aoMap } = material;
+      const { map, aoMap } = material;
+      const normalMap = 'normalMap' in material ? material.normalMap : null;
       if (![map, normalMap, aoMap].some((t) => t && gone.has(t))) continue;
       material.dispose();
       this.materials.delete(key);
@@ -96,6 +115,19 @@ export class Looks {
     return { normalMap, normalScale, aoMap: ormMap, roughnessMap: ormMap };
   }
 
+  /** A surface in the very colours of its picture. */
+  private photo(shown: THREE.MeshBasicMaterialParameters): THREE.MeshBasicMaterial {
+    const material = new THREE.MeshBasicMaterial({ ...shown, toneMapped: false });
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms['photoAlpha'] = this.photoAlpha;
+      shader.fragmentShader = `uniform float photoAlpha;\n${shader.fragmentShader.replace(
+        '#include <opaque_fragment>',
+        '#include <opaque_fragment>\ngl_FragColor.a = photoAlpha;',
+      )}`;
+    };
+    return material;
+  }
+
   material(look: MaterialView, tinted: boolean): THREE.Material {
     const map = look.texture ? (this.textures.get(look.texture.number) ?? null) : null;
     const key = JSON.stringify([look, tinted]);
@@ -109,6 +141,11 @@ export class Looks {
       alphaTest: look.masked ? 0.5 : 0,
       wireframe: this.wire,
     };
+    if (!this.photosLit && isTraced(look)) {
+      const photo = this.photo(shown);
+      this.materials.set(key, photo);
+      return photo;
+    }
     const material = this.matt
       ? new THREE.MeshLambertMaterial(shown)
       : new THREE.MeshStandardMaterial({
