@@ -22,6 +22,7 @@ import { Session, type SessionEvents } from './session';
 import { Balls } from './balls';
 import { Shaping } from './shaping';
 import { openShelf } from './shelf';
+import type { Frame } from './sheet/frame';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
 import { Show, whyNot } from './show';
 import { setSetting } from './store';
@@ -252,7 +253,9 @@ export class App implements Page {
         const { drawn, seen } = this.session;
         const { isDark } = this.theme;
         const { pressed } = this.sheet;
-        if (ids.length > 0 && frame && drawn) this.card.show(ids, { frame, pressed }, drawn, seen, isDark);
+        const covered = (place: Frame): number => this.sheet.covered(place);
+        if (ids.length > 0 && frame && drawn)
+          this.card.show(ids, { frame, pressed, covered }, drawn, seen, isDark);
         else this.card.hide();
       },
       viewport: () => {
@@ -320,6 +323,7 @@ export class App implements Page {
         this.view?.forget();
         this.said.clear();
         this.sheet.select([]);
+        this.setTool('parts');
         this.opened();
       },
       standing: (now) => this.standing(now),

@@ -7,6 +7,7 @@ import {
   boxOf,
   distance,
   fitted,
+  lengthWithin,
   toDrawing,
   toScreen,
   united,
@@ -133,18 +134,26 @@ export class Sheet {
     on('pointercancel', (e) => this.up(e, false));
     on('wheel', (e) => this.wheel(e), { passive: false });
     on('contextmenu', (e) => e.preventDefault());
-    on('keydown', (e) => {
-      if (e.code === 'Space') {
-        this.space = true;
-        e.preventDefault();
-      }
+    // The click that a browser makes of a tap would press whatever the tap opened under the finger.
+    on('touchend', (e) => e.cancelable && e.preventDefault(), { passive: false });
+    on('pointerenter', () => {
+      this.hovered = true;
     });
-    on('keyup', (e) => {
-      if (e.code === 'Space') this.space = false;
+    on('pointerleave', () => {
+      this.hovered = false;
     });
-    on('blur', () => {
-      this.space = false;
+    document.addEventListener('keydown', (e) => {
+      if (e.code === 'Tab') this.tabbed = true;
+      if (e.code === 'Space' && this.ownsSpace) this.setSpace(true, e);
     });
+    const point = (): void => {
+      this.tabbed = false;
+    };
+    document.addEventListener('pointerdown', point, { capture: true });
+    document.addEventListener('keyup', (e) => {
+      if (e.code === 'Space' && this.space) this.setSpace(false, e);
+    });
+    globalThis.addEventListener('blur', () => this.setSpace(false));
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -319,6 +328,20 @@ export class Sheet {
   }
 
   // Pointers ----------------------------------------------------------------------------------------------------
+
+  /** Space is for the sheet: it has the focus, or the pointer is over it, no text is written and no button was gone to by Tab. */
+  private get ownsSpace(): boolean {
+    const focused = document.activeElement;
+    if (focused === this.element) return true;
+    return this.hovered && !this.tabbed && !focused?.matches('input:not([type]), textarea, select');
+  }
+
+  /** Holds Space, or lets go; a button that has the focus does not hear the key. */
+  private setSpace(held: boolean, e?: KeyboardEvent): void {
+    this.space = held;
+    this.element.classList.toggle('pans', held);
+    e?.preventDefault();
+  }
 
   private place(e: PointerEvent | WheelEvent): [number, number] {
     const box = this.element.getBoundingClientRect();
@@ -616,6 +639,15 @@ export class Sheet {
   selectedBox(): Box | undefined {
     const [first, ...others] = this.strokes.filter((s) => this.selection.has(s.id)).map((s) => s.box);
     return first && others.reduce(united, first);
+  }
+
+  /** How much of what is selected lies there, pixels. */
+  covered({ left, right, top, bottom }: Frame): number {
+    const [x0, y0] = toDrawing(this.view, left, bottom);
+    const [x1, y1] = toDrawing(this.view, right, top);
+    const box = { left: x0, right: x1, bottom: y0, top: y1 };
+    const chosen = this.strokes.filter((s) => this.selection.has(s.id));
+    return chosen.reduce((sum, s) => sum + lengthWithin(s.points, 3, box), 0) * this.view.scale;
   }
 
   // Drawing -----------------------------------------------------------------------------------------------------
