@@ -158,6 +158,7 @@ export class App implements Page {
         this.clipboard.select(drawn?.strokes ?? []);
         if (state) this.writing.changed(state.revision);
         this.show.document();
+        void this.documents.rename(session.title);
         this.preview?.follow();
       },
       view: (view, fresh) => {
@@ -178,6 +179,7 @@ export class App implements Page {
         this.preview?.follow();
         this.preview?.changed();
         if (fresh.length > 0) this.documents.seen();
+        void this.documents.rename(session.title);
       },
       refused: (request, why) => {
         if (request.kind === 'stroke') this.sheet.dropPending();
@@ -269,7 +271,10 @@ export class App implements Page {
     const { session } = this;
     return new MakerPanel(() => this.panels.catalogue, {
       run: (c) => session.run(c),
-      act: (action) => session.act(action),
+      act: (action) => {
+        if (typeof action === 'object' && 'preset' in action) this.panels.takeSpecies(action.preset);
+        else session.act(action);
+      },
       begin: (name) => session.begin(name),
       stage: (command) => session.stage(command),
       commit: () => session.commit(),
@@ -316,7 +321,7 @@ export class App implements Page {
     return new Documents({
       ask: (request) => session.engine.ask(request),
       save: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
-      name: () => session.state?.name ?? t('app.untitled'),
+      name: () => session.title,
       picture: () => (session.isBare ? undefined : this.view?.picture()),
       opened: () => {
         // Another document's plants and pictures have the same numbers.
@@ -358,7 +363,7 @@ export class App implements Page {
     return new Files(session.engine, this.documents, {
       opened: () => this.opened(),
       picture: () => this.view?.picture(),
-      name: () => session.state?.name ?? t('app.untitled'),
+      name: () => session.title,
       empty: () => session.isBare,
       several: () => (session.state?.plants.length ?? 0) > 1,
       kind: () => session.plant?.maker ?? 'sketch',
@@ -448,7 +453,7 @@ export class App implements Page {
         digest: session.seen?.item?.digest,
       }),
       write: (record: GestureRecord) => {
-        const name = `${safe(session.state?.name ?? t('app.untitled'))}.gestures.json`;
+        const name = `${safe(session.title)}.gestures.json`;
         download(name, JSON.stringify(record), 'application/json');
         note(t('note.exported', { name }));
       },
@@ -615,8 +620,7 @@ export class App implements Page {
 
   openFilming(): void {
     const { session, view } = this;
-    if (view && !session.isBare)
-      openFilming({ session, view, name: () => safe(session.state?.name ?? t('app.untitled')) });
+    if (view && !session.isBare) openFilming({ session, view, name: () => safe(session.title) });
     else note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
   }
 

@@ -65,7 +65,7 @@ export class Show {
     const { state, plant, drawn } = session;
     const { parts } = this;
     if (!state) return;
-    if (document.activeElement !== parts.name) parts.name.value = state.name;
+    this.title();
     this.steps(state);
     const seed = plant ? ` · ${t('dice.seed', { seed: plant.seed })}` : '';
     relabel(parts.buttons.get('dice')!, t('dice') + seed, keyOf('dice'));
@@ -85,9 +85,14 @@ export class Show {
       .join(', ');
     this.pieces(state);
     this.switches();
-    document.title = `${state.name} · ${t('app.title')}`;
     this.model(undefined);
     this.emptySheet();
+  }
+
+  private title(): void {
+    const { title } = this.shown.session;
+    if (document.activeElement !== this.parts.name) this.parts.name.value = title;
+    document.title = `${title} · ${t('app.title')}`;
   }
 
   /** What would be undone and done again: a step by its word, or an edit by hand by its own. */
@@ -188,6 +193,7 @@ export class Show {
     this.counts();
     if (this.statsOn) parts.stats.replaceChildren(statsTable(session.plant, seen));
     parts.grows.hidden = !session.isBare;
+    this.title();
     if (state) this.pieces(state);
     const organs = [...new Set(session.organs.values())];
     parts.legend.replaceChildren(
@@ -223,7 +229,7 @@ export class Show {
         const count = item.counts[kind];
         if (count) texts.push(t(`status.${kind}`, { count: number(count) }));
       }
-      texts.push(t('status.time', { ms: number(Math.round(item.timings_ms.total)) }));
+      texts.push(t('status.time', { ms: number(Math.max(0, Math.round(item.timings_ms.total))) }));
     }
     this.parts.counts.textContent = texts.join('  ·  ');
     this.warnings(session.seen?.warnings ?? []);
