@@ -25,6 +25,7 @@ import { openShelf } from './shelf';
 import type { Frame } from './sheet/frame';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
 import { Show, whyNot } from './show';
+import { cutWhenAsked } from './staged';
 import { setSetting } from './store';
 import { currentLanguage, setLanguage, t, tell, tOf } from './text';
 import { Theme } from './theme';
@@ -406,6 +407,10 @@ export class App implements Page {
     return new Shaping(view, {
       run: (c) => session.run(c),
       ask: (request) => session.engine.ask(request),
+      cut: (plant, outline) => {
+        const refused = (e: Error): void => note(t('note.refused', { why: e.message }), 'bad');
+        cutWhenAsked(session, plant, outline).catch(refused);
+      },
       select: (plant) => session.select(plant),
       refused: (why) => note(t('note.refused', { why }), 'bad'),
       say: (what) => note(what),

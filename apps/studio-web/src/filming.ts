@@ -1,5 +1,6 @@
 /** The dialogue for pictures and films, and their making: frame by frame, with progress, until it is done or stopped. */
 import type { Session } from './session';
+import { stageSeen } from './staged';
 import { t, type TextKey } from './text';
 import { dialog, download, el, note } from './ui';
 import { LONGEST } from './view/shot';
@@ -19,8 +20,6 @@ const FILM_LONGEST = 3840;
 const LONGEST_S = 60;
 /** A sheet of more frames than this is a film. */
 const SHEET_FRAMES = 64;
-/** How long a plant may take to grow for one frame, milliseconds. */
-const PATIENCE_MS = 120_000;
 
 interface Wanted {
   shot: Shot;
@@ -278,7 +277,7 @@ async function film(
           const command = growing.at(i / (frames - 1));
           const now = JSON.stringify(command);
           if (now !== before || !pixels) {
-            await grown(page, command, bar.signal);
+            await stageSeen(page.session, command, bar.signal);
             pixels = await view.shot(size);
           }
           before = now;
@@ -317,25 +316,12 @@ async function throughGrowth(
   const { session, view } = page;
   await session.engine.ask({ kind: 'begin', name: course.step });
   try {
-    await grown(page, course.at(1), signal);
+    if (view.isComposed) view.hold(true);
+    await stageSeen(page.session, course.at(1), signal);
     view.hold(true);
     await run();
   } finally {
     await session.engine.ask({ kind: 'abandon' });
     view.hold(false);
-  }
-}
-
-/** Stages a command and waits until the plant that it makes is shown. */
-async function grown({ session }: FilmingPage, command: Command, signal: AbortSignal): Promise<void> {
-  const before = session.scene;
-  const began = performance.now();
-  await session.engine.ask({ kind: 'stage', command });
-  while (session.scene === before) {
-    signal.throwIfAborted();
-    if (performance.now() - began > PATIENCE_MS) throw new Error(t('film.late'));
-    await new Promise((resolve) => {
-      setTimeout(resolve, 10);
-    });
   }
 }
