@@ -41,7 +41,7 @@ self.addEventListener('fetch', (e) => {
   if (e.request.method !== 'GET' || url.origin !== location.origin) return;
   if (e.request.mode === 'navigate') {
     e.respondWith(fetch(e.request).catch(() => caches.match('./', { ignoreSearch: true })));
-  } else if (/\\/(assets|presets)\\//.test(url.pathname)) {
+  } else if (/\\/(assets|presets)\\/|\\/icon\\.svg$/.test(url.pathname)) {
     e.respondWith(caches.match(e.request).then((hit) => hit || fetch(e.request)));
   }
 });

@@ -233,6 +233,20 @@ async function list({ page, url, shot }) {
   assert.equal(names.length, 2);
   assert.equal(await page.locator('.shelf-open img').count(), 2, 'both have a picture');
   await shot('documents');
+  // Another name is in the list at once.
+  await page.keyboard.press('Escape');
+  await page.fill('#b-name', 'A stroke');
+  await page.keyboard.press('Enter');
+  await eventually(
+    async () => {
+      const now = await shelf(page);
+      await page.keyboard.press('Escape');
+      return now;
+    },
+    (now) => now[0] === 'A stroke',
+    'the list tells the new name',
+  );
+  await shelf(page);
   // By keyboard alone: down to the sample, another name, a copy, away with it and back.
   await page.locator('.shelf .shelf-open').first().focus();
   await page.keyboard.press('ArrowDown');

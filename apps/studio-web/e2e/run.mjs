@@ -16,6 +16,7 @@ import { network } from './network.mjs';
 import { shaping } from './shaping.mjs';
 import { staging } from './staging.mjs';
 import { strokes } from './strokes.mjs';
+import { trust } from './trust.mjs';
 import { overhear } from './waits.mjs';
 
 const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
@@ -32,6 +33,7 @@ const all = [
   ...journeys,
   ...keeping,
   ...strokes,
+  ...trust,
   ...materialJourneys,
   ...shaping,
   ...staging,

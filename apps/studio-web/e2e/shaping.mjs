@@ -111,11 +111,16 @@ async function bearer({ page, url, shot }) {
       },
       [what, ...of],
     );
-  const at = await branch(page);
-  const twig = await meant();
-  await page.keyboard.press('q');
-  await see('more', twig);
-  const bough = await meant();
+  // A twig that is not borne by the trunk.
+  let [at, twig, bough] = [{ k: 3 }];
+  do {
+    at = await branch(page, at.k + 1);
+    twig = await meant();
+    await page.keyboard.press('q');
+    await see('more', twig);
+    bough = await meant();
+    if (bough[0] === '0') await page.keyboard.press('Shift+Q');
+  } while (bough[0] === '0');
   await shot('shape-bearer');
   await page.keyboard.press('Shift+Q');
   await see('same', twig);
@@ -263,6 +268,29 @@ async function brush({ page, url, shot }) {
   await changed(page, digest, 'filled');
   await rested(page);
   await shot('shape-silhouette');
+  // What an outline cuts is asked for, and counted before.
+  const filled = await settled(page);
+  const small = async () => {
+    for (let i = 0; i <= n; i += 1) {
+      const a = (i / n) * 2 * Math.PI;
+      await page.mouse.move(centre.x + 60 * Math.sin(a), centre.y - 40 - 60 * Math.cos(a));
+      if (i === 0) await page.mouse.down();
+    }
+    await page.mouse.up();
+    await page.locator('#b-outline-cut').waitFor();
+  };
+  await page.click('#b-shape-trim');
+  await small();
+  const told = await page.locator('dialog p').textContent();
+  assert.match(told, /[1-9]\d* branches/, told);
+  await shot('shape-cut');
+  await page.keyboard.press('Escape');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, filled);
+  assert.equal(await count(page, 'edits'), 3, 'nothing was done');
+  await small();
+  await page.click('#b-outline-cut');
+  await until(page, 'edits', ['is', 4], 'it is cut');
+  await changed(page, filled, 'it is cut');
 }
 
 async function seeds({ page, url, shot }) {

@@ -8,6 +8,7 @@ import {
   answered,
   becomes,
   eventually,
+  finished,
   loaded,
   pictures,
   reloaded,
@@ -107,7 +108,7 @@ async function air({ page, url, shot }) {
   await shot('stage-blur');
 }
 
-async function palette(page, id) {
+export async function palette(page, id) {
   await page.keyboard.press('Control+k');
   await page.locator('.palette input').waitFor();
   await page.click(`#p-${id}`);
@@ -197,7 +198,7 @@ async function stage({ page, url, shot }) {
 }
 
 /** Where a point of the world is on the screen, pixels from the middle, for the camera as the page tells it. */
-export function frameOf({ position, target, lens }, height) {
+export function frameOf({ position, target, lens, shift: [rightwards, upwards] }, height) {
   const sub = (a, b) => a.map((x, i) => x - b[i]);
   const dot = (a, b) => a.reduce((s, x, i) => s + x * b[i], 0);
   const unit = (a) => a.map((x) => x / Math.hypot(...a));
@@ -209,11 +210,13 @@ export function frameOf({ position, target, lens }, height) {
   return {
     to: (p) => {
       const v = sub(p, position);
-      return [(k * dot(v, right)) / dot(v, ahead), (-k * dot(v, up)) / dot(v, ahead)];
+      const depth = dot(v, ahead);
+      return [(k * dot(v, right)) / depth + rightwards, (-k * dot(v, up)) / depth - upwards];
     },
     at: (x, y) => {
       const depth = Math.hypot(...sub(target, position));
-      return position.map((p, i) => p + depth * (ahead[i] + (x / k) * right[i] - (y / k) * up[i]));
+      const [across, down] = [(x - rightwards) / k, (y + upwards) / k];
+      return position.map((p, i) => p + depth * (ahead[i] + across * right[i] - down * up[i]));
     },
   };
 }
@@ -337,7 +340,7 @@ async function film(page, wanted) {
   await page.click('#b-film-go');
 }
 
-async function filmed(page, wanted) {
+export async function filmed(page, wanted) {
   const [download] = await Promise.all([page.waitForEvent('download'), film(page, wanted)]);
   await page.locator('dialog').waitFor({ state: 'detached' });
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
@@ -508,7 +511,7 @@ function heldBy(glb) {
 }
 
 /** A file of a zip, by its name. */
-function unzipped(zip, name) {
+export function unzipped(zip, name) {
   const end = zip.lastIndexOf('PK\x05\x06', undefined, 'latin1');
   for (let at = zip.readUInt32LE(end + 16); zip.readUInt32LE(at) === 0x02014b50; ) {
     const [nameLength, extra, comment] = [28, 30, 32].map((k) => zip.readUInt16LE(at + k));
@@ -524,7 +527,7 @@ function unzipped(zip, name) {
 }
 
 /** Waits until what is asked for is seen, and says the figures. */
-async function lookedAt(page) {
+export async function lookedAt(page) {
   await answered(page);
   await page.waitForFunction(() => {
     const panel = document.querySelector('#b-exportview')?.dataset;
@@ -559,7 +562,7 @@ async function slide(page, key, value) {
 
 /** The same where nothing is to move: not before the view has come to rest. */
 async function stirs(page, part) {
-  await rested(page);
+  await finished(page);
   return sways(page, part);
 }
 

@@ -86,6 +86,12 @@ export async function rested(page) {
   await page.waitForSelector('.view[data-rests="1"]');
 }
 
+/** Until the view is as fine as it becomes: pictures that are compared are of one grain. */
+export async function finished(page) {
+  await rested(page);
+  await page.waitForSelector('.view[data-finished="1"]');
+}
+
 /** Until a piece of the page that comes when it is first asked for is there, and what waited for it is shown. */
 export async function loaded(page, piece) {
   const address = await eventually(

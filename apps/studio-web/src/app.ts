@@ -22,11 +22,14 @@ import { Session, type SessionEvents } from './session';
 import { Balls } from './balls';
 import { Shaping } from './shaping';
 import { openShelf } from './shelf';
+import type { Frame } from './sheet/frame';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
 import { Show, whyNot } from './show';
+import { cutWhenAsked } from './staged';
 import { setSetting } from './store';
 import { currentLanguage, setLanguage, t, tell, tOf } from './text';
 import { Theme } from './theme';
+import type { Half } from './halves';
 import { SHEET_TOOLS } from './tools';
 import { endTour, firstRun, tour } from './tour';
 import { download, note } from './ui';
@@ -75,6 +78,7 @@ export class App implements Page {
   /** The export that is seen before it is written. */
   private preview: ExportPreview | undefined;
   private tool: Tool = 'parts';
+  private readonly panelSizes = new ResizeObserver(() => this.seeBesidePanels());
   /** To which the gizmo is bound. */
   private axis: 'x' | 'z' | undefined;
   private started = false;
@@ -113,11 +117,6 @@ export class App implements Page {
 
   /** Listens, and starts the worker. */
   begin(): void {
-    const { list } = this;
-    // The plant is shown beside the list, not behind it.
-    new ResizeObserver(() => this.view?.setInset(list.isFolded ? 0 : list.element.offsetWidth + 12)).observe(
-      list.element,
-    );
     this.files.listen(document.body);
     listenForKeys(this);
     document.addEventListener('paste', (e) => this.clipboard.paste(e));
@@ -160,6 +159,7 @@ export class App implements Page {
         this.clipboard.select(drawn?.strokes ?? []);
         if (state) this.writing.changed(state.revision);
         this.show.document();
+        void this.documents.rename(session.title);
         this.preview?.follow();
       },
       view: (view, fresh) => {
@@ -180,6 +180,7 @@ export class App implements Page {
         this.preview?.follow();
         this.preview?.changed();
         if (fresh.length > 0) this.documents.seen();
+        void this.documents.rename(session.title);
       },
       refused: (request, why) => {
         if (request.kind === 'stroke') this.sheet.dropPending();
@@ -255,7 +256,9 @@ export class App implements Page {
         const { drawn, seen } = this.session;
         const { isDark } = this.theme;
         const { pressed } = this.sheet;
-        if (ids.length > 0 && frame && drawn) this.card.show(ids, { frame, pressed }, drawn, seen, isDark);
+        const covered = (place: Frame): number => this.sheet.covered(place);
+        if (ids.length > 0 && frame && drawn)
+          this.card.show(ids, { frame, pressed, covered }, drawn, seen, isDark);
         else this.card.hide();
       },
       viewport: () => {
@@ -269,7 +272,10 @@ export class App implements Page {
     const { session } = this;
     return new MakerPanel(() => this.panels.catalogue, {
       run: (c) => session.run(c),
-      act: (action) => session.act(action),
+      act: (action) => {
+        if (typeof action === 'object' && 'preset' in action) this.panels.takeSpecies(action.preset);
+        else session.act(action);
+      },
       begin: (name) => session.begin(name),
       stage: (command) => session.stage(command),
       commit: () => session.commit(),
@@ -316,13 +322,14 @@ export class App implements Page {
     return new Documents({
       ask: (request) => session.engine.ask(request),
       save: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
-      name: () => session.state?.name ?? t('app.untitled'),
+      name: () => session.title,
       picture: () => (session.isBare ? undefined : this.view?.picture()),
       opened: () => {
         // Another document's plants and pictures have the same numbers.
         this.view?.forget();
         this.said.clear();
         this.sheet.select([]);
+        this.setTool('parts');
         this.opened();
       },
       standing: (now) => this.standing(now),
@@ -340,7 +347,7 @@ export class App implements Page {
 
   private opened(): void {
     this.sheet.fit();
-    this.view?.frameNow();
+    this.view?.begin();
   }
 
   private makeWriting(): Writing {
@@ -357,7 +364,7 @@ export class App implements Page {
     return new Files(session.engine, this.documents, {
       opened: () => this.opened(),
       picture: () => this.view?.picture(),
-      name: () => session.state?.name ?? t('app.untitled'),
+      name: () => session.title,
       empty: () => session.isBare,
       several: () => (session.state?.plants.length ?? 0) > 1,
       kind: () => session.plant?.maker ?? 'sketch',
@@ -378,6 +385,7 @@ export class App implements Page {
       drawn: () => {
         this.shaping?.drawn();
         this.balls?.drawn();
+        this.show?.extent(this.view?.extent());
       },
       front: (on) => this.show.press('front', on),
       walked: (mode) => this.scenery.walked(mode),
@@ -388,6 +396,7 @@ export class App implements Page {
       place: (plant, position, yaw_deg, scale) =>
         session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] }),
       carry: (plants, how) => session.stage({ scene: { carry: [plants, how] } }),
+      zoomed: (by, right, down) => this.sheet.zoomAbout(by, right, down),
       placeEnd: () => session.commit(),
       obstacle: (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] }),
     });
@@ -398,6 +407,10 @@ export class App implements Page {
     return new Shaping(view, {
       run: (c) => session.run(c),
       ask: (request) => session.engine.ask(request),
+      cut: (plant, outline) => {
+        const refused = (e: Error): void => note(t('note.refused', { why: e.message }), 'bad');
+        cutWhenAsked(session, plant, outline).catch(refused);
+      },
       select: (plant) => session.select(plant),
       refused: (why) => note(t('note.refused', { why }), 'bad'),
       say: (what) => note(what),
@@ -445,7 +458,7 @@ export class App implements Page {
         digest: session.seen?.item?.digest,
       }),
       write: (record: GestureRecord) => {
-        const name = `${safe(session.state?.name ?? t('app.untitled'))}.gestures.json`;
+        const name = `${safe(session.title)}.gestures.json`;
         download(name, JSON.stringify(record), 'application/json');
         note(t('note.exported', { name }));
       },
@@ -495,7 +508,28 @@ export class App implements Page {
   /** The page in the language of now. */
   private build(): Parts {
     const pieces = { card: this.card.element, panel: this.panel.element, list: this.list.element };
-    return buildPage(this.host, this, pieces);
+    const parts = buildPage(this.host, this, pieces);
+    this.panelSizes.disconnect();
+    for (const panel of [this.list.element, parts.viewTools]) this.panelSizes.observe(panel);
+    return parts;
+  }
+
+  /** Plants are shown beside the panels of the view and not behind them. */
+  private seeBesidePanels(): void {
+    const { view, list } = this;
+    if (!view) return;
+    const { viewTools } = this.show.parts;
+    const [outer, tools] = [view.element, viewTools].map((e) => e.getBoundingClientRect()) as [
+      DOMRect,
+      DOMRect,
+    ];
+    const seen = viewTools.offsetWidth > 0;
+    const upright = tools.height > tools.width;
+    view.setCovered({
+      left: list.isFolded ? 0 : list.element.getBoundingClientRect().right - outer.left,
+      right: seen && upright ? outer.right - tools.left : 0,
+      bottom: seen && !upright ? outer.bottom - tools.top : 0,
+    });
   }
 
   private showAll(): void {
@@ -547,6 +581,10 @@ export class App implements Page {
     this.sheet.select(strokes);
   }
 
+  fill(half: Half): void {
+    this.show.parts.halves.fill(half);
+  }
+
   toggleMirror(): void {
     const { session, sheet } = this;
     // The main axis's root, where there is a plant; else the middle of the sheet.
@@ -587,8 +625,7 @@ export class App implements Page {
 
   openFilming(): void {
     const { session, view } = this;
-    if (view && !session.isBare)
-      openFilming({ session, view, name: () => safe(session.state?.name ?? t('app.untitled')) });
+    if (view && !session.isBare) openFilming({ session, view, name: () => safe(session.title) });
     else note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
   }
 

@@ -1,6 +1,7 @@
 /** The page: its bars, its two sides and what lies over them. Made anew for another language; nothing is decided here. */
 import { type CommandId, commandOf, keyOf, type Page } from './commands';
 import { isLearnt, learn } from './learnt';
+import { Halves } from './halves';
 import { t, type TextKey } from './text';
 import { SHEET_TOOLS } from './tools';
 import { button, el, icon, type IconName } from './ui';
@@ -23,7 +24,9 @@ export type Buttons = Map<string, HTMLButtonElement>;
 export interface Parts {
   buttons: Buttons;
   name: HTMLInputElement;
+  halves: Halves;
   sheetTools: HTMLElement;
+  viewTools: HTMLElement;
   /** Over an empty sheet. */
   empty: HTMLElement;
   /** In place of the sheet, where there is no plant. */
@@ -34,6 +37,8 @@ export interface Parts {
   stats: HTMLElement;
   /** Over an empty view. */
   grows: HTMLElement;
+  /** How large the plant is, beside it. */
+  extent: HTMLElement;
   /** Which model is viewed instead of the plant, and how to close it. */
   model: HTMLElement;
   modelName: HTMLElement;
@@ -48,16 +53,14 @@ export interface Parts {
   readonly: HTMLElement;
 }
 
-/** Percent that the sheet may have of the page. */
-const SPLIT = { least: 20, most: 80 } as const;
-
 /** Puts the page into `host`. */
 export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts {
   const buttons: Buttons = new Map();
-  const parts: Parts = {
+  const parts: Omit<Parts, 'halves'> = {
     buttons,
     name: nameField(page),
     sheetTools: sheetTools(buttons, page),
+    viewTools: viewTools(buttons, page),
     empty: emptySheet(page),
     noPlant: named(
       'noplant',
@@ -71,6 +74,7 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     maker: pieces.panel,
     stats: named('statsbox', 'div', { class: 'statsbox' }),
     grows: named('grows', 'p', { class: 'grows' }, t('view.empty')),
+    extent: named('extent', 'output', { class: 'extent' }),
     model: lookingLine(page),
     modelName: named('looking-name', 'span', {}),
     counts: named('counts', 'span', { class: 'counts' }),
@@ -88,13 +92,14 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
   pieces.panel.id = 'b-maker';
   parts.model.hidden = true;
   parts.model.prepend(parts.modelName);
+  const halves = new Halves(leftSide(page, parts), rightSide(page, pieces, parts), pieces.card);
   host.replaceChildren(
     topBar(buttons, page, parts.name),
     parts.readonly,
-    sides(leftSide(page, pieces, parts), rightSide(buttons, page, pieces, parts)),
+    halves.element,
     footer(page, parts),
   );
-  return parts;
+  return { ...parts, halves };
 }
 
 /** An element whose id tests and other programs go by. */
@@ -310,33 +315,23 @@ function emptySheet(page: Page): HTMLElement {
   );
 }
 
-function leftSide(page: Page, pieces: Pieces, parts: Parts): HTMLElement {
+function leftSide(page: Page, parts: Omit<Parts, 'halves'>): HTMLElement {
   const sheet = page.sheet.element;
   const { sheetTools, empty, legend, bloom, maker, noPlant } = parts;
-  return el(
-    'section',
-    { class: 'left' },
-    sheet,
-    sheetTools,
-    empty,
-    legend,
-    pieces.card,
-    bloom,
-    maker,
-    noPlant,
-  );
+  return el('section', { class: 'left' }, sheet, sheetTools, empty, legend, bloom, maker, noPlant);
 }
 
-function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): HTMLElement {
+function rightSide(page: Page, pieces: Pieces, parts: Omit<Parts, 'halves'>): HTMLElement {
   const { view, shaping, balls, pen } = page;
   const shown =
     view && shaping
       ? [
           view.element,
+          parts.extent,
           shaping.overlay.element,
           ...(balls ? [balls.overlay.element] : []),
           ...(pen ? [pen.element] : []),
-          viewTools(buttons, page),
+          parts.viewTools,
           shaping.element,
         ]
       : [el('p', { class: 'nogl' }, t('note.nowebgl'))];
@@ -345,41 +340,9 @@ function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): 
   return el('section', { class: 'right' }, ...shown, parts.stats, column, parts.grows, parts.model);
 }
 
-function footer(page: Page, { counts, warned, busy, busyText, kept }: Parts): HTMLElement {
+function footer(page: Page, { counts, warned, busy, busyText, kept }: Omit<Parts, 'halves'>): HTMLElement {
   const stop = () => page.session.engine.interrupt();
   const cancel = el('button', { type: 'button', class: 'link', onclick: stop }, t('status.cancel'));
   busy.append(el('i'), busyText, cancel);
   return el('footer', { class: 'foot' }, counts, warned, space(), busy, kept);
-}
-
-/** The sheet and the view with a bar between them, which is dragged or moved with the arrow keys. */
-function sides(left: HTMLElement, right: HTMLElement): HTMLElement {
-  const split = el('div', {
-    class: 'split',
-    role: 'separator',
-    'aria-orientation': 'vertical',
-    'aria-label': t('split.label'),
-    'aria-valuemin': String(SPLIT.least),
-    'aria-valuemax': String(SPLIT.most),
-    'aria-valuenow': '50',
-    tabindex: '0',
-  });
-  const body = el('main', {}, left, split, right);
-  const to = (share: number): void => {
-    const within = Math.min(SPLIT.most, Math.max(SPLIT.least, share));
-    body.style.setProperty('--left', `${within}%`);
-    split.setAttribute('aria-valuenow', String(Math.round(within)));
-  };
-  split.addEventListener('pointerdown', (e) => split.setPointerCapture(e.pointerId));
-  split.addEventListener('pointermove', (e) => {
-    if (!split.hasPointerCapture(e.pointerId)) return;
-    const box = body.getBoundingClientRect();
-    const upright = box.height > box.width;
-    to(upright ? ((e.clientY - box.top) / box.height) * 100 : ((e.clientX - box.left) / box.width) * 100);
-  });
-  split.addEventListener('keydown', (e) => {
-    const by = { ArrowLeft: -3, ArrowUp: -3, ArrowRight: 3, ArrowDown: 3 }[e.key];
-    if (by) to((parseFloat(body.style.getPropertyValue('--left')) || 50) + by);
-  });
-  return body;
 }

@@ -92,6 +92,7 @@ describe('the sheet of keys', () => {
       'Shift+G',
       'D',
       'F · Shift+0',
+      'Shift+P · Shift+F',
       'T · C · O',
       'N · Shift+N',
       'H',

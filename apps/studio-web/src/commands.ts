@@ -13,6 +13,7 @@ import type { Session } from './session';
 import type { Balls } from './balls';
 import type { Shaping } from './shaping';
 import type { Sheet, Tool } from './sheet/sheet';
+import type { Half } from './halves';
 import type { TextKey } from './text';
 import type { Theme } from './theme';
 import { CLIMB_KEYS, isBrush, rowOf, SHAPE_WORDS, SHEET_TOOLS } from './tools';
@@ -53,6 +54,8 @@ export interface Page {
   setTool(tool: Tool): void;
   choose(strokes: number[]): void;
   immerse(mode: Mode): void;
+  /** One side fills the page, or both are seen again. */
+  fill(half: Half): void;
   toggleMirror(): void;
   toggleStats(): void;
   switchLanguage(): void;
@@ -158,6 +161,8 @@ const TABLE = [
   { id: 'fit', label: 'tool.fit', keys: '0', run: (p) => p.sheet.fit() },
   { id: 'front', label: 'view.front', keys: 'D', run: (p) => p.view?.setFront(!p.view.isFront) },
   { id: 'focus', label: 'view.focus', keys: 'F', run: (p) => p.view?.focus() },
+  { id: 'fill-sheet', label: 'fill.sheet', keys: 'Shift+P', run: (p) => p.fill('sheet') },
+  { id: 'fill-view', label: 'fill.view', keys: 'Shift+F', when: hasView, run: (p) => p.fill('view') },
   { id: 'frame', label: 'view.frame', keys: 'Shift+0', run: (p) => p.view?.frameNow() },
   { id: 'wire', label: 'view.wire', keys: 'W', run: (p) => p.modes.toggle('wire') },
   { id: 'skeleton', label: 'view.skeleton', keys: 'K', run: (p) => p.modes.toggle('skeleton') },
@@ -406,6 +411,7 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [['grid'], '', 'variations.title'],
   [['front'], '', 'key.front'],
   [['focus', 'frame'], ' · ', 'key.focus'],
+  [['fill-sheet', 'fill-view'], ' · ', 'key.fill'],
   [['stage', 'camera', 'film'], ' · ', 'key.stage'],
   [['walk', 'fly'], ' · ', 'key.walk'],
   [['guide-figure'], '', 'guide.figure'],

@@ -1,5 +1,6 @@
 /** The card beside a selected stroke: what it was understood as, and one click to say what it is. */
 import { inkOf } from './colours';
+import { cardBeside } from './cardplace';
 import type { Frame } from './sheet/frame';
 import type { PlantView, SketchCommand, SketchState, StrokeClass } from './wire';
 import { t, type TextKey, tOf } from './text';
@@ -34,11 +35,19 @@ const LOOKS: Record<StrokeClass, string> = {
   scribble: 'ignored',
   other: 'ignored',
 };
-/** Beside what is selected; the edge of the sheet; the room of the tools. Pixels. */
-const GAP = 14;
+/** Between the card and the edge of the sheet, and the room of the tools. Pixels. */
 const EDGE = 10;
 const TOOLS = 88;
 const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
+
+/** What is selected, on the screen. */
+export interface Selected {
+  readonly frame: Frame;
+  /** Where it was pressed, in the drawing's unit. */
+  readonly pressed: [number, number] | undefined;
+  /** How much of it lies in a place of the sheet, pixels. */
+  covered(place: Frame): number;
+}
 
 export class Card {
   readonly element = el('div', { class: 'card', role: 'group' });
@@ -57,7 +66,7 @@ export class Card {
 
   show(
     ids: number[],
-    { frame, pressed }: { frame: Frame; pressed: [number, number] | undefined },
+    selected: Selected,
     state: SketchState,
     view: PlantView | undefined,
     dark: boolean,
@@ -115,7 +124,8 @@ export class Card {
       el('button', { type: 'button', class: `chip${kind}`, onclick: () => this.run(command) }, t(key));
     const all = chosen.map((s) => s.id);
     const acts = el('div', { class: 'chips' }, act('correct.smooth', { 'smooth-strokes': all }));
-    if (all.length === 1 && pressed) acts.append(act('correct.cut', { 'cut-strokes': [all, pressed] }));
+    if (all.length === 1 && selected.pressed)
+      acts.append(act('correct.cut', { 'cut-strokes': [all, selected.pressed] }));
     if (all.length > 1) acts.append(act('correct.join', { 'join-strokes': all }));
     acts.append(
       this.colour(
@@ -137,7 +147,7 @@ export class Card {
     this.element.hidden = false;
     // The same button stays under the keys although it is another element.
     if (focused >= 0) buttons()[focused]?.focus();
-    this.place(frame);
+    this.place(selected);
   }
 
   /** The colour of what is made of these strokes; "automatic" takes it away. */
@@ -158,26 +168,31 @@ export class Card {
     return el('span', { class: 'chips' }, label, clear);
   }
 
-  /** Beside what is selected, with its handles; where there is no room, along the edge of the sheet that is farther. */
-  private place({ left, right, top, bottom }: Frame): void {
+  /** Where it covers nothing of what is selected: on the sheet, or else over the view. */
+  private place({ frame, covered }: Selected): void {
     const host = this.element.parentElement;
-    if (!host) return;
+    const [sheet, view] = ['.left', '.right'].map((q) => host?.querySelector<HTMLElement>(q));
+    if (!sheet || !view) return;
     const { style, classList } = this.element;
     // Tools along the lower edge, as on a phone, leave the sides free.
-    const low = host.querySelector<HTMLElement>('.tools');
-    const under = low && low.offsetWidth > low.offsetHeight ? low.offsetHeight : 0;
-    const least = under > 0 ? EDGE : TOOLS;
-    const { clientWidth, clientHeight } = host;
+    const tools = sheet.querySelector<HTMLElement>('.tools');
+    const under = tools && tools.offsetWidth > tools.offsetHeight ? tools.offsetHeight : 0;
+    const room: Frame = {
+      left: under > 0 ? EDGE : TOOLS,
+      right: sheet.clientWidth - EDGE,
+      top: EDGE,
+      bottom: sheet.clientHeight - EDGE - under,
+    };
     classList.remove('along');
-    const w = this.element.offsetWidth;
-    const beside = [right + GAP, left - GAP - w].find((x) => x >= least && x + w <= clientWidth - EDGE);
-    classList.toggle('along', beside === undefined);
-    const h = this.element.offsetHeight;
-    const middle = (top + bottom) / 2;
-    const highest = clientHeight - h - EDGE - under;
-    const y = beside === undefined ? (middle < clientHeight / 2 ? highest : EDGE) : middle - h / 2;
-    style.left = `${beside ?? least}px`;
-    style.top = `${Math.max(EDGE, Math.min(y, highest))}px`;
+    style.removeProperty('max-height');
+    const size = { width: this.element.offsetWidth, height: this.element.offsetHeight };
+    const spot = cardBeside({ frame, covered }, size, room);
+    // As wide as the view, where that lies below.
+    const along = !spot && view.offsetTop > 0;
+    classList.toggle('along', along);
+    style.left = `${spot?.left ?? (along ? EDGE : view.offsetLeft + EDGE)}px`;
+    style.top = `${spot?.top ?? view.offsetTop + EDGE}px`;
+    style.maxHeight = `${spot ? room.bottom - room.top : view.clientHeight - 2 * EDGE}px`;
   }
 }
 

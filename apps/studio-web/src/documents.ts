@@ -44,6 +44,8 @@ export class Documents {
   private waiting = new AbortController();
   /** The small picture is not of what is seen now. */
   private stale = false;
+  /** What the list was told that the document is called. */
+  private called: string | undefined;
   private id: string | undefined;
 
   constructor(private readonly events: DocumentsEvents) {
@@ -200,8 +202,23 @@ export class Documents {
 
   private here(id: string | undefined): void {
     this.id = id;
+    this.called = undefined;
     this.stale = false;
     setTabSetting('document', id ?? '');
+  }
+
+  /** The document that is here may have another name: the list tells it at once. */
+  async rename(name: string): Promise<void> {
+    const { id } = this;
+    if (!this.isKept || name === this.called) return;
+    this.called = name;
+    await this.keeper.settled();
+    const { mine } = this.keeper;
+    if (mine && this.isKept && this.id === id) await portray(mine, { name }).catch(() => undefined);
+  }
+
+  private get isKept(): boolean {
+    return this.keeper.standing === 'saved' || this.keeper.standing === 'saving';
   }
 
   /** The document that is here has another name. */
@@ -221,8 +238,8 @@ export class Documents {
 
   /** Makes the small picture, if it is to be made. */
   async portray(): Promise<void> {
-    const { mine, standing } = this.keeper;
-    if (!this.stale || !mine || (standing !== 'saved' && standing !== 'saving')) return;
+    const { mine } = this.keeper;
+    if (!this.stale || !mine || !this.isKept) return;
     this.stale = false;
     const name = this.events.name();
     const { changed } = this.keeper;

@@ -155,6 +155,7 @@ export function openExport(
   kind: MakerWord,
   act: (format: Target, options: ExportOptions) => void,
   look: () => void,
+  games: (whole: boolean) => void,
 ): void {
   let { format, options } = last;
   options = { ...options, whole: several };
@@ -241,6 +242,19 @@ export function openExport(
     },
     t('exported.title'),
   );
+  const play = el(
+    'button',
+    {
+      type: 'button',
+      class: 'chip',
+      id: 'b-export-games',
+      onclick: () => {
+        d.close();
+        games(options.whole);
+      },
+    },
+    t('games.title'),
+  );
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
   const form = el(
     'form',
@@ -260,7 +274,7 @@ export function openExport(
     up,
     unit,
     el('p', { class: 'muted' }, t('export.note')),
-    el('div', { class: 'row' }, see, el('span', { class: 'space' }), go),
+    el('div', { class: 'row' }, see, play, el('span', { class: 'space' }), go),
   );
   const d = dialog(t('export.title'), form);
   show();

@@ -2,7 +2,7 @@
 import { nameOf, LEVELS, levelRows, optionsOf, type Target, WIND } from './exporting';
 import type { SentExport } from './protocol';
 import type { Session } from './session';
-import { number, t, type TextKey, tOf } from './text';
+import { megabytes, number, t, type TextKey, tOf } from './text';
 import { button, el, refill } from './ui';
 import { Exported } from './view/exported';
 import type { PlantView } from './view/view';
@@ -27,11 +27,6 @@ export interface ExportPage {
 
 /** What was chosen last, as long as the page is there. */
 const last = { level: 0, wind: 0 };
-
-const megabytes = (bytes: number): string => {
-  const mb = bytes / 1e6;
-  return mb.toFixed(mb >= 100 ? 0 : mb >= 10 ? 1 : mb >= 0.1 ? 2 : 3);
-};
 
 export class ExportPreview {
   private readonly element = el('section', {

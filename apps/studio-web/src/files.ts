@@ -3,6 +3,7 @@ import type { Documents } from './documents';
 import type { Engine } from './engine';
 import type { MakerWord, Opened } from './wire';
 import { LEVELS, PLAIN, openExport, structureFile, type Target, type ExportOptions } from './exporting';
+import { exportForGames } from './games';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
@@ -234,6 +235,10 @@ export class Files {
         void this.exportAs(format, options);
       },
       () => this.events.look(),
+      (whole) => {
+        if (this.events.empty()) note(t('note.nothing'), 'bad');
+        else void exportForGames(this.engine, safe(this.events.name()), whole);
+      },
     );
   }
 

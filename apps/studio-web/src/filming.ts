@@ -1,5 +1,6 @@
 /** The dialogue for pictures and films, and their making: frame by frame, with progress, until it is done or stopped. */
 import type { Session } from './session';
+import { stageSeen } from './staged';
 import { t, type TextKey } from './text';
 import { dialog, download, el, note } from './ui';
 import { LONGEST } from './view/shot';
@@ -19,8 +20,6 @@ const FILM_LONGEST = 3840;
 const LONGEST_S = 60;
 /** A sheet of more frames than this is a film. */
 const SHEET_FRAMES = 64;
-/** How long a plant may take to grow for one frame, milliseconds. */
-const PATIENCE_MS = 120_000;
 
 interface Wanted {
   shot: Shot;
@@ -265,8 +264,9 @@ async function film(
   const growing = shot === 'growth' ? course : undefined;
   const size = { width, height, transparent: sheet && wanted.transparent };
   const { view } = page;
+  const front = view.isFront;
   // What is seen from the front alone does not turn.
-  if (shot === 'turn') view.setFront(false);
+  if (shot === 'turn') view.leaveFront();
   try {
     const run = async (): Promise<void> => {
       let before = '';
@@ -277,7 +277,7 @@ async function film(
           const command = growing.at(i / (frames - 1));
           const now = JSON.stringify(command);
           if (now !== before || !pixels) {
-            await grown(page, command, bar.signal);
+            await stageSeen(page.session, command, bar.signal);
             pixels = await view.shot(size);
           }
           before = now;
@@ -298,10 +298,15 @@ async function film(
   } catch (e) {
     tape.cancel();
     throw e;
+  } finally {
+    view.setFront(front);
   }
 }
 
-/** The plant as it is at its end gives the size; afterwards it is as it was, and no step of undo is left. */
+/**
+ * A view that was composed by hand stays as it is; else the plant as it is at its end gives the size. Afterwards it is as it was,
+ * and no step of undo is left.
+ */
 async function throughGrowth(
   page: FilmingPage,
   course: Course,
@@ -311,25 +316,12 @@ async function throughGrowth(
   const { session, view } = page;
   await session.engine.ask({ kind: 'begin', name: course.step });
   try {
-    await grown(page, course.at(1), signal);
+    if (view.isComposed) view.hold(true);
+    await stageSeen(page.session, course.at(1), signal);
     view.hold(true);
     await run();
   } finally {
     await session.engine.ask({ kind: 'abandon' });
     view.hold(false);
-  }
-}
-
-/** Stages a command and waits until the plant that it makes is shown. */
-async function grown({ session }: FilmingPage, command: Command, signal: AbortSignal): Promise<void> {
-  const before = session.scene;
-  const began = performance.now();
-  await session.engine.ask({ kind: 'stage', command });
-  while (session.scene === before) {
-    signal.throwIfAborted();
-    if (performance.now() - began > PATIENCE_MS) throw new Error(t('film.late'));
-    await new Promise((resolve) => {
-      setTimeout(resolve, 10);
-    });
   }
 }

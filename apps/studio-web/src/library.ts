@@ -203,8 +203,12 @@ function owned<S extends Store>(
           refuse(new TakenError('taken'));
           return;
         }
-        change(entry, stores);
-        stores.documents.put(entry);
+        try {
+          change(entry, stores);
+          stores.documents.put(entry);
+        } catch (e) {
+          refuse(e as Error);
+        }
       };
     },
     { ...ROUNDS, durability },

@@ -10,6 +10,7 @@ import type { Sheet } from './sheet/sheet';
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey, wordOf } from './text';
 import { askName, closePopover, dialog, note, popover } from './ui';
+import { isNamedBySpecies } from './names';
 import { openVariations } from './variations';
 import type { PlantView } from './view/view';
 import type { Layer, MakerWord, NewMaker, PenStyle } from './wire';
@@ -141,8 +142,22 @@ export class Panels {
     const at = keys.indexOf(now.preset ?? '');
     const key = keys[(Math.max(at, by > 0 ? -1 : 0) + by + keys.length) % keys.length];
     if (key === undefined) return undefined;
-    session.act({ preset: { plant: plant.id, key } });
+    this.takeSpecies({ plant: plant.id, key });
     return wordOf(key);
+  }
+
+  /** Makes a plant another species; its name goes with it, unless a person gave it one. */
+  takeSpecies(preset: { plant: number; key: string }): void {
+    const { session } = this.page;
+    const plant = session.state?.plants.find((p) => p.id === preset.plant);
+    if (!plant || !isNamedBySpecies(plant)) {
+      session.act({ preset });
+      return;
+    }
+    session.begin('species');
+    session.act({ preset });
+    session.run({ plant: [plant.id, { rename: tOf('word', preset.key) }] });
+    session.commit();
   }
 
   /** A plant of a maker: trees ask for their species first. */
@@ -150,9 +165,10 @@ export class Panels {
     const { session } = this.page;
     await this.loadCatalogue();
     if (maker !== 'tree' || !this.catalogue) {
-      const name = t(`maker.${maker}` as TextKey);
       const made: NewMaker =
         maker === 'flower' ? { flower: 'lily' } : maker === 'tree' ? { tree: 'oak' } : maker;
+      const name =
+        typeof made === 'object' ? tOf('word', Object.values(made)[0]!) : t(`maker.${maker}` as TextKey);
       session.act({ add: { name, maker: made } });
       return;
     }

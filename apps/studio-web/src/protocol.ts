@@ -74,6 +74,8 @@ export type Request =
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array; pen?: PenStyle }
   | { kind: 'save' }
   | { kind: 'export'; request: ExportRequest }
+  /** The same, its models in binary glTF packed. */
+  | { kind: 'pack'; request: ExportRequest }
   /** How many bytes an export would write: a number. It is written and thrown away. */
   | { kind: 'weigh'; request: ExportRequest }
   /** What an export would write of one level of detail, to be seen: `SentExport`. */

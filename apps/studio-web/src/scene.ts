@@ -1,5 +1,6 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantCommand, PlantState, SceneView } from './wire';
+import { plantName } from './names';
 import { t, tell, type TextKey } from './text';
 import { askName, button, closePopover, el, icon, popover, refill, relabel } from './ui';
 
@@ -268,7 +269,9 @@ export class SceneList {
   }
 
   private row(p: PlantState, state: DocumentState, view: SceneView | undefined): HTMLElement {
-    const error = view?.plants.find((v) => v.id === p.id)?.error;
+    const seen = view?.plants.find((v) => v.id === p.id);
+    const error = seen?.error;
+    const called = plantName(p, seen);
     const name = el(
       'button',
       {
@@ -289,15 +292,15 @@ export class SceneList {
         onkeydown: (e) => this.key(e as KeyboardEvent, [p]),
       },
       icon(error ? 'warning' : p.maker),
-      el('span', {}, p.name),
+      el('span', {}, called),
     );
     const eye = button(
       p.hidden ? 'hidden' : 'eye',
-      t(p.hidden ? 'scene.show' : 'scene.hide', { name: p.name }),
+      t(p.hidden ? 'scene.show' : 'scene.hide', { name: called }),
       () => this.events.run({ plant: [p.id, { hide: !p.hidden }] }),
     );
     eye.setAttribute('data-key', `e${p.id}`);
-    const more = button('more', t('scene.more', { name: p.name }), () => this.openMore(more, p));
+    const more = button('more', t('scene.more', { name: called }), () => this.openMore(more, p));
     more.id = `b-more-${p.id}`;
     more.setAttribute('data-key', `m${p.id}`);
     const states = [...(p.hidden ? ['is-hidden'] : []), ...(p.group === '' ? [] : ['in-group'])];

@@ -1,6 +1,7 @@
 /** The document as the worker last reported it, what is asked of it, and the stroke under the pen. */
 import { Engine, type EngineEvents } from './engine';
 import { measured } from './measure';
+import { documentName } from './names';
 import type { Request, Shown } from './protocol';
 import type {
   Action,
@@ -66,6 +67,11 @@ export class Session {
   /** The plant on the left side. */
   get plant(): PlantState | undefined {
     return this.state?.plants.find((p) => p.id === this.state?.current);
+  }
+
+  /** What the document is called. */
+  get title(): string {
+    return documentName(this.state, this.scene);
   }
 
   /** What is drawn of it, if it is a sketch. */

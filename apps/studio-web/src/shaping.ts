@@ -2,9 +2,11 @@
 import { EditList } from './edits';
 import { measured } from './measure';
 import type { Request } from './protocol';
+import type { Outline } from './staged';
 import type {
   CarriedPose,
   Command,
+  HandEdit,
   Mirror,
   PlantState,
   PlantView as Seen,
@@ -28,6 +30,8 @@ export interface ShapingEvents {
   run(command: Command): void;
   ask<T>(request: Request): Promise<T>;
   refused(why: string): void;
+  /** An outline that also cuts: what that is shall be seen and agreed to before. */
+  cut(plant: PlantState, outline: Outline): void;
   /** Tells what a gesture came to, where the plant does not show it. */
   say(what: string): void;
   select(plant: number): void;
@@ -229,6 +233,7 @@ export class Shaping {
       const b = button(icon, t(`shape.${word}`), () => this.take(word), keys);
       b.id = `b-shape-${word}`;
       b.setAttribute('aria-pressed', String(word === this.tool));
+      b.append(el('span', { class: 'caption', 'aria-hidden': 'true' }, t(`vr.tool.${word}`)));
       bar.append(b);
     }
     this.element.replaceChildren(
@@ -547,7 +552,7 @@ export class Shaping {
       .then((answer) => {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
-        if (answer.commit) this.edit({ add: answer.commit });
+        if (answer.commit) this.commit(answer.commit);
         if (this.isChoosing) {
           this.chosen = answer.picked;
           this.clicked = at;
@@ -557,6 +562,13 @@ export class Shaping {
       })
       .catch((e: unknown) => this.events.refused(String(e)));
     return this.line;
+  }
+
+  /** The edit of a gesture. In a headset nothing can be asked meanwhile. */
+  private commit(edit: HandEdit): void {
+    if (edit.op === 'silhouette' && edit.trim && this.plant && !this.view.isAway)
+      this.events.cut(this.plant, edit);
+    else this.edit({ add: edit });
   }
 
   private release(): void {

@@ -14,12 +14,15 @@ import { statsTable } from './stats';
 import { hasText, number, t, tOf, warning } from './text';
 import type { Theme } from './theme';
 import { el, icon, popover, relabel } from './ui';
+import type { PlantView } from './view/view';
 import type { ViewModes } from './viewmode';
 import type { Door } from './vr/door';
 import type { DocumentState, WarningView } from './wire';
 
 /** A flash of work shorter than this only disturbs. */
 const MOMENT_MS = 200;
+/** Between what lies over the view and its edge, pixels. */
+const EDGE = 10;
 /** The day to which a drawn flower opens when it is told to. */
 const OPEN_DAY = 6;
 
@@ -62,7 +65,7 @@ export class Show {
     const { state, plant, drawn } = session;
     const { parts } = this;
     if (!state) return;
-    if (document.activeElement !== parts.name) parts.name.value = state.name;
+    this.title();
     this.steps(state);
     const seed = plant ? ` · ${t('dice.seed', { seed: plant.seed })}` : '';
     relabel(parts.buttons.get('dice')!, t('dice') + seed, keyOf('dice'));
@@ -82,9 +85,14 @@ export class Show {
       .join(', ');
     this.pieces(state);
     this.switches();
-    document.title = `${state.name} · ${t('app.title')}`;
     this.model(undefined);
     this.emptySheet();
+  }
+
+  private title(): void {
+    const { title } = this.shown.session;
+    if (document.activeElement !== this.parts.name) this.parts.name.value = title;
+    document.title = `${title} · ${t('app.title')}`;
   }
 
   /** What would be undone and done again: a step by its word, or an edit by hand by its own. */
@@ -148,14 +156,25 @@ export class Show {
   /** The way into a headset is shown where there is one. */
   headset(): void {
     const { modes } = this.shown.door;
-    // Without a view there is no button.
-    const b = this.parts.buttons.get('headset');
-    if (b) b.hidden = !modes.includes('immersive-vr');
+    this.parts.buttons.get('headset')!.hidden = !modes.includes('immersive-vr');
     document.body.dataset['headsets'] = modes.join(' ');
   }
 
   emptySheet(): void {
     this.parts.empty.hidden = !this.shown.sheet.isEmpty || !this.shown.session.drawn;
+  }
+
+  /** How large the plant is, in metres, beside its foot where there is room. */
+  extent(seen: ReturnType<PlantView['extent']>): void {
+    const { extent } = this.parts;
+    extent.hidden = seen === undefined;
+    if (!seen) return;
+    const metres = (m: number): string => m.toPrecision(m < 1 ? 2 : 3);
+    extent.textContent = t('view.extent', { high: metres(seen.high), wide: metres(seen.wide) });
+    const { clientWidth = 0, clientHeight = 0 } = extent.parentElement ?? {};
+    const [right, low] = [clientWidth - extent.offsetWidth - EDGE, clientHeight - extent.offsetHeight - EDGE];
+    extent.style.left = `${Math.max(EDGE, Math.min(seen.x + EDGE, right))}px`;
+    extent.style.top = `${Math.max(EDGE, Math.min(seen.y - extent.offsetHeight, low))}px`;
   }
 
   /** The name of the model that is viewed instead of the plant, if one is. */
@@ -174,6 +193,7 @@ export class Show {
     this.counts();
     if (this.statsOn) parts.stats.replaceChildren(statsTable(session.plant, seen));
     parts.grows.hidden = !session.isBare;
+    this.title();
     if (state) this.pieces(state);
     const organs = [...new Set(session.organs.values())];
     parts.legend.replaceChildren(
@@ -209,7 +229,7 @@ export class Show {
         const count = item.counts[kind];
         if (count) texts.push(t(`status.${kind}`, { count: number(count) }));
       }
-      texts.push(t('status.time', { ms: number(Math.round(item.timings_ms.total)) }));
+      texts.push(t('status.time', { ms: number(Math.max(0, Math.round(item.timings_ms.total))) }));
     }
     this.parts.counts.textContent = texts.join('  ·  ');
     this.warnings(session.seen?.warnings ?? []);

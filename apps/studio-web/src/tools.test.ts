@@ -37,7 +37,7 @@ test('the core is told metres of the plant, and a word where nothing is set', ()
   expect(settings.wire('rotate', 8)).toBe('rotate');
   expect(settings.wire('brush', 10)).toEqual({ brush: { radius_m: 0.7000000000000001, density: 1 } });
   expect(settings.wire('leaves', 10)).toEqual({ leaves: { radius_m: 0.7000000000000001, keep: 0.25 } });
-  expect(settings.wire('silhouette', 10)).toEqual({ silhouette: { density: 1, trim: true } });
+  expect(settings.wire('silhouette', 10)).toEqual({ silhouette: { density: 1, trim: false } });
 });
 
 test('each tool keeps what it is set to by itself, within its range', () => {
@@ -54,7 +54,7 @@ test('each tool keeps what it is set to by itself, within its range', () => {
     settings.of('leaves')['keep'],
     settings.of('prune')['whole'],
     settings.of('silhouette')['trim'],
-  ]).toEqual([2, true, false]);
+  ]).toEqual([2, true, true]);
   settings.turn('grow', 'angle_deg', 100);
   expect(settings.of('grow')['angle_deg']).toBe(110);
   expect(SHAPE_WORDS.filter(isBrush)).toEqual(['brush', 'leaves']);

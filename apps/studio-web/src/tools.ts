@@ -129,7 +129,7 @@ export const SHAPE_TOOLS = {
     icon: 'silhouette',
     trace: 'outline',
     mirrors: true,
-    settings: { density: DENSITY, trim: { is: true, word: 'trim' } },
+    settings: { density: DENSITY, trim: { is: false, word: 'trim' } },
   },
   leaves: {
     keys: '9',

@@ -130,6 +130,8 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.share();
     case 'export':
       return s.export(JSON.stringify(request.request));
+    case 'pack':
+      return s.export_packed(JSON.stringify(request.request));
     case 'weigh':
       return s.export(JSON.stringify(request.request)).length;
     case 'look':
@@ -176,6 +178,7 @@ function tellState(s: StudioSession): void {
 const QUIET: ReadonlySet<Request['kind']> = new Set([
   'save',
   'export',
+  'pack',
   'weigh',
   'look',
   'unlook',

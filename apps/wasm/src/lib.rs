@@ -11,14 +11,15 @@ mod checks;
 mod host;
 
 use burgeon::document::{PlantId, StrokeId};
+use burgeon::formats::{ExportSpec, ModelFormat, Packing, PngCache, no_files, read_model, write_glb_packed};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::skin::OrganMaterial;
-use burgeon::{Refusal, Seed, bloom};
+use burgeon::{Refusal, Report, Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, ExportRequest, PenStyle, Workspace, WorkspaceError, packed};
+use workspace::{Column, ExportRequest, NamedFile, PenStyle, Workspace, WorkspaceError, packed};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
@@ -59,6 +60,18 @@ pub fn studio_schema() -> Result<String, JsError> {
         "trees": presets,
         "flowers": flowers,
     }))?)
+}
+
+/// A file of an export, packed where it is binary glTF.
+fn lighter((name, bytes): NamedFile) -> Result<NamedFile, WorkspaceError> {
+    if !name.ends_with(".glb") {
+        return Ok((name, bytes));
+    }
+    let (spec, mut report) = (ExportSpec::default(), Report::default());
+    let model = read_model(&bytes[..], ModelFormat::Glb, &name, &spec, &no_files, &mut report)?;
+    let mut out = Vec::new();
+    write_glb_packed(&model, Packing::Compressed, &mut PngCache::new(), &mut out)?;
+    Ok((name, out))
 }
 
 /// A `Refusal` as JSON: what the worker catches.
@@ -459,6 +472,18 @@ impl StudioSession {
     pub fn export(&mut self, request: &str) -> Result<Vec<u8>, Refused> {
         let request: ExportRequest = from_json(request)?;
         Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
+    }
+
+    /// What [`Workspace::export`] writes, with the models in binary glTF packed as `burgeon convert --pack meshopt` packs them:
+    /// without levels in one file and without joints.
+    ///
+    /// # Errors
+    /// When there is nothing to export.
+    pub fn export_packed(&mut self, request: &str) -> Result<Vec<u8>, Refused> {
+        let request = ExportRequest { one_file: false, sway: false, ..from_json(request)? };
+        let files = page_run(|run| self.0.export(&request, run))?;
+        let files: Result<Vec<NamedFile>, WorkspaceError> = files.into_iter().map(lighter).collect();
+        Ok(packed(request.format, files?)?)
     }
 
     /// See [`Workspace::preview_export`]: `ExportRequest` in, `ExportView` out, both JSON.

@@ -1,5 +1,15 @@
 import { describe, expect, it } from 'vitest';
-import { boxOf, distance, fitted, outline, toDrawing, toScreen, zoomed, type Outliner } from './geometry';
+import {
+  boxOf,
+  distance,
+  fitted,
+  lengthWithin,
+  outline,
+  toDrawing,
+  toScreen,
+  zoomed,
+  type Outliner,
+} from './geometry';
 
 describe('the sheet', () => {
   const v = { scale: 2, x: 100, y: 300 };
@@ -28,6 +38,10 @@ describe('the sheet', () => {
     expect(distance(line, 3, 12, 5)).toBe(2);
     expect(distance(Float64Array.of(3, 4, NaN), 3, 0, 0)).toBe(5);
     expect(boxOf(line, 3)).toEqual({ left: 0, right: 10, bottom: 0, top: 10 });
+    // Also between points, and past a corner.
+    expect(lengthWithin(line, 3, { left: 2, right: 6, bottom: -1, top: 1 })).toBeCloseTo(4, 12);
+    expect(lengthWithin(line, 3, { left: 9, right: 12, bottom: -1, top: 3 })).toBeCloseTo(4, 12);
+    expect(lengthWithin(line, 3, { left: 2, right: 6, bottom: 1, top: 3 })).toBe(0);
     expect(boxOf(new Float64Array(), 3)).toBeUndefined();
   });
 });

@@ -85,6 +85,29 @@ export function distance(points: Float64Array, step: number, x: number, y: numbe
   return best;
 }
 
+/** How much of a polyline of rows of `step` numbers lies in a box, in its unit. */
+export function lengthWithin(points: Float64Array, step: number, box: Box): number {
+  let sum = 0;
+  for (let i = step; i + 1 < points.length; i += step) {
+    const [x, y] = [points[i - step]!, points[i - step + 1]!];
+    const [dx, dy] = [points[i]! - x, points[i + 1]! - y];
+    // Where along this piece the line enters the box and where it leaves it (Liang and Barsky 1984).
+    let [enters, leaves] = [0, 1];
+    for (const [by, room] of [
+      [-dx, x - box.left],
+      [dx, box.right - x],
+      [-dy, y - box.bottom],
+      [dy, box.top - y],
+    ] as const) {
+      if (by < 0) enters = Math.max(enters, room / by);
+      else if (by > 0) leaves = Math.min(leaves, room / by);
+      else if (room < 0) leaves = -1;
+    }
+    sum += Math.max(0, leaves - enters) * Math.hypot(dx, dy);
+  }
+  return sum;
+}
+
 /** What an outline is drawn with: a canvas' path, or a test that listens. */
 export type Outliner = Pick<Path2D, 'moveTo' | 'lineTo' | 'quadraticCurveTo' | 'arc' | 'closePath'>;
 

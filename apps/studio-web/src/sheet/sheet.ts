@@ -7,6 +7,7 @@ import {
   boxOf,
   distance,
   fitted,
+  lengthWithin,
   toDrawing,
   toScreen,
   united,
@@ -93,6 +94,12 @@ export class Sheet {
   private penSeen = false;
   private penDown = false;
   private space = false;
+  /** The pointer is over it. */
+  private hovered = false;
+  /** The focus was moved by keys since something was pressed. */
+  private tabbed = false;
+  /** Its width and height, pixels. */
+  private room: [number, number] = [0, 0];
   private pinch: { distance: number; x: number; y: number } | undefined;
   private draftOrgan: string | undefined;
   /** A stroke that was lifted and is not in the document yet: shown until it is. */
@@ -127,18 +134,26 @@ export class Sheet {
     on('pointercancel', (e) => this.up(e, false));
     on('wheel', (e) => this.wheel(e), { passive: false });
     on('contextmenu', (e) => e.preventDefault());
-    on('keydown', (e) => {
-      if (e.code === 'Space') {
-        this.space = true;
-        e.preventDefault();
-      }
+    // The click that a browser makes of a tap would press whatever the tap opened under the finger.
+    on('touchend', (e) => e.cancelable && e.preventDefault(), { passive: false });
+    on('pointerenter', () => {
+      this.hovered = true;
     });
-    on('keyup', (e) => {
-      if (e.code === 'Space') this.space = false;
+    on('pointerleave', () => {
+      this.hovered = false;
     });
-    on('blur', () => {
-      this.space = false;
+    document.addEventListener('keydown', (e) => {
+      if (e.code === 'Tab') this.tabbed = true;
+      if (e.code === 'Space' && this.ownsSpace) this.setSpace(true, e);
     });
+    const point = (): void => {
+      this.tabbed = false;
+    };
+    document.addEventListener('pointerdown', point, { capture: true });
+    document.addEventListener('keyup', (e) => {
+      if (e.code === 'Space' && this.space) this.setSpace(false, e);
+    });
+    globalThis.addEventListener('blur', () => this.setSpace(false));
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -287,7 +302,7 @@ export class Sheet {
   /** The part of the drawing that is seen. */
   seen(): Box {
     const [left, top] = toDrawing(this.view, 0, 0);
-    const [right, bottom] = toDrawing(this.view, this.element.clientWidth, this.element.clientHeight);
+    const [right, bottom] = toDrawing(this.view, ...this.room);
     return { left, top, right, bottom };
   }
 
@@ -306,13 +321,27 @@ export class Sheet {
         }
       : undefined;
     const box = this.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
-    const { clientWidth: w, clientHeight: h } = this.element;
+    const [w, h] = this.room;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
     this.redraw('all');
     this.events.viewport();
   }
 
   // Pointers ----------------------------------------------------------------------------------------------------
+
+  /** Space is for the sheet: it has the focus, or the pointer is over it, no text is written and no button was gone to by Tab. */
+  private get ownsSpace(): boolean {
+    const focused = document.activeElement;
+    if (focused === this.element) return true;
+    return this.hovered && !this.tabbed && !focused?.matches('input:not([type]), textarea, select');
+  }
+
+  /** Holds Space, or lets go; a button that has the focus does not hear the key. */
+  private setSpace(held: boolean, e?: KeyboardEvent): void {
+    this.space = held;
+    this.element.classList.toggle('pans', held);
+    e?.preventDefault();
+  }
 
   private place(e: PointerEvent | WheelEvent): [number, number] {
     const box = this.element.getBoundingClientRect();
@@ -561,7 +590,16 @@ export class Sheet {
 
   private wheel(e: WheelEvent): void {
     e.preventDefault();
-    const [x, y] = this.place(e);
+    this.turnWheel(e, ...this.place(e));
+  }
+
+  /** The wheel is turned over the front view: right of its middle and below it, in shares of its height. */
+  zoomAbout(e: WheelEvent, right: number, down: number): void {
+    const [w, h] = this.room;
+    this.turnWheel(e, w / 2 + right * h, h / 2 + down * h);
+  }
+
+  private turnWheel(e: WheelEvent, x: number, y: number): void {
     if (e.shiftKey) this.view = { ...this.view, x: this.view.x - (e.deltaX || e.deltaY), y: this.view.y };
     else this.view = zoomed(this.view, Math.exp(-e.deltaY * (e.ctrlKey ? 0.01 : 0.0015)), x, y);
     this.moved();
@@ -603,16 +641,28 @@ export class Sheet {
     return first && others.reduce(united, first);
   }
 
+  /** How much of what is selected lies there, pixels. */
+  covered({ left, right, top, bottom }: Frame): number {
+    const [x0, y0] = toDrawing(this.view, left, bottom);
+    const [x1, y1] = toDrawing(this.view, right, top);
+    const box = { left: x0, right: x1, bottom: y0, top: y1 };
+    const chosen = this.strokes.filter((s) => this.selection.has(s.id));
+    return chosen.reduce((sum, s) => sum + lengthWithin(s.points, 3, box), 0) * this.view.scale;
+  }
+
   // Drawing -----------------------------------------------------------------------------------------------------
 
   private resize(): void {
     const ratio = Math.min(3, devicePixelRatio || 1);
     const { clientWidth: w, clientHeight: h } = this.element;
+    // Where the view fills the page, the sheet is as it was.
+    if (w === 0 || h === 0) return;
+    this.room = [w, h];
     for (const canvas of [this.base, this.top]) {
       canvas.width = Math.max(1, Math.round(w * ratio));
       canvas.height = Math.max(1, Math.round(h * ratio));
     }
-    if (!this.placed && w > 0) {
+    if (!this.placed) {
       this.placed = true;
       this.fit();
     }

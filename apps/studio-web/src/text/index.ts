@@ -69,6 +69,12 @@ export function number(n: number): string {
   return new Intl.NumberFormat(language === 'zh' ? 'zh-CN' : 'en').format(n);
 }
 
+/** Bytes as megabytes, of three digits or so. */
+export function megabytes(bytes: number): string {
+  const mb = bytes / 1e6;
+  return mb.toFixed(mb >= 100 ? 0 : mb >= 10 ? 1 : mb >= 0.1 ? 2 : 3);
+}
+
 const human = (word: string): string => word.replace(/_(m|deg|years)$/, '').replaceAll(/[_-]/g, ' ');
 
 /** What a field of a schema is called: by its name, or with what it is of where that name means several things. */

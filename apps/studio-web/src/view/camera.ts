@@ -48,6 +48,9 @@ const TOWARDS: Record<Side, readonly [number, number]> = {
 /** As low as a hand turns the view by itself: the ground has an upper side only. */
 const LOWEST = Math.PI * 0.53;
 const FARTHEST = 12;
+/** Where a camera stands at first: before the plants, a little above their middle. */
+const FIRST_PHI = 0.45 * Math.PI;
+const FIRST_DISTANCE = 3;
 export const LENS = { first: 32, low: 12, high: 90 } as const;
 
 interface Wish {
@@ -96,18 +99,20 @@ export class Rig {
   private wish: Wish | undefined;
   private walk: Walk | undefined;
 
+  /** `damped`: the view turns on a little after the hand let go, which takes many pictures. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly events: RigEvents,
+    damped: boolean,
   ) {
-    this.far.position.set(1.25, 0.95, 2.6);
     this.controls = new OrbitControls(this.far, canvas);
-    this.controls.enableDamping = true;
+    this.controls.enableDamping = damped;
     this.controls.dampingFactor = 0.12;
     this.controls.minDistance = 0.1;
     this.controls.maxDistance = FARTHEST;
     this.controls.maxPolarAngle = LOWEST;
     this.controls.target.set(0, 0.48, 0);
+    this.standBefore(FIRST_DISTANCE);
     // What lies under the pointer stays there, and what is looked at stays near the plants.
     this.controls.zoomToCursor = true;
     this.controls.cursor.set(0, 0.48, 0);
@@ -146,6 +151,43 @@ export class Rig {
     this.controls.minDistance = Math.min(0.1, Math.max(0.004, 0.4 * radius));
     this.wish = { ...this.wish, target: box.getCenter(new THREE.Vector3()), distance };
     if (now) this.glide(1);
+  }
+
+  /** Stands where it stood at first, as far away as it is, and is led nowhere else. */
+  begin(): void {
+    this.stopWalking();
+    this.wish = undefined;
+    this.controls.maxPolarAngle = LOWEST;
+    this.standBefore(this.far.position.distanceTo(this.controls.target));
+    this.events.redraw();
+  }
+
+  private standBefore(distance: number): void {
+    this.far.position.setFromSphericalCoords(distance, FIRST_PHI, 0).add(this.controls.target);
+  }
+
+  /**
+   * Sees a part of a plane as an orthographic camera before it does. `middle`: of what is seen; `towards`: unit vector from the
+   * plane to the camera; `height`: from the lower to the upper edge; `shift`: of the middle of the picture, in shares of its
+   * height, rightwards and upwards. Units of the stage.
+   */
+  face(
+    middle: THREE.Vector3,
+    towards: THREE.Vector3,
+    height: number,
+    [right, up]: readonly [number, number],
+  ): void {
+    const { target } = this.controls;
+    const across = new THREE.Vector3().crossVectors(this.far.up, towards).normalize();
+    target
+      .copy(middle)
+      .addScaledVector(across, right * height)
+      .addScaledVector(this.far.up, up * height);
+    const distance = height / (2 * Math.tan(THREE.MathUtils.degToRad(this.far.fov / 2)));
+    this.far.position.copy(target).addScaledVector(towards, Math.min(FARTHEST, distance));
+    this.wish = undefined;
+    this.controls.update();
+    this.events.redraw();
   }
 
   /** Goes round to a side. */

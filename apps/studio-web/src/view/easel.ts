@@ -37,6 +37,11 @@ export class Easel {
     });
   }
 
+  /** What is being drawn is not shown: it is cut off. */
+  discard(): void {
+    this.asked += 1;
+  }
+
   private copy(): void {
     const { width, height } = this.gl.canvas;
     const { canvas, pen } = this;

@@ -2,8 +2,12 @@
 
 /** Least time between pictures that the processor draws. */
 const SLOW_MS = 300;
-/** Its pixels for each of the screen's: at rest, and while pictures follow one another. */
-const GRAIN = { rest: 0.75, moving: 0.45 } as const;
+/** Its pixels for each of the screen's: while pictures follow one another, at rest, and once the view has been still. */
+const GRAIN = { moving: 0.45, rest: 0.75, still: 1.5 } as const;
+/** The view is still when nothing moved for so long. */
+const STILL_MS = 1500;
+/** A picture that took longer is not drawn again. */
+const DEAR_MS = 500;
 
 export interface Drawer {
   /** No picture is wanted: another draws them. */
@@ -18,12 +22,17 @@ export interface Drawer {
   rests(on: boolean): void;
   /** Another grain from now on. */
   grained(grain: number): void;
+  /** No finer picture of what is seen is coming. */
+  finished(): void;
 }
 
 export class Frames {
-  /** Pixels for each of the screen's, without a graphics card. */
-  grain: number = GRAIN.rest;
+  /** Pixels for each of the screen's. */
+  grain: number;
   private drawn = -Infinity;
+  private stillness = 0;
+  /** From the wish to the picture on the screen, of the last one, ms. */
+  private took = 0;
   private rest = 0;
   private frame = 0;
   private last = 0;
@@ -35,9 +44,14 @@ export class Frames {
   constructor(
     private readonly slow: boolean,
     private readonly drawer: Drawer,
-  ) {}
+    /** Pixels of a graphics card for each of the screen's, while something moves and once the view has been still. */
+    private readonly fine: { readonly moving: number; readonly still: number },
+  ) {
+    this.grain = slow ? GRAIN.rest : fine.moving;
+  }
 
   redraw(): void {
+    window.clearTimeout(this.stillness);
     if (this.drawer.away()) return;
     this.drawer.rests(false);
     if (this.frame) return;
@@ -62,8 +76,10 @@ export class Frames {
       const since = now - this.last;
       this.last = now;
       if (this.slow) this.spare(now);
+      else this.refine(this.fine.moving);
       const moves = this.drawer.draw(since);
       this.rendered = performance.now();
+      this.took = this.rendered - now;
       const shown = this.drawer.shown();
       if (shown) void this.follow(shown, moves);
       else this.went(moves);
@@ -75,6 +91,7 @@ export class Frames {
     this.coming = true;
     this.again = moves;
     await shown;
+    this.took += performance.now() - this.rendered;
     this.coming = false;
     this.rendered = performance.now();
     this.went(this.again);
@@ -82,13 +99,31 @@ export class Frames {
 
   /** A picture is seen; `more`: another is to follow it. */
   private went(more: boolean): void {
-    if (more) this.redraw();
-    else this.drawer.rests(!this.frame && !this.rest);
+    if (more) {
+      this.redraw();
+      return;
+    }
+    const rests = !this.frame && !this.rest;
+    this.drawer.rests(rests);
+    if (!rests) return;
+    if (this.took < DEAR_MS) this.stillness = window.setTimeout(() => this.sharpen(), STILL_MS);
+    else this.drawer.finished();
+  }
+
+  /** The view was still for a while: the same picture again, as fine as it can be. */
+  private sharpen(): void {
+    if (this.drawer.away() || this.frame || this.coming) return;
+    this.refine(this.slow ? GRAIN.still : this.fine.still);
+    this.drawer.draw(0);
+    this.rendered = performance.now();
+    const shown = this.drawer.shown();
+    if (shown) void shown.then(() => this.drawer.finished());
+    else this.drawer.finished();
   }
 
   /** The next picture is as fine as those at rest. */
   settle(): void {
-    if (this.slow) this.refine(GRAIN.rest);
+    this.refine(this.slow ? GRAIN.rest : this.fine.moving);
   }
 
   /** Coarse pictures while they follow one another, a fine one when they have come to rest. */

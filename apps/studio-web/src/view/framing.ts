@@ -11,6 +11,16 @@ const STRIP = 116;
 /** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
 const SUNK = 0.06;
 
+/** Plants are shown beside panels as long as so much of the width is left to them. */
+const LEAST_WIDTH = 0.3;
+
+/** How far panels reach into the view from its sides, pixels. */
+export interface Covered {
+  readonly left: number;
+  readonly right: number;
+  readonly bottom: number;
+}
+
 /** What is framed, and with what. */
 export interface Framed {
   readonly element: HTMLElement;
@@ -40,11 +50,9 @@ export class Framing {
   /** The plant keeps its size, whatever it becomes. */
   private held = false;
   private sheetSeen: Box | undefined;
-  /** Pixels on the left that something else covers, and that will once no hand works any more. */
-  private inset = 0;
-  private wanted = 0;
-  /** Pixels at the foot that something else covers. */
-  private low = 0;
+  /** What panels cover, and what they will once no hand works any more. */
+  private covered: Covered = { left: 0, right: 0, bottom: 0 };
+  private wanted = this.covered;
 
   constructor(private readonly of: Framed) {}
 
@@ -98,8 +106,8 @@ export class Framing {
     const { element, guides, holder, rig } = this.of;
     const seen = guides.any && !this.front ? guides.extend(box) : box;
     const { clientWidth: w, clientHeight: h } = element;
-    const free = Math.max(1, h - this.low);
-    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
+    const { left, right, bottom } = this.covered;
+    const across = Math.max(1, Math.min(w - left - right, h - bottom)) / Math.max(1, h);
     const { position } = holder;
     const world = new THREE.Box3();
     for (const corner of [seen.min, seen.max])
@@ -129,22 +137,40 @@ export class Framing {
   /** With a tool in the hand the view keeps its size; the tools' strip lies over its foot. */
   setHands(on: boolean): void {
     this.hands = on;
-    this.low = on ? STRIP : 0;
-    this.inset = this.wanted;
+    this.cover();
     this.lay();
     if (!on && this.follow) this.fit();
     else this.lookAtAll();
   }
 
-  /** Pixels on the left that a list covers: the plant is shown beside it. Whether that changes anything now. */
-  setInset(pixels: number): boolean {
-    this.wanted = pixels > 0.5 * this.of.element.clientWidth ? 0 : pixels;
+  /** What panels cover from now on: plants are shown beside them. Whether that changes anything now. */
+  setCovered(covered: Covered): boolean {
+    const before = this.wanted;
+    this.wanted = covered;
+    const same =
+      covered.left === before.left && covered.right === before.right && covered.bottom === before.bottom;
     // Under a hand the view stands still.
-    if (this.hands || this.wanted === this.inset) return false;
-    this.inset = this.wanted;
+    if (this.hands || same) return false;
+    this.cover();
     this.lay();
     this.lookAtAll();
     return true;
+  }
+
+  private cover(): void {
+    const { left, right, bottom } = this.wanted;
+    const room = (1 - LEAST_WIDTH) * this.of.element.clientWidth;
+    this.covered = {
+      left: left + right > room ? 0 : left,
+      right,
+      bottom: this.hands ? Math.max(STRIP, bottom) : bottom,
+    };
+  }
+
+  /** How far the middle of what panels leave free lies from the middle of the view: rightwards and upwards, pixels. */
+  get shift(): [number, number] {
+    const { left, right, bottom } = this.covered;
+    return [(left - right) / 2, bottom / 2];
   }
 
   /** The part of the plane that the sheet shows, which the front view shows, too. */
@@ -159,7 +185,8 @@ export class Framing {
     const { far } = this.of.rig;
     const { clientWidth: w, clientHeight: h } = element;
     far.aspect = w / Math.max(1, h);
-    if (this.inset > 0 || this.low > 0) far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
+    const [x, y] = this.shift;
+    if (x !== 0 || y !== 0) far.setViewOffset(w, h, -x, y, w, h);
     else far.clearViewOffset();
     far.updateProjectionMatrix();
     const front = plants.chosen?.view?.front;

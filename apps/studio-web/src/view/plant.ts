@@ -9,11 +9,20 @@ export type Buildable = Pick<Sent, 'parts' | 'textures'> & {
   readonly view: Pick<PlantView, 'parts' | 'materials'>;
 };
 
+/** Whether a surface has its colours from a photograph, by the name that the core gives it. */
+const isTraced = ({ name, kind, texture }: MaterialView): boolean =>
+  texture !== null && name === `${kind}-traced`;
+
+type Look = THREE.MeshStandardMaterial | THREE.MeshLambertMaterial | THREE.MeshBasicMaterial;
+
 /** Textures and materials of all plants. */
 export class Looks {
+  /** What photographs write into alpha: 0 where a picture is toned later, which leaves them as they are. */
+  readonly photoAlpha = { value: 1 };
   private textures = new Map<number, THREE.DataTexture>();
-  private materials = new Map<string, THREE.MeshStandardMaterial | THREE.MeshLambertMaterial>();
+  private materials = new Map<string, Look>();
   private wire = false;
+  private photosLit = true;
 
   /** `matt`: without gloss, which costs a machine without a graphics card as much as all else. */
   constructor(private matt: boolean) {}
@@ -21,6 +30,16 @@ export class Looks {
   /** Materials of the other kind from now on; plants have to take them. */
   setMatt(matt: boolean): void {
     this.matt = matt;
+    this.dropMaterials();
+  }
+
+  /** Whether light falls on photographs, which have light and shade of their own; plants have to take the other materials. */
+  setPhotosLit(lit: boolean): void {
+    this.photosLit = lit;
+    this.dropMaterials();
+  }
+
+  private dropMaterials(): void {
     for (const m of this.materials.values()) m.dispose();
     this.materials.clear();
   }
@@ -48,9 +67,8 @@ export class Looks {
   /** A new worker numbers its textures anew. */
   forget(): void {
     for (const t of this.textures.values()) t.dispose();
-    for (const m of this.materials.values()) m.dispose();
     this.textures.clear();
-    this.materials.clear();
+    this.dropMaterials();
   }
 
   /** Forgets textures that nothing shows any more, and what is made of them. */
@@ -63,7 +81,8 @@ export class Looks {
       this.textures.delete(number);
     }
     for (const [key, material] of this.materials) {
-      const { map, normalMap, aoMap } = material;
+      const { map, aoMap } = material;
+      const normalMap = 'normalMap' in material ? material.normalMap : null;
       if (![map, normalMap, aoMap].some((t) => t && gone.has(t))) continue;
       material.dispose();
       this.materials.delete(key);
@@ -96,6 +115,19 @@ export class Looks {
     return { normalMap, normalScale, aoMap: ormMap, roughnessMap: ormMap };
   }
 
+  /** A surface in the very colours of its picture. */
+  private photo(shown: THREE.MeshBasicMaterialParameters): THREE.MeshBasicMaterial {
+    const material = new THREE.MeshBasicMaterial({ ...shown, toneMapped: false });
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms['photoAlpha'] = this.photoAlpha;
+      shader.fragmentShader = `uniform float photoAlpha;\n${shader.fragmentShader.replace(
+        '#include <opaque_fragment>',
+        '#include <opaque_fragment>\ngl_FragColor.a = photoAlpha;',
+      )}`;
+    };
+    return material;
+  }
+
   material(look: MaterialView, tinted: boolean): THREE.Material {
     const map = look.texture ? (this.textures.get(look.texture.number) ?? null) : null;
     const key = JSON.stringify([look, tinted]);
@@ -109,6 +141,11 @@ export class Looks {
       alphaTest: look.masked ? 0.5 : 0,
       wireframe: this.wire,
     };
+    if (!this.photosLit && isTraced(look)) {
+      const photo = this.photo(shown);
+      this.materials.set(key, photo);
+      return photo;
+    }
     const material = this.matt
       ? new THREE.MeshLambertMaterial(shown)
       : new THREE.MeshStandardMaterial({
@@ -129,23 +166,15 @@ export class Looks {
   }
 }
 
-/** The columns of a plant's meshes on the graphics card, by the names of the parts; copies share them. */
-export type Shapes = Map<string, THREE.BufferGeometry>;
+/** The columns of a plant's meshes on the graphics card, in the order of its parts, whose names may repeat; copies share them. */
+export type Shapes = THREE.BufferGeometry[];
 
 /** Puts columns into shapes, in the place of what they were. */
-export function fillShapes(shapes: Shapes, view: PlantView, parts: PartArrays[]): void {
-  const names = new Set(view.parts.map((p) => p.name));
-  for (const [name, geometry] of shapes) {
-    if (names.has(name)) continue;
-    geometry.dispose();
-    shapes.delete(name);
-  }
-  view.parts.forEach(({ name }, i) => {
-    const columns = parts[i];
-    if (!columns) return;
-    const geometry = shapes.get(name) ?? new THREE.BufferGeometry();
-    shapes.set(name, geometry);
-    fill(geometry, columns);
+export function fillShapes(shapes: Shapes, parts: readonly PartArrays[]): void {
+  for (const geometry of shapes.splice(parts.length)) geometry.dispose();
+  parts.forEach((columns, i) => {
+    shapes[i] ??= new THREE.BufferGeometry();
+    fill(shapes[i], columns);
   });
 }
 
@@ -156,8 +185,10 @@ export class PlantMeshes {
   readonly group = new THREE.Group();
   readonly obstacles = new THREE.Group();
   view: PlantView | undefined;
-  shapes: Shapes = new Map();
+  shapes: Shapes = [];
 
+  /** One for each of its parts. */
+  private readonly meshes: THREE.Mesh[] = [];
   private carrying: Carrying | undefined;
 
   constructor(private readonly looks: Looks) {
@@ -173,10 +204,7 @@ export class PlantMeshes {
   carry(mesh: number, rows: HeldRows): void {
     this.putBack();
     if (this.view?.mesh !== mesh || rows.length === 0) return;
-    const meshes = this.view.parts.map(
-      ({ name }) => this.group.children.find((m) => m.name === name) as THREE.Mesh | undefined,
-    );
-    this.carrying = new Carrying(mesh, this.group, meshes, rows);
+    this.carrying = new Carrying(mesh, this.group, this.meshes, rows);
   }
 
   pose(pose: CarriedPose): void {
@@ -192,25 +220,18 @@ export class PlantMeshes {
   /** Shows these shapes with the materials of the view. */
   update(view: PlantView, shapes: Shapes): void {
     this.putBack();
+    this.view = view;
     this.shapes = shapes;
-    const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
-    for (const { name, material } of view.parts) {
-      const geometry = shapes.get(name);
-      const look = view.materials[material];
-      if (!geometry || !look) continue;
-      let mesh = old.get(name);
-      old.delete(name);
-      if (!mesh) {
-        mesh = new THREE.Mesh();
-        mesh.name = name;
-        mesh.castShadow = true;
-        mesh.receiveShadow = true;
-        this.group.add(mesh);
-      }
+    for (const mesh of this.meshes.splice(shapes.length)) mesh.removeFromParent();
+    shapes.forEach((geometry, i) => {
+      const mesh = this.meshes[i] ?? new THREE.Mesh();
       mesh.geometry = geometry;
-      mesh.material = this.looks.material(look, geometry.hasAttribute('color'));
-    }
-    for (const mesh of old.values()) this.group.remove(mesh);
+      mesh.name = view.parts[i]?.name ?? '';
+      mesh.castShadow = mesh.receiveShadow = true;
+      this.meshes[i] = mesh;
+      this.group.add(mesh);
+    });
+    this.relook();
   }
 
   /** The box around it and what it grows around, metres of the scene; empty where it is not seen. */
@@ -232,11 +253,11 @@ export class PlantMeshes {
 
   /** Takes its materials anew. */
   relook(): void {
-    for (const mesh of this.group.children as THREE.Mesh[]) {
-      const part = this.view?.parts.find((p) => p.name === mesh.name);
+    this.meshes.forEach((mesh, i) => {
+      const part = this.view?.parts[i];
       const look = part && this.view?.materials[part.material];
       if (look) mesh.material = this.looks.material(look, mesh.geometry.hasAttribute('color'));
-    }
+    });
   }
 
   /** What the plant grows around; `corners` has the triangles of those that are meshes. */

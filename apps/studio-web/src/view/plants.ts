@@ -123,8 +123,8 @@ export class Plants {
       this.named.set(id, plant);
       this.holder.add(plant.place);
       plant.view = { ...sent.view, obstacles: plant.view?.obstacles ?? [] };
-      const shapes: Shapes = new Map();
-      fillShapes(shapes, sent.view, sent.parts ?? []);
+      const shapes: Shapes = [];
+      fillShapes(shapes, sent.parts ?? []);
       plant.update(plant.view, shapes);
     }
     const seen = this.all.flatMap((p) => (p.view ? [p.view] : []));

@@ -12,7 +12,7 @@ import { bonesOf } from './bones';
 import { Rig, type Side } from './camera';
 import { Easel } from './easel';
 import { Frames } from './frames';
-import { Framing } from './framing';
+import { type Covered, Framing } from './framing';
 import { type Guide, Guides } from './guides';
 import { immerse, type Within } from './immersion';
 import type { StageSetting } from './moods';
@@ -31,6 +31,8 @@ import type { WalkMode } from './walk';
 
 /** Eyes of a walker, metres, and between which heights of the stage they stay. */
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
+/** Most pixels for each of the screen's. */
+const FINEST = 2;
 /** What a person does in the view, and what it says of itself. */
 export interface ViewEvents {
   /** A plant was clicked; `more`: it is to be chosen beside the others. */
@@ -45,6 +47,8 @@ export interface ViewEvents {
   placeBegin(): void;
   place(plant: number, position: [number, number, number], yaw: number, scale: number): void;
   carry(plants: number[], how: Carry): void;
+  /** The wheel is turned over the front view: at a place right of its middle and below it, in shares of its height. */
+  zoomed(by: WheelEvent, right: number, down: number): void;
   placeEnd(): void;
   obstacle(plant: number, row: number, by: [number, number, number]): void;
 }
@@ -70,6 +74,7 @@ export class PlantView {
   private weak = false;
   /** See `isFine`; not known before the stage is set. */
   private fine: boolean | undefined;
+  private photosLit: boolean | undefined;
   private readonly placer: Placer;
   private dragging = false;
   private selection: readonly number[] = [];
@@ -92,22 +97,28 @@ export class PlantView {
     this.slow = drawnBySoftware();
     this.looks = new Looks(this.slow);
     this.plants = new Plants(this.looks, this.holder);
-    this.frames = new Frames(this.slow, {
+    const pixels = Math.min(FINEST, devicePixelRatio || 1);
+    const drawer = {
       // A headset asks for its pictures itself.
       away: () => this.immersing,
       isLed: () => this.rig.isLed,
-      draw: (ms) => {
+      draw: (ms: number) => {
         const there = this.rig.glide(1 - Math.exp(-Math.min(ms, 400) / 120));
         this.rig.update();
         this.render();
         return !there || (this.plants.standIn?.moves ?? false);
       },
       shown: () => this.easel?.show(),
-      rests: (on) => {
+      rests: (on: boolean) => {
         this.element.dataset['rests'] = on ? '1' : '0';
+        delete this.element.dataset['finished'];
       },
-      grained: (grain) => this.renderer.setPixelRatio(grain),
-    });
+      grained: (grain: number) => this.renderer.setPixelRatio(grain),
+      finished: () => {
+        if (this.element.dataset['rests'] === '1') this.element.dataset['finished'] = '1';
+      },
+    };
+    this.frames = new Frames(this.slow, drawer, { moving: pixels, still: FINEST });
     this.renderer = new THREE.WebGLRenderer({
       antialias: !this.slow,
       powerPreference: 'high-performance',
@@ -141,15 +152,18 @@ export class PlantView {
     this.element.append(canvas);
     this.stage.scene.add(this.holder);
     this.stage.scene.add(this.guides.group);
-    this.rig = new Rig(canvas, {
+    // Before the camera, which is not seen in the front view.
+    canvas.addEventListener('wheel', (e) => this.wheel(e), { passive: false });
+    const rigEvents = {
       redraw: () => this.redraw(),
-      taken: (turns) => this.taken(turns),
+      taken: (turns: boolean) => this.taken(turns),
       eyes: () => ({
         height: Math.min(EYES.high, Math.max(EYES.low, EYES.m * this.framing.scale)),
         metre: this.framing.scale,
       }),
-      walked: (mode) => events.walked(mode),
-    });
+      walked: (mode: WalkMode | undefined) => events.walked(mode),
+    };
+    this.rig = new Rig(canvas, rigEvents, !this.slow);
     this.framing = new Framing({
       element: this.element,
       stage: this.stage,
@@ -416,6 +430,26 @@ export class PlantView {
     return pointerOf(this.picker.ray(x, y), this.camera, place, pressure);
   }
 
+  /** How high and wide the chosen plant is, metres of the scene, and the lower right corner of its box on the screen, pixels. */
+  extent(): { high: number; wide: number; x: number; y: number } | undefined {
+    const box = this.chosen?.box() ?? new THREE.Box3();
+    if (box.isEmpty() || this.immersing) return undefined;
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const size = box.getSize(new THREE.Vector3());
+    let [x, y] = [0, 0];
+    for (let corner = 0; corner < 8; corner += 1) {
+      const at = new THREE.Vector3(
+        corner & 1 ? box.max.x : box.min.x,
+        corner & 2 ? box.max.y : box.min.y,
+        corner & 4 ? box.max.z : box.min.z,
+      );
+      this.holder.localToWorld(at).project(this.camera);
+      x = Math.max(x, ((at.x + 1) / 2) * w);
+      y = Math.max(y, ((1 - at.y) / 2) * h);
+    }
+    return { high: size.y, wide: Math.max(size.x, size.z), x, y };
+  }
+
   /** So many pixels, in metres of the chosen plant. */
   reach(pixels: number): Omit<ShapeReach, 'bearers'> {
     return reachOf(this.camera, this.chosen?.place, pixels / Math.max(1, this.element.clientHeight));
@@ -556,9 +590,15 @@ export class PlantView {
     this.rig.controls.enableZoom = on;
   }
 
-  /** Pixels on the left that a list covers: the plant is shown beside it. */
-  setInset(pixels: number): void {
-    if (this.framing.setInset(pixels)) this.redraw();
+  /** What panels cover: plants are shown beside them. */
+  setCovered(covered: Covered): void {
+    if (this.framing.setCovered(covered)) this.redraw();
+  }
+
+  /** Another document: from the front again, and whole. */
+  begin(): void {
+    this.rig.begin();
+    this.frameNow();
   }
 
   /** Shows the whole plant and follows it again. */
@@ -599,9 +639,23 @@ export class PlantView {
     const covered = this.stage.covers;
     this.stage.set(setting, fine);
     if (fine !== this.fine) this.refit(fine);
+    this.lightPhotos(setting.sky !== 'studio');
     if (fine || blur > 0) void this.needPipeline();
     if (this.stage.covers !== covered) this.framing.fit();
     this.redraw();
+  }
+
+  /** Under an open sky photographs are lit as all else; in the studio they keep their colours. */
+  private lightPhotos(lit: boolean): void {
+    if (lit === this.photosLit) return;
+    this.photosLit = lit;
+    this.looks.setPhotosLit(lit);
+    this.relook();
+  }
+
+  private relook(): void {
+    for (const plant of this.plants.all) plant.relook();
+    this.plants.standIn?.relook();
   }
 
   /** Materials and shadows for another quality. */
@@ -609,8 +663,7 @@ export class PlantView {
     this.fine = fine;
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
-    for (const plant of this.plants.all) plant.relook();
-    this.plants.standIn?.relook();
+    this.relook();
     this.element.dataset['quality'] = fine ? 'fine' : 'fast';
   }
 
@@ -645,6 +698,11 @@ export class PlantView {
     };
   }
 
+  /** A hand brought the camera to a place and a distance of its own. */
+  get isComposed(): boolean {
+    return !this.framing.follow;
+  }
+
   /** The plant keeps its size from now on, or fits the stage again. */
   hold(on: boolean): void {
     if (on) this.rig.glide(1);
@@ -670,11 +728,13 @@ export class PlantView {
       this.showAids(false);
       stage.sharpen(SHADOW.fine);
       if (size.transparent) stage.setBare(true);
+      this.looks.photoAlpha.value = size.transparent ? 1 : 0;
       this.guides.face(camera);
     };
     const after = (): void => {
       this.showAids(true);
       stage.setBare(false);
+      this.looks.photoAlpha.value = 1;
     };
     const steps = { before, after, watch };
     const pixels = await shoot({ renderer, stage, plants, pipeline, camera, effects }, size, steps);
@@ -728,18 +788,56 @@ export class PlantView {
 
   /** A hand took the camera: it is no longer moved by itself, and turning leaves the front view. */
   private taken(turns: boolean): void {
-    if (this.isFront && turns) this.setFront(false);
+    if (this.isFront && turns) this.leaveFront();
     this.rig.leave();
     if (!turns) this.framing.follow = false;
+  }
+
+  /** From the front view into orbit: the camera begins where what is seen stays where it is. */
+  leaveFront(): void {
+    if (!this.isFront) return;
+    const { flat, chosen, holder } = this;
+    const before = chosen?.view?.front && {
+      middle: holder.worldToLocal(
+        new THREE.Vector3((flat.left + flat.right) / 2, (flat.bottom + flat.top) / 2, 0),
+      ),
+      height: (flat.top - flat.bottom) / this.framing.scale,
+    };
+    this.setFront(false);
+    if (!before || !chosen) return;
+    const { place } = chosen;
+    place.updateWorldMatrix(true, false);
+    const [x, y] = this.framing.shift;
+    const tall = Math.max(1, this.element.clientHeight);
+    this.rig.face(
+      place.localToWorld(before.middle),
+      new THREE.Vector3(0, 0, 1).transformDirection(place.matrixWorld),
+      before.height * place.getWorldScale(sized).y,
+      [x / tall, y / tall],
+    );
+    this.framing.follow = false;
+  }
+
+  /** In the front view the wheel zooms the sheet, whose part of the plane is seen. */
+  private wheel(e: WheelEvent): void {
+    if (this.camera !== this.flat || !this.rig.controls.enableZoom) return;
+    e.preventDefault();
+    e.stopImmediatePropagation();
+    const box = this.element.getBoundingClientRect();
+    const [x, y] = [e.clientX - box.left - box.width / 2, e.clientY - box.top - box.height / 2];
+    this.events.zoomed(e, x / box.height, y / box.height);
   }
 
   private resize(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
     if (w === 0 || h === 0 || this.immersing) return;
-    this.renderer.setPixelRatio(this.slow ? this.frames.grain : Math.min(2, devicePixelRatio || 1));
+    this.renderer.setPixelRatio(this.frames.grain);
     this.renderer.setSize(w, h, false);
+    this.easel?.discard();
     this.framing.lay();
     this.framing.lookAtAll();
+    // The canvas is empty now. Without a graphics card another one is seen, which keeps its picture.
+    if (!this.slow) this.render();
     this.redraw();
   }
 
@@ -756,6 +854,7 @@ export class PlantView {
     if (this.plants.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
     const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.isFront));
     this.stage.prepare(!through, this.rig.far.aspect, this.holder);
+    this.looks.photoAlpha.value = through ? 0 : 1;
     if (through) {
       const { x, y } = this.renderer.getDrawingBufferSize(new THREE.Vector2());
       const effects = { ...this.effects, transparent: false, zoom: 1 };
@@ -764,7 +863,8 @@ export class PlantView {
     } else {
       this.renderer.render(this.stage.scene, camera);
     }
-    this.element.dataset['eye'] = JSON.stringify({ ...this.rig.pose, metre: this.framing.scale });
+    const { scale, shift } = this.framing;
+    this.element.dataset['eye'] = JSON.stringify({ ...this.rig.pose, metre: scale, shift });
     this.events.drawn();
   }
 
