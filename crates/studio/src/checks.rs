@@ -45,7 +45,7 @@ pub struct PlausibilityLimits {
     pub extent_least: f64,
     /// The same: half of it is too much.
     pub extent_most: f64,
-    /// How likely a reading is right: of 43 drawings by people below this, 18 were read right (`docs/strokes.md`).
+    /// How likely a reading is right: of 42 drawings by people below this, 18 were read right (`docs/strokes.md`).
     pub score_least: f64,
     /// The height of a tree of a scan, metres: what is lower is a seedling, or in another unit.
     pub tree_least_m: f64,

@@ -17,10 +17,6 @@ const YOUNG = 3;
 /** Trees with parts that only old ones have: dead wood, and twigs of a palm. */
 const GROWN = ['cherry', 'dead-oak', 'palm'];
 
-interface Species {
-  readonly key: string;
-  readonly spec: { age?: unknown };
-}
 /** One file of all plants, as fine as they are shown. */
 const WHOLE: ExportRequest = {
   format: 'stl',
