@@ -14,8 +14,15 @@ if TYPE_CHECKING:
     import numpy as np
 
 ENDLESS = float("inf")
-FIXED = ("glb", "burgeon")
-"""Formats that have a unit and axes of their own."""
+FORMATS = {word: (kind, frozenset(rooms)) for kind, word, _, rooms in _burgeon.formats()}
+"""Of each format of models and of structure that is written, its kind and what its files have room for."""
+STRUCTURES = tuple(word for word, (kind, _) in FORMATS.items() if kind == "structure")
+"""What the structure of a plant is written as."""
+
+
+def holds(word: str, room: str) -> bool:
+    """Whether files of a format have room for something."""
+    return room in FORMATS.get(word, ("", ()))[1]
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:
@@ -119,7 +126,7 @@ def unused(name: str, value: Any, needs: str) -> SpecError:
 
 def axes(extension: str, unit: str, up: "str | None") -> None:
     """Fails on a unit or an axis where the format has its own."""
-    if extension in FIXED:
+    if extension == "burgeon" or (extension in FORMATS and not holds(extension, "axes")):
         for name, value, own in (("unit", unit, "m"), ("up", up or "y", "y")):
             if word(name, value) != own:
                 raise unused(name, value, f"is of files that do not fix it: .{extension} is in metres, +Y up")

@@ -10,7 +10,7 @@ from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
 from ._given import axes as check_axes
-from ._given import flag, number, whole, word, wrong
+from ._given import STRUCTURES, flag, number, whole, word, wrong
 from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
-
-#: As what the structure of a plant is written.
-STRUCTURES = ("mtg", "opf", "qsm", "swc")
-
 
 class _Table:
     """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use burgeon::formats::{ModelFormat, Packing, StructureFormat};
+use burgeon::formats::{FormatRow, ModelFormat, Packing, Room, StructureFormat, list_of_endings};
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
 use burgeon::spec::Spec;
 use burgeon::{Seed, Unit, UpAxis};
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+
+use super::lists;
 
 /// Options of every command.
 #[derive(Args, Debug)]
@@ -77,9 +79,7 @@ pub(crate) struct SkinArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda and .usdz
-    /// (docs/exports.md).
-    #[arg(long)]
+    #[arg(long, help = lists::wind(""))]
     pub(crate) wind: bool,
 }
 
@@ -171,50 +171,27 @@ pub(crate) enum ViewWord {
 pub(crate) struct AxesArgs {
     /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and coordinates given as options; glTF
     /// is always +Y [default: y; z for MTG, OPF, QSM and SWC].
-    #[arg(long, value_enum)]
-    pub(crate) up: Option<UpWord>,
+    #[arg(long, value_parser = up_words())]
+    pub(crate) up: Option<UpAxis>,
     /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and lengths said to be in --unit; glTF is always
     /// in metres.
-    #[arg(long, value_enum, default_value_t = UnitWord::M)]
-    pub(crate) unit: UnitWord,
+    #[arg(long, value_parser = unit_words(), default_value = Unit::Metre.word())]
+    pub(crate) unit: Unit,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum UpWord {
-    /// +Y
-    Y,
-    /// +Z
-    Z,
+/// The words of axes that point up.
+pub(crate) fn up_words() -> impl TypedValueParser<Value = UpAxis> {
+    let words = [(UpAxis::Y, "+Y"), (UpAxis::Z, "+Z")];
+    let words = words.map(|(up, help)| PossibleValue::new(up.word()).help(help));
+    PossibleValuesParser::new(words).try_map(|word| UpAxis::from_word(&word).ok_or("no axis"))
 }
 
-impl From<UpWord> for UpAxis {
-    fn from(word: UpWord) -> Self {
-        match word {
-            UpWord::Y => Self::Y,
-            UpWord::Z => Self::Z,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub(crate) enum UnitWord {
-    /// Metres
-    #[default]
-    M,
-    /// Centimetres
-    Cm,
-    /// Millimetres
-    Mm,
-}
-
-impl From<UnitWord> for Unit {
-    fn from(word: UnitWord) -> Self {
-        match word {
-            UnitWord::M => Self::Metre,
-            UnitWord::Cm => Self::Centimetre,
-            UnitWord::Mm => Self::Millimetre,
-        }
-    }
+/// The words of units of length.
+pub(crate) fn unit_words() -> impl TypedValueParser<Value = Unit> {
+    let words =
+        [(Unit::Metre, "Metres"), (Unit::Centimetre, "Centimetres"), (Unit::Millimetre, "Millimetres")];
+    let words = words.map(|(unit, help)| PossibleValue::new(unit.word()).help(help));
+    PossibleValuesParser::new(words).try_map(|word| Unit::from_word(&word).ok_or("no unit"))
 }
 
 /// How a GLB is packed.
@@ -245,33 +222,27 @@ fn texture_size(text: &str) -> Result<u32, String> {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum FormatWord {
-    /// Binary glTF: one file with textures and materials
-    Glb,
-    /// Wavefront OBJ with its material file and textures beside it
-    Obj,
-    /// PLY: one mesh with colours
-    Ply,
-    /// Universal Scene Description as text, with textures beside it
-    Usda,
-    /// Universal Scene Description with its textures in one file
-    Usdz,
-}
+/// A format of models as the word of an option.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FormatWord(pub(crate) ModelFormat);
 
 impl FormatWord {
-    pub(crate) const fn format(self) -> ModelFormat {
-        match self {
-            Self::Glb => ModelFormat::Glb,
-            Self::Obj => ModelFormat::Obj,
-            Self::Ply => ModelFormat::Ply,
-            Self::Usda => ModelFormat::Usda,
-            Self::Usdz => ModelFormat::Usdz,
-        }
+    pub(crate) const GLB: Self = Self(ModelFormat::Glb);
+}
+
+impl ValueEnum for FormatWord {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<FormatWord>> =
+            LazyLock::new(|| PlantFormat::models().map(FormatWord).collect());
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(possible(self.0.row()))
     }
 }
 
-/// What a plant is written as, by the ending of its file.
+/// A format of plants as the word of an option: the ending of its files.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlantFormatWord(pub(crate) PlantFormat);
 
@@ -282,20 +253,17 @@ impl PlantFormatWord {
 impl ValueEnum for PlantFormatWord {
     fn value_variants<'a>() -> &'a [Self] {
         static ALL: LazyLock<Vec<PlantFormatWord>> =
-            LazyLock::new(|| PlantFormat::written().into_iter().map(PlantFormatWord).collect());
+            LazyLock::new(|| PlantFormat::written().map(PlantFormatWord).collect());
         &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self.0 {
-            PlantFormat::Model(model) => {
-                FormatWord::value_variants().iter().find(|f| f.format() == model)?.to_possible_value()
-            }
-            PlantFormat::Structure(structure) => {
-                Some(PossibleValue::new(structure.extension()).help(structure.about()))
-            }
-        }
+        Some(possible(self.0.row()))
     }
+}
+
+fn possible(row: &'static FormatRow) -> PossibleValue {
+    PossibleValue::new(row.endings[0]).help(row.about)
 }
 
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
@@ -362,16 +330,28 @@ pub(crate) enum PlantFormat {
 }
 
 impl PlantFormat {
-    /// The axes and the unit are the format's own.
-    pub(crate) const fn fixed_axes(self) -> bool {
-        matches!(self, Self::Model(format) if format.fixed_axes())
+    pub(crate) const fn row(self) -> &'static FormatRow {
+        match self {
+            Self::Model(model) => model.row(),
+            Self::Structure(structure) => structure.row(),
+        }
+    }
+
+    /// Whether its files have room for something.
+    pub(crate) fn holds(self, room: Room) -> bool {
+        self.row().holds.contains(&room)
     }
 
     /// How names of its files end, without the dot.
-    pub(crate) fn extension(self) -> &'static str {
+    pub(crate) const fn extension(self) -> &'static str {
+        self.row().endings[0]
+    }
+
+    /// The format of models that it is.
+    pub(crate) const fn model(self) -> Option<ModelFormat> {
         match self {
-            Self::Model(model) => model.extension(),
-            Self::Structure(structure) => structure.extension(),
+            Self::Model(model) => Some(model),
+            Self::Structure(_) => None,
         }
     }
 
@@ -381,27 +361,29 @@ impl PlantFormat {
             .or_else(|| ModelFormat::from_extension(extension).map(Self::Model))
     }
 
-    /// All that a folder of plants can hold: bare triangles are written one by one.
-    fn written() -> Vec<Self> {
-        FormatWord::value_variants()
-            .iter()
-            .map(|f| Self::Model(f.format()))
-            .chain(Self::structures())
-            .collect()
+    /// The formats of models that are written.
+    fn models() -> impl Iterator<Item = ModelFormat> {
+        ModelFormat::ALL.into_iter().filter(|f| f.row().is_written())
     }
 
-    /// The structures that are told by the ending of a file.
+    /// All that plants are written as, by the last ending of a file's name: that of tables may hold anything.
+    fn written() -> impl Iterator<Item = Self> {
+        Self::models().map(Self::Model).chain(Self::structures())
+    }
+
     fn structures() -> impl Iterator<Item = Self> {
-        let named = |f: &StructureFormat| StructureFormat::from_extension(f.extension()) == Some(*f);
+        let named = |f: &StructureFormat| !f.extension().contains('.');
         StructureFormat::ALL.into_iter().filter(named).map(Self::Structure)
+    }
+
+    /// How files of structure may end, for help texts.
+    pub(crate) fn structure_endings() -> String {
+        list_of_endings(Self::structures().map(|f| &f.row().endings[0]))
     }
 
     /// How files of plants may end, for messages.
     pub(crate) fn endings() -> String {
-        let models = ModelFormat::ALL.into_iter().filter(|f| *f != ModelFormat::Gltf).map(Self::Model);
-        let mut all: Vec<&str> = models.chain(Self::structures()).map(Self::extension).collect();
-        let last = all.pop().unwrap_or_default();
-        format!("plants are written as .{} or .{last}", all.join(", ."))
+        format!("plants are written as {}", list_of_endings(Self::written().map(|f| &f.row().endings[0])))
     }
 }
 

@@ -13,10 +13,10 @@ use base::Report;
 use glam::DVec3;
 use mesh::PointCloud;
 
+use crate::CloudFormat;
 use crate::ExportSpec;
 use crate::error::{CloudError, FileFault, Place, WriteError};
 use crate::foreign::Foreign;
-use crate::kind::CloudFormat;
 
 impl CloudFormat {
     /// The format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
@@ -122,7 +122,7 @@ pub fn write_cloud_ply(cloud: &PointCloud, spec: &ExportSpec, mut out: impl Writ
         out,
         "ply\nformat binary_little_endian 1.0\ncomment unit {}\n{}element vertex {}\nproperty double x\n\
          property double y\nproperty double z\n",
-        spec.unit_word(),
+        spec.unit.plural(),
         spec.offset_line(cloud.offset_m, "comment"),
         cloud.points.len()
     )?;
