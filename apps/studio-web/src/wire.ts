@@ -206,6 +206,14 @@ export const FORMATS = {
     holds: ["parts", "textures", "translucence", "wind", "levels", "instances", "joints", "morphs", "packing"],
     zipped: false,
   },
+  gltf: {
+    kind: "model",
+    ending: "gltf",
+    type: "model/gltf+json",
+    about: "glTF as text, with its buffer and textures beside it",
+    holds: ["parts", "textures", "translucence", "wind", "levels", "instances", "joints", "morphs", "packing"],
+    zipped: true,
+  },
   obj: {
     kind: "model",
     ending: "obj",
@@ -1380,7 +1388,7 @@ export type Mirror = {
 export type ModelFormat =
   | /** Binary glTF: one file with textures and materials. */
   "glb"
-  | /** glTF as text, with its buffers and textures beside it or in it. */
+  | /** glTF as text, with its buffer and textures beside it. */
   "gltf"
   | /** Wavefront OBJ with its material file and textures beside it. */
   "obj"

@@ -219,10 +219,10 @@ formats! {
             name: "glTF",
             endings: &["gltf"],
             media_type: "model/gltf+json",
-            about: "glTF as text, with its buffers and textures beside it or in it",
-            access: Read,
-            holds: [Parts, Textures, Translucence, Wind],
-            beside: [],
+            about: "glTF as text, with its buffer and textures beside it",
+            access: Both,
+            holds: [Parts, Textures, Translucence, Wind, Levels, Instances, Joints, Morphs, Packing],
+            beside: [Buffer, Textures],
         }
         Obj = "obj" {
             name: "OBJ",

@@ -6,6 +6,7 @@
 export const zhHelp: Readonly<Record<string, string>> = {
   // Formats
   'format.glb': '二进制 glTF：一个文件，含纹理与材质',
+  'format.gltf': 'glTF 文本，数据文件与纹理在旁边',
   'format.obj': 'Wavefront OBJ，材质文件与纹理在旁边',
   'format.ply': 'PLY：带颜色的单一网格',
   'format.stl': 'STL：仅三角形',

@@ -7,6 +7,7 @@ mod glb_write;
 mod gltf;
 mod gltf_bytes;
 mod gltf_look;
+mod gltf_text;
 mod meshopt;
 mod meshopt_filter;
 mod named;
@@ -255,10 +256,11 @@ pub fn model_files<'a>(
 pub fn gltf_files<'a>(
     glb: Vec<u8>,
     format: ModelFormat,
-    _stems: impl Into<FileStems<'a>>,
+    stems: impl Into<FileStems<'a>>,
 ) -> Result<ModelFiles, WriteError> {
     match format {
         ModelFormat::Glb => Ok(ModelFiles::new(glb, Vec::new())),
+        ModelFormat::Gltf => gltf_text::text_files(&glb, stems.into()),
         _ => Err(WriteError::ReadOnly { format: format.name(), instead: ".glb" }),
     }
 }
