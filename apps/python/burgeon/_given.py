@@ -147,3 +147,15 @@ def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
             fields = {"path": name, "name": str(key), "choices": ", ".join(known)}
             meant = _burgeon.meant(str(key), known)
             raise SpecError(f"{name} has no {key!r}, it has {fields['choices']}{meant}", "spec-unknown", fields)
+
+
+def asked_of(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
+    """A maker's request as the core takes it; of ``skin``, None stands for what is not asked."""
+    if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
+        raise beyond("seed", repr(seed), "a whole number, 0 to 2^64 - 1")
+    return {
+        "seed": int(seed),
+        "budget": number("budget", budget, 1, 1000),
+        "fields": dict(fields),
+        "skin": {name: value for name, value in skin.items() if value is not None},
+    }
