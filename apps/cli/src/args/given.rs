@@ -7,7 +7,8 @@ use burgeon::formats::{ModelFormat, Room};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 
-use super::shared::{CommonArgs, PictureArgs, PlantFormat, ViewWord};
+use super::plant_format::PlantFormat;
+use super::shared::{CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
 
 /// The options that stand on the command line, rather than those that have a default, by the names of their fields.

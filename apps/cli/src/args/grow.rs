@@ -12,9 +12,8 @@ use clap::{Args, ValueEnum};
 
 use super::given::Given;
 use super::lists;
-use super::shared::{
-    AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, PlantFormat, SkinArgs, of, ranged, seed,
-};
+use super::plant_format::PlantFormat;
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]

@@ -2,7 +2,7 @@
 
 use burgeon::formats::{DrawingFormat, ModelFormat, Room};
 
-use super::shared::PlantFormat;
+use super::plant_format::PlantFormat;
 
 /// A plant as a model or as its structure.
 pub(crate) fn plant_output() -> String {

@@ -7,6 +7,7 @@ mod given;
 mod grow;
 mod leaf;
 mod lists;
+mod plant_format;
 mod presets;
 mod replay;
 mod scan;
@@ -22,13 +23,12 @@ pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurface
 pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };
+pub(crate) use plant_format::{FormatWord, PlantFormat};
 pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
 pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
-pub(crate) use shared::{
-    AxesArgs, CheckArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs,
-};
+pub(crate) use shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 
 use clap::{Args, Parser, Subcommand};

@@ -9,7 +9,8 @@ use clap::{Args, ValueEnum};
 
 use super::given::Given;
 use super::lists;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, of, seed};
+use super::plant_format::PlantFormatWord;
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, of, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]

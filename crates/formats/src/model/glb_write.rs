@@ -141,27 +141,6 @@ impl<'a> Level<'a> {
     }
 }
 
-/// Writes levels of one model, finest first, as one GLB: the first as [`write_glb`] or, packed, as
-/// [`write_glb_packed`](super::write_glb_packed) does; each coarser one below a node of its own that the first's node names
-/// (`MSFT_lod`) and that stands in no scene, so that a program without levels shows the first alone. Each level is meant for
-/// half the size in a picture of the one before (`MSFT_screencoverage`); the last is for all sizes below. Textures that
-/// levels share are there once. Copies are instances (`EXT_mesh_gpu_instancing`, required where there are any), each with
-/// its colour as `_COLOR_0`.
-///
-/// # Errors
-/// As [`write_glb`], for any of the models.
-pub fn write_glb_levels(
-    levels: &[Level<'_>],
-    packing: Option<super::Packing>,
-    cache: &mut PngCache,
-    out: impl Write,
-) -> Result<(), WriteError> {
-    match packing {
-        Some(packing) => super::glb_pack::write_packed(levels, packing, cache, out),
-        None => write_all(levels, &Morph::default(), cache, out),
-    }
-}
-
 /// Writes a model with joints and their looping animation: as [`write_glb`], each vertex held by its joints, and the parts
 /// at the top of the scene, where glTF wants what joints move. Attributes for wind are left out: joints do what they ask for.
 ///
@@ -193,7 +172,7 @@ fn write(model: &Model, morph: &Morph<'_>, cache: &mut PngCache, out: impl Write
     write_all(&[Level::plain(model)], morph, cache, out)
 }
 
-fn write_all(
+pub(super) fn write_all(
     levels: &[Level<'_>],
     morph: &Morph<'_>,
     cache: &mut PngCache,

@@ -1,6 +1,7 @@
 //! bytes <-> [`mesh::Model`].
 
 mod axes;
+mod glb_levels;
 mod glb_pack;
 mod glb_read;
 mod glb_write;
@@ -28,10 +29,10 @@ use glam::DVec3;
 use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
+pub use glb_levels::write_glb_levels;
 pub use glb_pack::{Packing, write_glb_packed};
 pub use glb_write::{
-    Level, Morph, write_glb, write_glb_levels, write_glb_morph, write_glb_rigged, write_glb_scene,
-    write_glb_with,
+    Level, Morph, write_glb, write_glb_morph, write_glb_rigged, write_glb_scene, write_glb_with,
 };
 pub use named::decode_uri;
 pub use obj_write::{FileStems, ObjFiles, obj_files};
