@@ -78,6 +78,9 @@ pub(crate) fn test(tools: &Tools, tested: bool, share: Share) -> Outcome {
     c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene.glb"));
     c.arg("--report").arg(&report);
     finish(c)?;
+    let mut c = prepare(burgeon("debug"), &[]);
+    c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene-text.gltf"));
+    finish(c)?;
     say("$ node scene.mjs (a drawing, a tree and a flower in one project, with edits by hand)");
     let mut c = prepare("node", &["xtask/node/scene.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&project).arg(&report);

@@ -1,7 +1,7 @@
 //! `burgeon convert`: models to models, drawings to drawings.
 
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, read_drawings,
+    CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, Room, read_drawings,
     write_cloud_ply, write_drawing, write_svg,
 };
 use burgeon::mesh::PointCloud;
@@ -49,7 +49,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         (Kind::Model(_), true) => {
             return Err(Failure::at(
                 &args.output,
-                "a model converts to .glb, .obj, .ply, .stl, .usda or .usdz, not to a drawing",
+                format_args!("a model converts to {}, not to a drawing", ModelFormat::written_endings()),
             ));
         }
     };
@@ -80,7 +80,7 @@ fn model(
     machine: &Machine,
 ) -> Outcome<ItemReport> {
     let format = files::plan_model(outputs, &args.output)?;
-    args.given.only_if(format == ModelFormat::Glb, &["pack"], "models as .glb", "none is made")?;
+    args.given.only_if_holds(format.holds(Room::Packing), &["pack"], Room::Packing)?;
     let read_axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
     let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
@@ -130,14 +130,14 @@ fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
         return given.refuse(&others, "models", "a drawing is converted");
     };
     given.check_picture(args.png.is_some(), &args.picture)?;
-    let written = files::writable(&args.output).is_ok_and(|f| !f.fixed_axes());
+    let written = files::writable(&args.output).is_ok_and(|f| f.holds(Room::Axes));
     given.only_if(
-        !read.fixed_axes(),
+        read.holds(Room::Axes),
         &["in_up", "in_unit"],
         "models that do not fix their axes and unit",
         "glTF is in metres, +Y up",
     )?;
-    given.check_axes(written || !read.fixed_axes())
+    given.check_axes(written || read.holds(Room::Axes))
 }
 
 /// A cloud, with what its reader says, where its origin is and how long reading took.

@@ -1,23 +1,24 @@
 //! Files by their extension or, failing that, by their first bytes.
 
 use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Cursor, Read};
+use std::io::{BufRead, BufReader, Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign, MAX_MODEL_BYTES, ModelFormat,
-    NoFile, Packing, PngCache, ReadDrawing, SideFile, StructureFormat, decode_uri, obj_files, usd_files,
-    warn_of_wind, write_glb_packed, write_glb_with,
+    Beside, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign, MAX_MODEL_BYTES,
+    ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, Room, SideFile, StructureFormat,
+    WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind, write_glb_packed,
+    write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{DrawnLine, Report, Spec, Warning, plainly};
+use burgeon::{DrawnLine, Report, Spec, Unit, UpAxis, Warning, plainly};
 use companions::{LIMITS, Named, NamedFault};
 use serde::Deserialize;
 
-use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
+use crate::args::{AxesArgs, PlantFormat};
 use crate::failure::{Failure, Outcome, line_of};
 use crate::inputs;
 use crate::output::{self, Outputs};
@@ -68,10 +69,13 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
         if let Some(foreign) = Foreign::sniff(start) {
             return Failure::at(path, foreign);
         }
+        let (drawings, models) = (DrawingFormat::read_endings(), ModelFormat::read_endings());
         Failure::at(
             path,
-            "is neither a drawing (.svg, .svgz, .excalidraw, .tldr, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
-             .obj, .ply, .stl); give the file the extension of its format",
+            format_args!(
+                "is neither a drawing ({drawings}), nor a project (.burgeon), nor a model ({models}); give the file the \
+                 extension of its format"
+            ),
         )
     })
 }
@@ -100,7 +104,7 @@ pub(crate) fn sniff_points(start: &[u8]) -> Option<CloudFormat> {
 pub(crate) fn peek(path: &Path) -> Outcome<(Input, Vec<u8>)> {
     let mut input = open_bytes(path)?;
     let mut start = Vec::new();
-    let read = input.by_ref().take(4096).read_to_end(&mut start);
+    let read = Read::by_ref(&mut input).take(4096).read_to_end(&mut start);
     read.map_err(|e| Failure::io(path, "read", &e))?;
     if start.is_empty() {
         return Err(Failure::at(path, "is empty; was it saved completely?"));
@@ -131,7 +135,7 @@ pub(crate) fn has_faces(path: &Path) -> bool {
     let extension = extension(path).unwrap_or_default().to_ascii_lowercase();
     let mut start = Vec::new();
     let limit = if extension == "obj" { 64 << 20 } else { 8192 };
-    if file.by_ref().take(limit).read_to_end(&mut start).is_err() {
+    if Read::by_ref(&mut file).take(limit).read_to_end(&mut start).is_err() {
         return false;
     }
     match extension.as_str() {
@@ -266,8 +270,8 @@ pub(crate) fn drawing_of<'a>(
 }
 
 /// Axes of models: +Y up if nothing was asked for.
-pub(crate) fn axes(up: impl Into<Option<UpWord>>, unit: UnitWord) -> ExportSpec {
-    ExportSpec { up: up.into().unwrap_or(UpWord::Y).into(), unit: unit.into() }
+pub(crate) fn axes(up: impl Into<Option<UpAxis>>, unit: Unit) -> ExportSpec {
+    ExportSpec { up: up.into().unwrap_or_default(), unit }
 }
 
 /// Reads a model, with what its reader has to say.
@@ -295,7 +299,7 @@ pub(crate) fn read_opened_model(
                 path,
                 format_args!(
                     "is a drawing ({}), not a model; `burgeon sketch` makes a model of it",
-                    format.word()
+                    format.name()
                 ),
             ));
         }
@@ -304,7 +308,7 @@ pub(crate) fn read_opened_model(
         }
     };
     let mut report = Report::default();
-    let input = if format.fixed_axes() { announce_gltf(path, input)? } else { input };
+    let input = if format.holds(Room::Axes) { input } else { announce_gltf(path, input)? };
     let named = |file: SideFile<'_>| resolve(path, file);
     let model = burgeon::formats::read_model(input, format, &stem(path), axes, &named, &mut report);
     let model = model.map_err(|e| match e.fault {
@@ -389,16 +393,11 @@ fn resolve(model: &Path, file: SideFile<'_>) -> Result<Vec<u8>, NoFile> {
 
 /// The format of a model's file name, if we write it.
 pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
-    match extension(path).and_then(ModelFormat::from_extension) {
-        Some(ModelFormat::Gltf) => {
-            Err(Failure::at(path, "glTF is written as binary; end the name with .glb"))
-        }
-        Some(format) => Ok(format),
-        None => Err(Failure::at(
-            path,
-            "models are written as .glb, .obj, .ply, .stl, .usda or .usdz; end the name with one of them",
-        )),
-    }
+    let format = extension(path).and_then(ModelFormat::from_extension);
+    format.filter(|format| format.row().is_written()).ok_or_else(|| {
+        let endings = ModelFormat::written_endings();
+        Failure::at(path, format_args!("models are written as {endings}; end the name with one of them"))
+    })
 }
 
 /// The format of a plant's file name, if we write it.
@@ -427,17 +426,20 @@ impl<'a> Goal<'a> {
         Self { by, path, of_many: false, packing: None }
     }
 
+    /// How the files beside the model's own are called: by its name, and textures of one of many by a longer one.
+    fn stems(&self) -> (String, String) {
+        let name = stem(self.path);
+        let textures = if self.of_many { format!("{name}-") } else { name.clone() };
+        (name, textures)
+    }
+
     fn beside(&self, name: &str) -> PathBuf {
         self.path.with_file_name(name)
     }
 
     /// In words, what refers to a file that the model's own names.
-    fn materials(&self) -> String {
-        format!("the materials of {}", self.by)
-    }
-
-    fn texture(&self) -> String {
-        format!("a texture of {}", self.by)
+    fn by_way_of(&self, what: Beside) -> String {
+        format!("{} of {}", what.phrase(), self.by)
     }
 }
 
@@ -463,13 +465,10 @@ pub(crate) fn plan_plant(outputs: &mut Outputs, path: &Path, lods: u32) -> Outco
 
 // Textures are known when the plant is.
 fn plan_beside(outputs: &mut Outputs, goal: Goal<'_>, format: ModelFormat) -> Outcome {
-    if format != ModelFormat::Obj {
-        return Ok(());
+    for (what, name) in names_beside(format, &stem(goal.path)) {
+        outputs.plan(&goal.by_way_of(what), &goal.beside(&name))?;
     }
-    let stem = stem(goal.path);
-    let empty = obj_files(&Model::default(), stem.as_str(), &ExportSpec::default());
-    let name = empty.map_err(|e| output::write_failed(goal.path, e))?.mtl_name;
-    outputs.plan(&goal.materials(), &goal.beside(&name))
+    Ok(())
 }
 
 /// `tree.glb` -> `tree-lod1.glb`.
@@ -494,7 +493,7 @@ pub(crate) fn write_plant(
         PlantFormat::Structure(format) => {
             write_structure(outputs, (goal.by, goal.path), plant, format, args)?;
             let mut report = Report::default();
-            warn_of_wind(model, format.word(), &mut report);
+            warn_of_wind(model, format.name(), &mut report);
             Ok(report.warnings)
         }
     }
@@ -534,10 +533,10 @@ pub(crate) fn write_drawing(outputs: &mut Outputs, path: &Path, name: &str, line
 
 // The programs that read MTG, OPF, QSM and SWC files have Z upwards.
 fn field_axes(args: &AxesArgs) -> ExportSpec {
-    axes(args.up.unwrap_or(UpWord::Z), args.unit)
+    axes(args.up.unwrap_or(UpAxis::Z), args.unit)
 }
 
-/// Writes a model, for OBJ and USD with the files that they name.
+/// Writes a model with the files that its own names.
 pub(crate) fn write_model(
     outputs: &mut Outputs,
     goal: Goal<'_>,
@@ -546,39 +545,46 @@ pub(crate) fn write_model(
     axes: &ExportSpec,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
-    let Goal { by, path, .. } = goal;
     let mut report = Report::default();
-    let mut bytes =
-        |by: &str, path: &Path, bytes: &[u8]| outputs.write(by, path, |out| Ok(out.write_all(bytes)?));
-    let name = stem(path);
-    let textures = if goal.of_many { format!("{name}-") } else { name.clone() };
-    match format {
-        ModelFormat::Glb if goal.packing.is_some() => {
-            let packing = goal.packing.unwrap_or(Packing::Quantized);
-            outputs.write(by, path, |out| write_glb_packed(model, packing, cache, out))?;
-        }
-        ModelFormat::Glb if axes.is_default() => {
-            outputs.write(by, path, |out| write_glb_with(model, cache, out))?;
-        }
-        ModelFormat::Obj => {
-            let stems = FileStems { model: &name, textures: &textures };
-            let files = obj_files(model, stems, axes).map_err(|e| output::write_failed(path, e))?;
-            warn_of_wind(model, format.word(), &mut report);
-            for (name, png) in &files.textures {
-                bytes(&goal.texture(), &goal.beside(name), png)?;
-            }
-            bytes(&goal.materials(), &goal.beside(&files.mtl_name), &files.mtl)?;
-            bytes(by, path, &files.obj)?;
-        }
-        ModelFormat::Usda => {
-            let files = usd_files(model, &textures, axes).map_err(|e| output::write_failed(path, e))?;
-            for (name, png) in &files.textures {
-                bytes(&goal.texture(), &goal.beside(name), png)?;
-            }
-            bytes(by, path, &files.usda)?;
-        }
-        _ => outputs
-            .write(by, path, |out| burgeon::formats::write_model(model, format, axes, out, &mut report))?,
+    if let Some(packing) = goal.packing.filter(|_| format.holds(Room::Packing)) {
+        write_gltf(outputs, goal, format, |out| write_glb_packed(model, packing, cache, out))?;
+    } else if format.holds(Room::Packing) && axes.is_default() {
+        write_gltf(outputs, goal, format, |out| write_glb_with(model, cache, out))?;
+    } else if format.row().beside.is_empty() {
+        outputs.write(goal.by, goal.path, |out| {
+            burgeon::formats::write_model(model, format, axes, out, &mut report)
+        })?;
+    } else {
+        let (name, textures) = goal.stems();
+        let stems = FileStems { model: &name, textures: &textures };
+        let files = model_files(model, format, stems, axes, cache, &mut report);
+        write_files(outputs, goal, files)?;
     }
     Ok(report.warnings)
+}
+
+/// Writes what `write` gives, a binary glTF, in a format of its family.
+pub(crate) fn write_gltf(
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
+    format: ModelFormat,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Outcome {
+    if format.row().beside.is_empty() {
+        return outputs.write(goal.by, goal.path, write);
+    }
+    let mut glb = Vec::new();
+    let (name, textures) = goal.stems();
+    let stems = FileStems { model: &name, textures: &textures };
+    let files = write(&mut glb).and_then(|()| gltf_files(glb, format, stems));
+    write_files(outputs, goal, files)
+}
+
+fn write_files(outputs: &mut Outputs, goal: Goal<'_>, files: Result<ModelFiles, WriteError>) -> Outcome {
+    let files = files.map_err(|e| output::write_failed(goal.path, e))?;
+    for file in &files.beside {
+        let (by, path) = (goal.by_way_of(file.what), goal.beside(&file.name));
+        outputs.write(&by, &path, |out| Ok(out.write_all(&file.bytes)?))?;
+    }
+    outputs.write(goal.by, goal.path, |out| Ok(out.write_all(&files.own)?))
 }

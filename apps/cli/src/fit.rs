@@ -230,7 +230,7 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
     given.refuse(&["regions", "leave_one_out", "seed", "up"], "scans", this)?;
     let (read, read_ms) = machine.timed(|| {
         let input = files::open_bytes(&args.input)?;
-        read_growth(input, args.axes.unit.into()).map_err(|e| Failure::at(&args.input, e))
+        read_growth(input, args.axes.unit).map_err(|e| Failure::at(&args.input, e))
     });
     let read = read?;
     let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();

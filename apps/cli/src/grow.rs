@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::path::Path;
 
-use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat};
+use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat, Room};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
@@ -132,14 +132,11 @@ fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     let seen = Seen::new(format, args.png.as_ref(), &args.common);
     // What a drawing shows is what its meshes show.
     given.check_surface(Seen { report: seen.report || args.drawing.is_some(), ..seen })?;
-    let written = args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes());
-    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    args.surface.check_used(given, glb)?;
-    given.only_if(glb, &["instances"], "models as .glb", "none is made")?;
-    let textured = matches!(
-        format,
-        Some(PlantFormat::Model(ModelFormat::Glb | ModelFormat::Obj | ModelFormat::Usda | ModelFormat::Usdz))
-    );
+    let written = args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes));
+    args.surface.check_used(given, format)?;
+    let holds = |room| format.is_some_and(|format| format.holds(room));
+    given.only_if_holds(holds(Room::Instances), &["instances"], Room::Instances)?;
+    let textured = holds(Room::Textures);
     given.only_if(textured, &["impostor"], "models with textures", "none is made")?;
     let painted = (textured || args.png.is_some()) && args.surface.skin.paints();
     given.only_if(painted, &["foliage"], "models and pictures with textures", "none is made")?;

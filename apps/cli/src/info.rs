@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use burgeon::formats::Room;
 use burgeon::formats::{DrawingFormat, DrawingSummary, ModelSummary, read_drawings};
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &[&args.input])?;
     let (input, kind) = files::open(&args.input)?;
-    args.given.check_axes(matches!(kind, Kind::Model(format) if !format.fixed_axes()))?;
+    args.given.check_axes(matches!(kind, Kind::Model(format) if format.holds(Room::Axes)))?;
     // A pipe has no size.
     let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let (format, content) = match kind {

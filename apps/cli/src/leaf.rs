@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{ModelFormat, marks_template, read_picture, write_marks, write_rays};
+use burgeon::formats::{Room, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::glam::DVec3;
 use burgeon::leaf::{
@@ -61,12 +61,12 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     }
     if let Some(format) = format {
         // What is read may be in any unit; what is made from numbers alone has none but the file's.
-        args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
+        args.given.check_axes(!args.inputs.is_empty() || format.holds(Room::Axes))?;
     }
-    let blown = matches!(format, Some(PlantFormat::Model(format)) if format.carries_wind());
+    let blown = format.is_some_and(|format| format.holds(Room::Wind));
     let meshed = matches!(format, Some(PlantFormat::Model(_)));
     args.given.only_if(meshed, &["lods"], "models", "none is made")?;
-    args.given.only_if(blown, &["wind"], "models as .glb, .usda or .usdz", "none is made")?;
+    args.given.only_if_holds(blown, &["wind"], Room::Wind)?;
     let Product { mut made, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
@@ -86,8 +86,8 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let mut items = vec![item];
     checks::accept(&items, &args.checks)?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
-        let plain = format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty();
+        // --unit and --up were those of the input: glTF in metres with +Y up is no surprise.
+        let plain = !format.holds(Room::Axes) && !args.inputs.is_empty();
         let axes = if plain { &AxesArgs::default() } else { &args.axes };
         let (goal, plant) = ((path, format, levels::Form::default()), (&made.plant, &made.model));
         levels::write(&mut outputs, goal, plant, &lods, axes, &mut items, &machine)?;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use burgeon::formats::Room;
 use burgeon::formats::{LeafFile, MarksAxes, ReadGraph, ReadMarks, ReadProfiles, ReadRays, read_leaf_file};
 use burgeon::leaf::{LeafForm, Marks, Rays, ThicknessRule};
-use burgeon::{LeafError, LeafOptions, LeafTemplate, Report, Seed, Unit, UpAxis, Warning};
+use burgeon::{LeafError, LeafOptions, LeafTemplate, Report, Seed, Unit, Warning};
 
+use crate::args::AxesArgs;
 use crate::args::Given;
-use crate::args::{AxesArgs, UpWord};
 use crate::args::{GraphWord, LeafArgs, ThicknessWord};
 use crate::failure::{Failure, Outcome};
 use crate::files;
@@ -58,14 +59,14 @@ pub(crate) fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadLeaf> {
         axes_written: args
             .output
             .as_deref()
-            .is_some_and(|p| files::writable(p).is_ok_and(|f| !f.fixed_axes())),
+            .is_some_and(|p| files::writable(p).is_ok_and(|f| f.holds(Room::Axes))),
         given: &args.given,
     };
     asked.read(path, files::open_bytes(path)?)
 }
 
 fn axes_of(args: &AxesArgs) -> MarksAxes {
-    MarksAxes { unit: args.unit.into(), up: args.up.unwrap_or(UpWord::Y).into() }
+    MarksAxes { unit: args.unit, up: args.up.unwrap_or_default() }
 }
 
 impl Asked<'_> {
@@ -116,17 +117,11 @@ impl Asked<'_> {
 
     /// What a file says of itself wins over what it is assumed to be; it must not contradict what was asked for.
     fn agree(&self, path: &Path, axes: MarksAxes, thickness: Option<ThicknessRule>) -> Outcome {
-        let unit = |unit: Unit| match unit {
-            Unit::Metre => "m",
-            Unit::Centimetre => "cm",
-            Unit::Millimetre => "mm",
-        };
-        let up = |up: UpAxis| if up == UpAxis::Z { "z" } else { "y" };
         let rule = |rule: ThicknessRule| if rule == ThicknessRule::Radius { "radius" } else { "diameter" };
         let asked_rule = self.thickness.map(ThicknessRule::from);
         let differs = [
-            ("unit", axes.unit != self.axes.unit, unit(axes.unit), unit(self.axes.unit)),
-            ("up", axes.up != self.axes.up, up(axes.up), up(self.axes.up)),
+            ("unit", axes.unit != self.axes.unit, axes.unit.word(), self.axes.unit.word()),
+            ("up", axes.up != self.axes.up, axes.up.word(), self.axes.up.word()),
             (
                 "thickness",
                 thickness.is_some() && asked_rule.is_some() && thickness != asked_rule,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use burgeon::formats::{Level, ModelFormat, Packing, PngCache, write_glb_levels, write_glb_rigged};
+use burgeon::formats::{Level, ModelFormat, Packing, PngCache, Room, write_glb_levels, write_glb_rigged};
 use burgeon::mesh::{Copies, Model};
 use burgeon::plant::Plant;
 use burgeon::{ItemReport, Report, Warning};
@@ -53,7 +53,8 @@ pub(crate) fn write(
         let split = form.copies.get(level).map(|(rest, copies)| Level { model: rest, copies });
         split.unwrap_or(Level::plain(model))
     };
-    let one = form.in_one_file && format == PlantFormat::Model(ModelFormat::Glb);
+    let one = form.in_one_file && format.holds(Room::Levels);
+    let gltf = format.model().unwrap_or(ModelFormat::Glb);
     let all = std::iter::once((model, "-o", path.to_path_buf()));
     let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
     let whole: Vec<Level<'_>> =
@@ -63,15 +64,21 @@ pub(crate) fn write(
         machine.cancel.check()?;
         let (written, write_ms) = machine.timed(|| match level {
             0 if one => {
-                outputs.write(by, &path, |out| write_glb_levels(&whole, form.packing, &mut cache, out))?;
+                let goal = Goal::new(by, &path);
+                files::write_gltf(outputs, goal, gltf, |out| {
+                    write_glb_levels(&whole, form.packing, &mut cache, out)
+                })?;
                 Ok(Vec::new())
             }
             // It is in the file of the whole.
             _ if one => Ok(Vec::new()),
-            _ if form.sway => swaying(outputs, (by, &path), model, &mut cache),
+            _ if form.sway => swaying(outputs, (Goal::new(by, &path), gltf), model, &mut cache),
             _ if !form.copies.is_empty() => {
                 let level = [split(level, model)];
-                outputs.write(by, &path, |out| write_glb_levels(&level, form.packing, &mut cache, out))?;
+                let goal = Goal::new(by, &path);
+                files::write_gltf(outputs, goal, gltf, |out| {
+                    write_glb_levels(&level, form.packing, &mut cache, out)
+                })?;
                 Ok(Vec::new())
             }
             _ => {
@@ -95,16 +102,19 @@ pub(crate) fn write(
 /// Writes a model with joints that sway.
 fn swaying(
     outputs: &mut Outputs,
-    (by, path): (&str, &Path),
+    (goal, format): (Goal<'_>, ModelFormat),
     model: &Model,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
     let mut report = Report::default();
     match burgeon::skin::sway(model, burgeon::skin::gust(model)) {
-        Some(rig) => outputs.write(by, path, |out| write_glb_rigged(model, &rig, cache, out))?,
+        Some(rig) => {
+            files::write_gltf(outputs, goal, format, |out| write_glb_rigged(model, &rig, cache, out))?;
+        }
         None => {
             report.warn("nothing-sways", "nothing of the plant sways: it was written as it stands");
-            outputs.write(by, path, |out| write_glb_levels(&[Level::plain(model)], None, cache, out))?;
+            let still = [Level::plain(model)];
+            files::write_gltf(outputs, goal, format, |out| write_glb_levels(&still, None, cache, out))?;
         }
     }
     Ok(report.warnings)

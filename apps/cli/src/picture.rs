@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use burgeon::formats::Room;
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, TriMesh};
 use burgeon::render::Picture;
@@ -22,7 +23,7 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     args.given.check_picture(true, &args.picture)?;
     let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
     let (model, format, warnings) = read?;
-    args.given.check_axes(!format.fixed_axes())?;
+    args.given.check_axes(format.holds(Room::Axes))?;
     outputs.check()?;
     let spec = args.picture.spec(args.seed);
     let (picture, draw_ms) = machine.timed(|| {

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{ExportSpec, ModelFormat, StructureFormat};
+use burgeon::formats::{ExportSpec, StructureFormat};
 use burgeon::glam::DVec3;
 use burgeon::scan::{FoundTree, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
-use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
+use burgeon::{
+    Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, UpAxis, make_tree_from_scan,
+};
 use serde::Serialize;
 
-use crate::args::{PlantFormat, ScanArgs, Seen, UpWord};
+use crate::args::{PlantFormat, ScanArgs, Seen};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::materials::Materials;
@@ -66,15 +68,14 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     }
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    args.surface.check_used(&args.given, glb)?;
+    args.surface.check_used(&args.given, format)?;
     let mut told = Report::default();
     let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
     if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
         return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
     }
     // Scanners write +Z up.
-    let axes = files::axes(args.axes.up.unwrap_or(UpWord::Z), args.axes.unit);
+    let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
     let opened = files::open_cloud(&args.input)?;
     let (cloud, read_ms) = machine.timed(|| {
         machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, &mut told))
@@ -85,7 +86,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     origin.bring(&mut points, &axes, &mut told);
     let at = args.at.map(|[a, b]| {
         // The two coordinates that are not up.
-        let file = if matches!(args.axes.up, Some(UpWord::Y)) {
+        let file = if matches!(args.axes.up, Some(UpAxis::Y)) {
             DVec3::new(a, 0.0, b)
         } else {
             DVec3::new(a, b, 0.0)

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use burgeon::document::{Document, DocumentPlant};
-use burgeon::formats::{ModelFormat, PngCache, write_glb_scene};
+use burgeon::formats::{PngCache, Room, write_glb_scene};
 use burgeon::mesh::Standing;
 use burgeon::{RunReport, SceneEvaluator, scene_model, standing};
 
@@ -78,7 +78,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, 0)).transpose()?;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))?;
+    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes)))?;
     let mut scene = SceneEvaluator::default();
     scene.set_wind(args.surface.skin.wind);
     let mut report = RunReport::new("sketch", 1);
@@ -116,9 +116,11 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let plant = if matches!(format, PlantFormat::Structure(_)) { structure()? } else { &nothing };
         let goal = Goal::new("-o", out);
         let mut cache = PngCache::new();
-        if matches!(format, PlantFormat::Model(ModelFormat::Glb)) {
+        if let Some(gltf) = format.model().filter(|format| format.holds(Room::Instances)) {
             // What stands there several times is written once.
-            outputs.write("-o", out, |to| write_glb_scene(document.name(), &plants, &mut cache, to))?;
+            files::write_gltf(&mut outputs, goal, gltf, |to| {
+                write_glb_scene(document.name(), &plants, &mut cache, to)
+            })?;
         } else {
             files::write_plant(&mut outputs, goal, (plant, &model), format, &args.axes, &mut cache)?;
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, PlantEdit};
-use burgeon::formats::{ModelFormat, read_drawings};
+use burgeon::formats::{Room, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
@@ -128,9 +128,8 @@ fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     }
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
-    args.surface.check_used(given, glb)?;
-    given.check_axes(format.is_some_and(|f| !f.fixed_axes()))
+    args.surface.check_used(given, format)?;
+    given.check_axes(format.is_some_and(|f| f.holds(Room::Axes)))
 }
 
 fn out(text: &str) -> Outcome {

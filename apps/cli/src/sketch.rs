@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use burgeon::document::{CommandError, Document, DocumentPlant, Editor, PlantCommand, SketchCommand};
+use burgeon::formats::Room;
 use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawings};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
@@ -56,7 +57,7 @@ fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
     given.only_if(args.split.is_none(), &["leaf_template"], "models and pictures", leaf)?;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))
+    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes)))
 }
 
 /// Everything that is asked, read and checked before the first drawing.

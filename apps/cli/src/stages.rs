@@ -20,8 +20,8 @@ use crate::origin::Origin;
 #[serde(deny_unknown_fields)]
 struct StagesFile {
     name: Option<String>,
-    unit: Option<UnitWord>,
-    up: Option<UpWord>,
+    unit: Option<Unit>,
+    up: Option<UpAxis>,
     #[serde(default)]
     split: Split,
     #[serde(default = "yes")]
@@ -42,28 +42,13 @@ enum Split {
     None,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum UnitWord {
-    M,
-    Cm,
-    Mm,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum UpWord {
-    Y,
-    Z,
-}
-
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StageEntry {
     file: PathBuf,
     day: f64,
-    unit: Option<UnitWord>,
-    up: Option<UpWord>,
+    unit: Option<Unit>,
+    up: Option<UpAxis>,
     #[serde(default)]
     mirror: bool,
     organ: Option<String>,
@@ -272,7 +257,7 @@ fn prepare(
             "{}: no ground lies across the axis that was taken for up ({}), but a plane of its size lies across \
              another: the plant seems to lie down; {advice}",
             path.display(),
-            if axes.up == UpAxis::Z { "z" } else { "y" }
+            axes.up.word()
         ));
     }
     if cleaned.outliers * 20 > points.len() {
@@ -389,17 +374,8 @@ fn add_entry(
     machine: &Machine,
     out: &mut Loaded,
 ) -> Outcome {
-    let unit = match entry.unit.or(file.unit) {
-        Some(UnitWord::M) => Unit::Metre,
-        Some(UnitWord::Cm) => Unit::Centimetre,
-        Some(UnitWord::Mm) => Unit::Millimetre,
-        None => axes.unit,
-    };
-    let up = match entry.up.or(file.up) {
-        Some(UpWord::Y) => UpAxis::Y,
-        Some(UpWord::Z) => UpAxis::Z,
-        None => axes.up,
-    };
+    let unit = entry.unit.or(file.unit).unwrap_or(axes.unit);
+    let up = entry.up.or(file.up).unwrap_or(axes.up);
     let axes = ExportSpec { up, unit };
     if out.stages.is_empty() {
         out.axes = axes;

@@ -13,8 +13,6 @@ from .model import array
 if TYPE_CHECKING:
     import numpy as np
 
-    from .plant import Plant
-
 __all__ = ["Drawing", "Line"]
 
 
@@ -47,12 +45,12 @@ class Drawing(NamedTuple):
         write_whole(folder, [(name, self.to_svg())])
 
 
-def draw(plant: "Plant") -> Drawing:
-    """A plant from the front, as a line drawing (``burgeon grow --drawing``).
+def draw(raw: "_burgeon.RawPlant") -> Drawing:
+    """A plant of the core from the front, as a line drawing (``burgeon grow --drawing``).
 
     Stems and branches are lines along their middle, thick wood is a line along both its edges. Organs that are seen are
     outlines; of a plant that shows many, trunk and those limbs that foliage does not hide are drawn, and around the foliage
     the outline of the crown.
     """
-    lines = plant._raw.drawing()
-    return Drawing(plant.name, [Line(kind, array(points), row) for kind, points, row in lines])
+    lines = raw.drawing()
+    return Drawing(raw.name, [Line(kind, array(points), row) for kind, points, row in lines])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence
 from . import _burgeon
 from ._files import write_whole
 from ._given import axes as check_axes
-from ._given import beyond, keys, number, table, whole, wrong
+from ._given import beyond, holds, keys, number, table, whole, wrong
 from .makers import SpecText, grow
 from .model import Model, cloud_bytes, look, save_cloud, seen, shown
 from .plant import Plant
@@ -197,15 +197,19 @@ class Forest:
         """The file of a format of models; in ``glb`` copies share their meshes."""
         extension = extension.lower().lstrip(".")
         check_axes(extension, unit, up)
-        if extension == "glb":
-            return bytes(self._raw.glb(self.name))
+        if holds(extension, "instances"):
+            return bytes(self._raw.files(self.name, extension, "model")[0][1])
         return self.model.to_bytes(extension, unit, up or "y")
 
     def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "str | None" = None) -> None:
         """Writes a model, whole or not at all; in ``.glb`` copies share their meshes."""
         folder, name = os.path.split(os.fspath(path))
-        if name.lower().endswith(".glb"):
-            write_whole(folder, [(name, self.to_bytes("glb", unit, up))])
+        stem, dotted = os.path.splitext(name)
+        extension = dotted[1:].lower()
+        if holds(extension, "instances"):
+            check_axes(extension, unit, up)
+            files = self._raw.files(self.name, extension, stem)
+            write_whole(folder, [(name, files[0][1]), *files[1:]])
         else:
             self.model.save(path, unit, up or "y")
 

@@ -14,8 +14,15 @@ if TYPE_CHECKING:
     import numpy as np
 
 ENDLESS = float("inf")
-FIXED = ("glb", "burgeon")
-"""Formats that have a unit and axes of their own."""
+FORMATS = {word: (kind, frozenset(rooms)) for kind, word, _, rooms in _burgeon.formats()}
+"""Of each format of models and of structure that is written, its kind and what its files have room for."""
+STRUCTURES = tuple(word for word, (kind, _) in FORMATS.items() if kind == "structure")
+"""What the structure of a plant is written as."""
+
+
+def holds(word: str, room: str) -> bool:
+    """Whether files of a format have room for something."""
+    return room in FORMATS.get(word, ("", ()))[1]
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:
@@ -119,7 +126,7 @@ def unused(name: str, value: Any, needs: str) -> SpecError:
 
 def axes(extension: str, unit: str, up: "str | None") -> None:
     """Fails on a unit or an axis where the format has its own."""
-    if extension in FIXED:
+    if extension == "burgeon" or (extension in FORMATS and not holds(extension, "axes")):
         for name, value, own in (("unit", unit, "m"), ("up", up or "y", "y")):
             if word(name, value) != own:
                 raise unused(name, value, f"is of files that do not fix it: .{extension} is in metres, +Y up")
@@ -140,3 +147,15 @@ def keys(name: str, given: "Mapping[str, Any]", known: "Iterable[str]") -> None:
             fields = {"path": name, "name": str(key), "choices": ", ".join(known)}
             meant = _burgeon.meant(str(key), known)
             raise SpecError(f"{name} has no {key!r}, it has {fields['choices']}{meant}", "spec-unknown", fields)
+
+
+def asked_of(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
+    """A maker's request as the core takes it; of ``skin``, None stands for what is not asked."""
+    if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
+        raise beyond("seed", repr(seed), "a whole number, 0 to 2^64 - 1")
+    return {
+        "seed": int(seed),
+        "budget": number("budget", budget, 1, 1000),
+        "fields": dict(fields),
+        "skin": {name: value for name, value in skin.items() if value is not None},
+    }

@@ -9,12 +9,50 @@ import json
 import struct
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List
+from typing import TYPE_CHECKING, Any, Dict, List, Protocol, Sequence
 
 from ._given import beyond
 
 if TYPE_CHECKING:
-    from .model import Model, Part
+    import numpy as np
+
+
+class _Part(Protocol):
+    """A part of a model: ``burgeon.Part``, which stands above this module."""
+
+    name: str
+    material: "Dict[str, Any]"
+
+    @property
+    def maps(self) -> "Dict[str, np.ndarray]": ...
+
+    @property
+    def texture(self) -> "np.ndarray | None": ...
+
+    @property
+    def vertices(self) -> "np.ndarray": ...
+
+    @property
+    def normals(self) -> "np.ndarray": ...
+
+    @property
+    def uvs(self) -> "np.ndarray": ...
+
+    @property
+    def colors(self) -> "np.ndarray": ...
+
+    @property
+    def faces(self) -> "np.ndarray": ...
+
+
+class _Model(Protocol):
+    """A model: ``burgeon.Model``."""
+
+    name: str
+
+    @property
+    def parts(self) -> "Sequence[_Part]": ...
+
 
 MOST_TRIANGLES = 120_000
 """What a notebook keeps well: 5 MB at most."""
@@ -26,7 +64,7 @@ PROGRAM = Path(__file__).with_name("_alone.js.gz")
 """The stage as one script (apps/studio-web/src/alone), which a wheel has."""
 
 
-def page(model: "Model", height: int) -> str:
+def page(model: "_Model", height: int) -> str:
     """An ``iframe`` with the view: nothing of it meets what else is on the page."""
     if not 64 <= height <= 4096:
         raise beyond("height", height, "64 to 4096 pixels")
@@ -90,7 +128,7 @@ class _Textures:
         return self.known[key]
 
 
-def packed(model: "Model") -> bytes:
+def packed(model: "_Model") -> bytes:
     """What the stage shows, as ``Contents`` in apps/studio-web/src/alone says: its length, JSON, numbers; in gzip."""
     import numpy as np
 
@@ -111,7 +149,7 @@ def packed(model: "Model") -> bytes:
     return gzip.compress(struct.pack("<I", len(text)) + text + bytes(to.all), 6, mtime=0)
 
 
-def _material(part: "Part", textures: _Textures) -> "Dict[str, Any]":
+def _material(part: "_Part", textures: _Textures) -> "Dict[str, Any]":
     is_, maps = part.material, part.maps
     return {
         "name": is_["name"],
@@ -127,7 +165,7 @@ def _material(part: "Part", textures: _Textures) -> "Dict[str, Any]":
     }
 
 
-def _part(part: "Part", material: int, to: _Bytes) -> "Dict[str, Any]":
+def _part(part: "_Part", material: int, to: _Bytes) -> "Dict[str, Any]":
     import numpy as np
 
     return {

@@ -23,14 +23,14 @@ import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import inside, write_whole
-from ._given import beyond, keys, table, whole, wrong
+from ._given import STRUCTURES, beyond, keys, table, whole, wrong
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
 MAKERS = ("grow", "bloom", "leaf", "forest")
 """What makes the plants; a plant of ``forest`` is a tile of trees."""
-FORMATS = ("glb", "mtg", "opf", "qsm", "swc", "burgeon", "cloud", "laz", "drawing", "picture")
+FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
 would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
 

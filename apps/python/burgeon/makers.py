@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union, cast
 
 from . import _burgeon
-from ._given import beyond, flag, number, unused, whole, word, wrong
+from ._given import asked_of, beyond, flag, number, unused, whole, word, wrong
 from ._given import coloured as _coloured
 from ._given import path as path_of
 from ._given import points as _points
@@ -59,17 +59,6 @@ def _text(path: str) -> str:
     return data.decode("utf-8").replace("\r\n", "\n")
 
 
-def _asked(seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]") -> "Dict[str, Any]":
-    if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
-        raise beyond("seed", repr(seed), "a whole number, 0 to 2^64 - 1")
-    return {
-        "seed": int(seed),
-        "budget": number("budget", budget, 1, 1000),
-        "fields": dict(fields),
-        "skin": {name: value for name, value in skin.items() if value is not None},
-    }
-
-
 def grow(
     spec: Spec = None,
     *,
@@ -100,7 +89,7 @@ def grow(
     """
     base, own = _base(spec, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "texture_size": texture_size}
-    asked = _asked(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
+    asked = asked_of(seed, budget, {**own, **fields}, {**skin, "foliage": foliage, "wind": wind})
     if textures is False and texture_size is not None:
         raise unused("texture_size", texture_size, "is of textures, which textures=False leaves out")
     if textures is False and foliage not in (None, "outlines"):
@@ -152,7 +141,7 @@ def bloom(
         if value != usual:
             raise wrong(f"{name} is of scans of several days: give a dict from days to clouds", name, value, "left out")
     base, own = _base(cast("Spec", spec))
-    asked = _asked(seed, budget, {**own, **fields}, {"wind": wind})
+    asked = asked_of(seed, budget, {**own, **fields}, {"wind": wind})
     day = None if day is None else number("day", day, 0, 100, "d")
     return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
 
@@ -204,7 +193,7 @@ def leaf(
             raise wrong("venation makes a leaf of numbers: leave the file out", "spec", spec, "left out, or a dict")
         if venation == "parallel" and side_veins is not None:
             raise unused("side_veins", side_veins, "is of palmate leaves: parallel veins have none between them")
-        asked = _asked(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
+        asked = asked_of(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
         return Plant(_burgeon.leaf_of_veins({"venation": word("venation", venation), "file": None, **numbers}, asked))
     given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
     if given:
@@ -230,11 +219,11 @@ def leaf(
         else:
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
             if side_veins is not None and _burgeon.is_rays(file[1]):
-                asked = _asked(seed, budget, fields, {"wind": wind})
+                asked = asked_of(seed, budget, fields, {"wind": wind})
                 return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
     if side_veins is not None:
         raise unused("side_veins", side_veins, "is of leaves of chief veins: with venation, or of a file of them")
-    return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))
+    return Plant(_burgeon.leaf(file, toml, asked_of(seed, budget, {**own, **fields}, {"wind": wind})))
 
 
 def _only_of_files(unit: str, why: str) -> None:
@@ -319,7 +308,7 @@ def scan(
         name = "scan" if name is None else name
     base, own = (None, {}) if leaves is None else _base(leaves, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
-    return Plant(_burgeon.tree_of_scan(word("name", name), how, base, _asked(seed, budget, own, skin)))
+    return Plant(_burgeon.tree_of_scan(word("name", name), how, base, asked_of(seed, budget, own, skin)))
 
 
 def sketch(
@@ -346,7 +335,7 @@ def sketch(
     ``classes``: what strokes are, by number (``{0: "axis"}``); ``day``: its flowers open, 0 to 100; ``petals``: a colour such as
     ``blue``, otherwise by chance; ``fields``: ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
     """
-    asked = _asked(
+    asked = asked_of(
         seed,
         budget,
         fields,

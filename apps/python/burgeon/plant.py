@@ -10,7 +10,7 @@ from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
 from ._given import axes as check_axes
-from ._given import flag, number, whole, word, wrong
+from ._given import STRUCTURES, asked_of, flag, number, whole, word, wrong
 from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
-
-#: As what the structure of a plant is written.
-STRUCTURES = ("mtg", "opf", "qsm", "swc")
-
 
 class _Table:
     """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
@@ -328,7 +324,7 @@ class Plant:
 
         ``plant.drawing().save("x.svg")`` writes it; ``sketch`` reads it.
         """
-        return draw(self)
+        return draw(self._raw)
 
     def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Masks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
@@ -376,10 +372,8 @@ class Plant:
         ``fields``: of its maker, as ``schema(plant.maker)`` has them: ``tree.again(age=12, leaves={"leaf_keep": 0.5})``. Also of
         the plants of a project (``open``). ``detail``, ``sides``, ``textures``: of trees and drawings; ``day``: of flowers.
         """
-        from .makers import _asked
-
         skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
-        asked = _asked(1 if seed is None else seed, 1.0, fields, skin)
+        asked = asked_of(1 if seed is None else seed, 1.0, fields, skin)
         day = None if day is None else number("day", day, 0, 100, "d")
         return Plant(self._raw.again(asked, seed is not None, day))
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burgeon::document::Placement;
-use burgeon::formats::PngCache;
+use burgeon::formats::{PngCache, WriteError, gltf_files, write_glb_scene};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
 use burgeon::{Seed, Stood};
@@ -12,9 +12,9 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::column::Column;
 use crate::compute::{aside, compute};
-use crate::fault::{beyond, refused, wrong};
+use crate::fault::{beyond, refused, unusable, wrong};
 use crate::held::Held;
-use crate::model::{RawModel, bytes_of};
+use crate::model::{RawModel, model_format};
 use crate::plant::{RawPlant, Scan, cloud};
 
 /// More plants are no stand that a scanner sees at once.
@@ -97,12 +97,24 @@ impl RawForest {
         aside(py, move || RawModel::new(burgeon::scene_model(&name, &own.standing())))
     }
 
-    /// A .glb in which copies share their meshes.
-    fn glb<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+    /// The files of a format in which copies share their meshes: names and bytes, its own first.
+    fn files<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        extension: &str,
+        stem: &str,
+    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+        let format = model_format(extension)?;
         let (own, name) = (self.clone(), name.to_owned());
-        bytes_of(py, move |bytes| {
-            burgeon::formats::write_glb_scene(&name, &own.standing(), &mut PngCache::new(), bytes)
-        })
+        let (file, stem) = (format!("{stem}.{extension}"), stem.to_owned());
+        let files = aside(py, move || {
+            let mut glb = Vec::new();
+            write_glb_scene(&name, &own.standing(), &mut PngCache::new(), &mut glb)?;
+            Ok::<_, WriteError>(gltf_files(glb, format, &stem[..])?.named(file))
+        })?;
+        let files = files.map_err(|e| unusable(py, &e))?;
+        Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
     }
 
     /// Points as a scanner around all of it sees them; `tree` is the place.

@@ -51,7 +51,7 @@ mod _burgeon {
         sketch,
     };
     #[pymodule_export]
-    use crate::model::{RawModel, drawing_svg, png};
+    use crate::model::{RawModel, drawing_svg, formats, png};
     #[pymodule_export]
     use crate::plant::RawPlant;
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::formats::{ExportSpec, FormatRow, ModelFormat, PngCache, StructureFormat};
 use burgeon::glam::DVec2;
 use burgeon::mesh::Model;
 use burgeon::render::{Background, PictureSpec, View};
@@ -58,17 +58,10 @@ pub(crate) fn colours(bytes: &[u8]) -> Vec<[u8; 3]> {
 
 /// Unit and up axis of a file, by their words.
 pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
-    let unit = match unit {
-        "m" => Unit::Metre,
-        "cm" => Unit::Centimetre,
-        "mm" => Unit::Millimetre,
-        other => return Err(beyond("unit", format!("{other:?}"), "m, cm or mm")),
-    };
-    let up = match up {
-        "y" => UpAxis::Y,
-        "z" => UpAxis::Z,
-        other => return Err(beyond("up", format!("{other:?}"), "y or z")),
-    };
+    let known = Unit::from_word(unit);
+    let unit = known.ok_or_else(|| beyond("unit", format!("{unit:?}"), &Unit::words()))?;
+    let known = UpAxis::from_word(up);
+    let up = known.ok_or_else(|| beyond("up", format!("{up:?}"), &UpAxis::words()))?;
     Ok(ExportSpec { up, unit })
 }
 
@@ -272,13 +265,23 @@ impl RawModel {
     }
 }
 
+/// The formats of models and of structure that are written: kind, word, ending, and what their files have room for.
+#[pyfunction]
+pub(crate) fn formats() -> Vec<(&'static str, &'static str, &'static str, Vec<&'static str>)> {
+    let models = ModelFormat::ALL.into_iter().map(|f| ("model", f.row()));
+    let structures = StructureFormat::ALL.into_iter().map(|f| ("structure", f.row()));
+    let written = models.chain(structures).filter(|(_, row)| row.is_written());
+    let rooms = |row: &FormatRow| row.holds.iter().map(|room| room.word()).collect();
+    written.map(|(kind, row)| (kind, row.word, row.endings[0], rooms(row))).collect()
+}
+
 /// What a model is written as, by its extension.
 pub(crate) fn model_format(extension: &str) -> PyResult<ModelFormat> {
-    let format = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf);
+    let format = ModelFormat::from_extension(extension).filter(|f| f.row().is_written());
     format.ok_or_else(|| {
-        let known = ".glb, .obj, .ply, .stl, .usda or .usdz";
+        let known = ModelFormat::written_endings();
         let line = format!("models are written as {known}, not .{extension}");
-        wrong(&line, "path", &format!(".{extension}"), known)
+        wrong(&line, "path", &format!(".{extension}"), &known)
     })
 }
 
@@ -290,26 +293,9 @@ pub(crate) fn written(
     stem: &str,
     spec: &ExportSpec,
 ) -> Result<Vec<(String, Vec<u8>)>, burgeon::formats::WriteError> {
-    let name = format!("{stem}.{extension}");
-    match format {
-        ModelFormat::Obj => {
-            let files = burgeon::formats::obj_files(model, stem, spec)?;
-            let mut all = vec![(name, files.obj), (files.mtl_name, files.mtl)];
-            all.extend(files.textures);
-            Ok(all)
-        }
-        ModelFormat::Usda => {
-            let files = burgeon::formats::usd_files(model, stem, spec)?;
-            let mut all = vec![(name, files.usda)];
-            all.extend(files.textures);
-            Ok(all)
-        }
-        _ => {
-            let mut bytes = Vec::new();
-            burgeon::formats::write_model(model, format, spec, &mut bytes, &mut Report::default())?;
-            Ok(vec![(name, bytes)])
-        }
-    }
+    let (cache, report) = (&mut PngCache::new(), &mut Report::default());
+    let files = burgeon::formats::model_files(model, format, stem, spec, cache, report)?;
+    Ok(files.named(format!("{stem}.{extension}")))
 }
 
 /// The bytes of a file that is written aside.

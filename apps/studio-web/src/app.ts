@@ -36,7 +36,8 @@ import { download, note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Command, ExportFormat, GestureRecord, Obstacle, SetDown } from './wire';
+import type { Written } from './exporting';
+import type { Command, GestureRecord, Obstacle, SetDown } from './wire';
 import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
@@ -446,7 +447,7 @@ export class App implements Page {
         session.run({ scene: { duplicate: [plant.id, [Math.round(aside * 100) / 100, 0, 0]] } });
       },
       run: (id: CommandId) => commandOf(id).run(this),
-      model: (format: ExportFormat) => void this.files.model(format),
+      model: (format: Written) => void this.files.model(format),
       most: (triangles: number) =>
         void session.engine.ask({ kind: 'most', triangles }).catch(() => undefined),
       ready: (triangles: number) =>

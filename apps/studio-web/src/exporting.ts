@@ -1,26 +1,44 @@
 /** The export dialogue: what for, which format, how fine. */
-import type { ExportFormat, ExportRequest, MakerWord, StructureFormat } from './wire';
-import { t, type TextKey } from './text';
+import { type ExportRequest, FORMATS as TABLE, type MakerWord } from './wire';
+import { helpOf, t, type TextKey } from './text';
 import { dialog, el } from './ui';
 
-export type Target = ExportFormat | 'png';
+/** The word of a format that the core writes. */
+export type Written = keyof typeof TABLE;
+export type Target = Written | 'png';
 export type ExportOptions = Omit<ExportRequest, 'format'>;
-const MODELS = ['glb', 'usda', 'obj', 'ply', 'stl'] as const satisfies readonly Target[];
-/** What is written of the structure of plants, and what kind of file that is. */
-const STRUCTURES = {
-  mtg: { type: 'text/plain', extension: 'mtg' },
-  opf: { type: 'application/xml', extension: 'opf' },
-  qsm: { type: 'text/csv', extension: 'csv' },
-  swc: { type: 'text/plain', extension: 'swc' },
-} as const satisfies Record<StructureFormat, { type: string; extension: string }>;
-const STRUCTURE_WORDS = Object.keys(STRUCTURES) as StructureFormat[];
-const FORMATS: readonly Target[] = [...MODELS, ...STRUCTURE_WORDS, 'png', 'svg', 'json'];
-/** Formats with levels of detail. */
-export const LEVELS: ReadonlySet<Target> = new Set(MODELS);
-const AXES: ReadonlySet<Target> = new Set([...FORMATS.slice(1, MODELS.length), ...STRUCTURE_WORDS]);
-/** Formats with room for wind. */
-export const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
-const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
+export type Room = (typeof TABLE)[Written]['holds'][number];
+
+const WRITTEN = Object.keys(TABLE) as Written[];
+/** Formats of models. */
+export const MODELS: readonly Written[] = WRITTEN.filter((f) => TABLE[f].kind === 'model');
+const DRAWINGS: readonly Target[] = WRITTEN.filter((f) => TABLE[f].kind === 'drawing');
+const FORMATS: readonly Target[] = [
+  ...WRITTEN.filter((f) => TABLE[f].kind !== 'drawing'),
+  'png',
+  ...DRAWINGS,
+];
+/** Whether a format holds models. */
+export const isModel = (format: Target): boolean => format !== 'png' && TABLE[format].kind === 'model';
+
+/** Whether files of a format have room for something. */
+export const holds = (format: Target, room: Room): boolean =>
+  format !== 'png' && (TABLE[format].holds as readonly Room[]).includes(room);
+
+/** Whether a format is saved as a zip, as it has files beside its own. */
+export const isZipped = (format: Target): boolean => format !== 'png' && TABLE[format].zipped;
+
+/** The type and the ending of a format's files. */
+export function fileOf(format: Target): { type: string; ending: string } {
+  return format === 'png' ? { type: 'image/png', ending: 'png' } : TABLE[format];
+}
+
+/** The word of a format as labels have it. */
+export const nameOf = (format: Target): string => format.toUpperCase();
+
+/** What a format is, in the current language. */
+export const aboutOf = (format: Target): string =>
+  format === 'png' ? t('export.png') : helpOf(`format.${format}`, TABLE[format].about);
 
 /** One level as it is shown. */
 export const PLAIN: ExportOptions = {
@@ -44,16 +62,9 @@ function choose(format: Target, options: ExportOptions): void {
 
 /** What was chosen last; the preview of the export and its dialogue share it. */
 export function optionsOf(): typeof last {
-  if (!LEVELS.has(last.format)) last.format = 'glb';
+  if (!isModel(last.format)) last.format = 'glb';
   return last;
 }
-
-/** The type and the extension of a file of structure; none of other formats. */
-export function structureFile(format: Target): { type: string; extension: string } | undefined {
-  return format in STRUCTURES ? STRUCTURES[format as StructureFormat] : undefined;
-}
-
-export const nameOf = (format: Target): string => NAMES[format] ?? format.toUpperCase();
 
 type Choice<T extends string> = readonly (readonly [T, string])[];
 
@@ -110,13 +121,13 @@ export function levelRows(
   const impostor = tick(options, 'impostor', changed, id);
   const sway = tick(options, 'sway', changed, id);
   const show = (format: Target): void => {
-    const glb = format === 'glb';
-    levels.hidden = !LEVELS.has(format);
+    const oneFile = holds(format, 'levels');
+    levels.hidden = !isModel(format);
     levels.querySelector('select')!.value = String(options.levels);
-    impostor.hidden = !glb;
-    files.hidden = !glb || (options.levels === 1 && !options.impostor);
+    impostor.hidden = !oneFile;
+    files.hidden = !oneFile || (options.levels === 1 && !options.impostor);
     // Joints want files of their own.
-    sway.hidden = !glb || (!files.hidden && options.one_file);
+    sway.hidden = !holds(format, 'joints') || (!files.hidden && options.one_file);
     if (sway.hidden) {
       options.sway = false;
       sway.querySelector('input')!.checked = false;
@@ -159,7 +170,7 @@ export function openExport(
 ): void {
   let { format, options } = last;
   options = { ...options, whole: several };
-  const formats = FORMATS.filter((f) => (f !== 'json' && f !== 'svg') || kind === 'sketch');
+  const formats = FORMATS.filter((f) => !DRAWINGS.includes(f) || kind === 'sketch');
   if (!formats.includes(format)) format = 'glb';
   const what = choice(
     'export.what',
@@ -199,9 +210,9 @@ export function openExport(
   const fine = levelRows(options, () => show(), 'b-');
   const wind = tick(options, 'wind', () => show(), 'b-');
   const show = (): void => {
-    see.hidden = !LEVELS.has(format);
-    up.hidden = unit.hidden = !AXES.has(format);
-    wind.hidden = !WIND.has(format);
+    see.hidden = !isModel(format);
+    up.hidden = unit.hidden = !holds(format, 'axes');
+    wind.hidden = !holds(format, 'wind');
     fine.show(format);
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
@@ -223,7 +234,7 @@ export function openExport(
         { class: 'format' },
         radio,
         el('b', {}, nameOf(f)),
-        el('span', { class: 'muted' }, t(`export.${f}`)),
+        el('span', { class: 'muted' }, aboutOf(f)),
       ),
     );
   }

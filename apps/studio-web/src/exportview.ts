@@ -1,19 +1,26 @@
 /** The export as it will be, before it is written: its level of detail and wind in the view, its figures beside it. */
-import { nameOf, LEVELS, levelRows, optionsOf, type Target, WIND } from './exporting';
+import {
+  aboutOf,
+  holds,
+  isZipped,
+  levelRows,
+  MODELS,
+  nameOf,
+  optionsOf,
+  type Target,
+  type Written,
+} from './exporting';
 import type { SentExport } from './protocol';
 import type { Session } from './session';
 import { megabytes, number, t, type TextKey, tOf } from './text';
 import { button, el, refill } from './ui';
 import { Exported } from './view/exported';
 import type { PlantView } from './view/view';
-import type { ExportFormat, ExportRequest, ExportView } from './wire';
+import type { ExportRequest, ExportView } from './wire';
 
-const FORMATS = [...LEVELS] as ExportFormat[];
 const MOST_LEVELS = 4;
 /** A change of the document is followed when the hand rests so long, milliseconds. */
 const REST_MS = 120;
-/** Formats that are saved as a zip. */
-const ZIPPED: ReadonlySet<Target> = new Set(['obj', 'usda']);
 
 export interface ExportPage {
   readonly session: Session;
@@ -81,10 +88,10 @@ export class ExportPreview {
   }
 
   /** What will be written. */
-  private get request(): ExportRequest {
+  private get request(): ExportRequest & { readonly format: Written } {
     const { format, options } = optionsOf();
     const whole = options.whole || !this.isSeveral;
-    return { format: format as ExportFormat, ...options, whole, wind: last.wind > 0 };
+    return { format: format as Written, ...options, whole, wind: last.wind > 0 };
   }
 
   private get isSeveral(): boolean {
@@ -93,21 +100,21 @@ export class ExportPreview {
 
   private fill(): void {
     const { format, options } = optionsOf();
-    const far = options.impostor && format === 'glb';
+    const far = options.impostor && holds(format, 'levels');
     // The level that is shown is one of those that are written.
     if (last.level < MOST_LEVELS || !far) last.level = Math.min(last.level, options.levels - 1);
     const several = this.isSeveral;
     this.several = several;
-    const formats = FORMATS.map((f) => [f, `${nameOf(f)} · ${t(`export.${f}` as TextKey)}`] as const);
+    const formats = MODELS.map((f) => [f, `${nameOf(f)} · ${aboutOf(f)}`] as const);
     const percent = (x: number): string => (x === 0 ? t('exported.still') : `${Math.round(100 * x)} %`);
-    const carries = WIND.has(format);
+    const carries = holds(format, 'wind');
     const notes: string[] = [];
     if (!carries) notes.push(t('exported.windless'));
     else if (this.calm) notes.push(t('exported.calm'));
     const fine = levelRows(options, () => this.renew(), 'b-exported-');
     fine.show(format);
     this.rows.replaceChildren(
-      select('exported.format', 'format', formats, format as ExportFormat, (f) => {
+      select('exported.format', 'format', formats, format as Written, (f) => {
         optionsOf().format = f;
         this.renew();
       }),
@@ -233,14 +240,11 @@ export class ExportPreview {
     this.table.append(written);
   }
 
-  private tell(
-    { parts, draws, textures, texture_bytes, file_bytes }: ExportView,
-    format: ExportFormat,
-  ): void {
+  private tell({ parts, draws, textures, texture_bytes, file_bytes }: ExportView, format: Written): void {
     const cell = (figure: string, value: number, text: string): HTMLElement =>
       el('td', { 'data-figure': figure, 'data-value': String(value) }, text);
     const count = (figure: string, value: number): HTMLElement => cell(figure, value, number(value));
-    const single = format === 'ply' || format === 'stl';
+    const single = !holds(format, 'parts');
     const sum = (key: 'triangles' | 'vertices' | 'bytes'): number => parts.reduce((s, p) => s + p[key], 0);
     const rows = parts.map((p) =>
       el(
@@ -265,7 +269,7 @@ export class ExportPreview {
     const head = (['part', 'triangles', 'vertices', 'draws', 'geometry'] as const).map((key) =>
       el('th', { scope: 'col', title: t(`exported.${key}.help`) }, t(`exported.${key}`)),
     );
-    const file = line(ZIPPED.has(format) ? 'exported.zip' : 'exported.file', 'file', file_bytes);
+    const file = line(isZipped(format) ? 'exported.zip' : 'exported.file', 'file', file_bytes);
     file.title = t('exported.file.help');
     this.table.replaceChildren(
       el('table', {}, el('thead', {}, el('tr', {}, ...head)), el('tbody', {}, ...rows, whole)),
@@ -273,7 +277,7 @@ export class ExportPreview {
         ? [line('exported.textures', 'textures', texture_bytes, ` (${number(textures)})`)]
         : []),
       file,
-      el('p', { class: 'muted' }, t(format === 'glb' ? 'exported.note.glb' : 'exported.note')),
+      el('p', { class: 'muted' }, t(holds(format, 'instances') ? 'exported.note.glb' : 'exported.note')),
     );
     this.element.dataset['seen'] = String(this.shown?.triangles ?? 0);
   }

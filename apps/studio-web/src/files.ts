@@ -2,7 +2,7 @@
 import type { Documents } from './documents';
 import type { Engine } from './engine';
 import type { MakerWord, Opened } from './wire';
-import { LEVELS, PLAIN, openExport, structureFile, type Target, type ExportOptions } from './exporting';
+import { fileOf, isModel, PLAIN, openExport, type Target, type ExportOptions } from './exporting';
 import { exportForGames } from './games';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
@@ -17,12 +17,6 @@ const ACCEPT =
   '.burgeon,.svg,.svgz,.excalidraw,.tldr,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
 /** How a zip begins: PK. */
 const ZIP = [0x50, 0x4b] as const;
-const TYPES: Record<string, string> = {
-  glb: 'model/gltf-binary',
-  ply: 'application/octet-stream',
-  stl: 'model/stl',
-  json: 'application/json',
-};
 
 export interface FilesEvents {
   opened(): void;
@@ -248,21 +242,21 @@ export class Files {
       return;
     }
     try {
-      if (!LEVELS.has(format)) options.levels = 1;
-      const structure = structureFile(format);
+      if (!isModel(format)) options.levels = 1;
       const stem = safe(this.events.name());
-      let name = `${stem}.${structure?.extension ?? format}`;
+      const { type, ending } = fileOf(format);
+      let name = `${stem}.${ending}`;
       if (format === 'png') {
         const picture = await this.events.picture();
         if (!picture) throw new Error(t('note.nowebgl'));
-        download(name, picture, 'image/png');
+        download(name, picture, type);
       } else {
         const request = { format, ...options };
         const bytes = await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request });
         // Several files come as a zip.
         const zipped = bytes[0] === ZIP[0] && bytes[1] === ZIP[1];
         if (zipped) name = `${stem}.${format}.zip`;
-        download(name, bytes, zipped ? 'application/zip' : (structure?.type ?? TYPES[format] ?? ''));
+        download(name, bytes, zipped ? 'application/zip' : type);
       }
       note(t('note.exported', { name }));
     } catch (e) {

@@ -196,6 +196,114 @@ export const CODES = {
   "write": ["why"],
 } as const;
 
+/** The formats that are written, by their words. */
+export const FORMATS = {
+  glb: {
+    kind: "model",
+    ending: "glb",
+    type: "model/gltf-binary",
+    about: "Binary glTF: one file with textures and materials",
+    holds: ["parts", "textures", "translucence", "wind", "levels", "instances", "joints", "morphs", "packing"],
+    zipped: false,
+  },
+  gltf: {
+    kind: "model",
+    ending: "gltf",
+    type: "model/gltf+json",
+    about: "glTF as text, with its buffer and textures beside it",
+    holds: ["parts", "textures", "translucence", "wind", "levels", "instances", "joints", "morphs", "packing"],
+    zipped: true,
+  },
+  obj: {
+    kind: "model",
+    ending: "obj",
+    type: "model/obj",
+    about: "Wavefront OBJ with its material file and textures beside it",
+    holds: ["axes", "parts", "textures", "heights"],
+    zipped: true,
+  },
+  ply: {
+    kind: "model",
+    ending: "ply",
+    type: "application/octet-stream",
+    about: "PLY: one mesh with colours",
+    holds: ["axes"],
+    zipped: false,
+  },
+  stl: {
+    kind: "model",
+    ending: "stl",
+    type: "model/stl",
+    about: "Stereolithography: bare triangles",
+    holds: ["axes"],
+    zipped: false,
+  },
+  usda: {
+    kind: "model",
+    ending: "usda",
+    type: "model/vnd.usda",
+    about: "Universal Scene Description as text, with textures beside it",
+    holds: ["axes", "parts", "textures", "wind"],
+    zipped: true,
+  },
+  usdz: {
+    kind: "model",
+    ending: "usdz",
+    type: "model/vnd.usdz+zip",
+    about: "Universal Scene Description with its textures in one file",
+    holds: ["axes", "parts", "textures", "wind"],
+    zipped: false,
+  },
+  mtg: {
+    kind: "structure",
+    ending: "mtg",
+    type: "text/plain",
+    about: "Multiscale tree graph: axes, nodes and organs as text",
+    holds: ["axes"],
+    zipped: false,
+  },
+  opf: {
+    kind: "structure",
+    ending: "opf",
+    type: "application/xml",
+    about: "Open Plant Format: axes, internodes and organs with their meshes",
+    holds: ["axes", "organ-meshes"],
+    zipped: false,
+  },
+  qsm: {
+    kind: "structure",
+    ending: "qsm.csv",
+    type: "text/csv",
+    about: "Quantitative structure model: a table of cylinders",
+    holds: ["axes"],
+    zipped: false,
+  },
+  swc: {
+    kind: "structure",
+    ending: "swc",
+    type: "text/plain",
+    about: "Skeleton: points with radii, each with the one that it grows from",
+    holds: ["axes"],
+    zipped: false,
+  },
+  svg: {
+    kind: "drawing",
+    ending: "svg",
+    type: "image/svg+xml",
+    about: "Scalable Vector Graphics; one drawing a file",
+    holds: [],
+    zipped: false,
+  },
+  json: {
+    kind: "drawing",
+    ending: "json",
+    type: "application/json",
+    about: "Our own `drawing/1`; one drawing a file",
+    holds: [],
+    zipped: false,
+  },
+} as const;
+
 /** What can be asked that is more than one [`document::Command`]. */
 export type Action =
   | /** An empty document in the place of this one. */
@@ -434,6 +542,21 @@ export type DocumentState = {
   undo: string | null;
 };
 
+/** The file formats that hold strokes. */
+export type DrawingFormat =
+  | /** Scalable Vector Graphics; one drawing a file. */
+  "svg"
+  | /** Ink Markup Language (W3C 2011); one drawing a file. */
+  "inkml"
+  | /** One JSON object a line, as in "Quick, Draw!"; any number of drawings a file. */
+  "ndjson"
+  | /** Our own `drawing/1`; one drawing a file. */
+  "json"
+  | /** Excalidraw's files and what it puts on the clipboard; one drawing a file. */
+  "excalidraw"
+  | /** tldraw's files; one drawing a file. */
+  "tldraw";
+
 /** What became of one edit. */
 export type EditReport = {
   /** What it changed; all 0 if it was not done. */
@@ -456,24 +579,14 @@ export type EditState = {
   op: string;
 };
 
-/** As what something is written. */
+/** A format that something is written as, by its word. */
 export type ExportFormat =
-  | /** A binary glTF file. */
-  "glb"
-  | /** A USD stage with its textures. */
-  "usda"
-  | /** OBJ with its material file and textures. */
-  "obj"
-  | /** Triangles with colours. */
-  "ply"
-  | /** Bare triangles. */
-  "stl"
-  | /** The current drawing in our JSON. */
-  "json"
-  | /** The current drawing as SVG, with its layers. */
-  "svg"
+  | /** The meshes of the plants. */
+  ModelFormat
   | /** The structure of each plant. */
-  StructureFormat;
+  StructureFormat
+  | /** The current drawing. */
+  DrawingFormat;
 
 /** What is exported, and how it is written. */
 export type ExportRequest = {
@@ -488,9 +601,9 @@ export type ExportRequest = {
   /** Joints and an animation that sways, where it is glTF; each level then has a file of its own. */
   sway: boolean;
   /** The unit of the file. */
-  unit: LengthUnit;
+  unit: Unit;
   /** The vertical axis of the file. */
-  up: Up;
+  up: UpAxis;
   /** The whole scene, else the current plant. */
   whole: boolean;
   /** How wind moves drawings and trees, where the format has room for it. */
@@ -1206,15 +1319,6 @@ export type LeafState = {
   text: string;
 };
 
-/** A unit of length. */
-export type LengthUnit =
-  | /** Metres, as inside. */
-  "m"
-  | /** Centimetres. */
-  "cm"
-  | /** Millimetres. */
-  "mm";
-
 /** The maker of a plant. */
 export type MakerWord =
   | /** Drawn with a pen. */
@@ -1279,6 +1383,23 @@ export type Mirror = {
   /** A point of it, metres. */
   point: [number, number, number];
 };
+
+/** The file formats that hold models. */
+export type ModelFormat =
+  | /** Binary glTF: one file with textures and materials. */
+  "glb"
+  | /** glTF as text, with its buffer and textures beside it. */
+  "gltf"
+  | /** Wavefront OBJ with its material file and textures beside it. */
+  "obj"
+  | /** PLY: one mesh with colours. */
+  "ply"
+  | /** Stereolithography: bare triangles. */
+  "stl"
+  | /** Universal Scene Description as text, with textures beside it. */
+  "usda"
+  | /** Universal Scene Description with its textures in one file. */
+  "usdz";
 
 /** An obstacle with the name under which a person knows it. */
 export type NamedObstacle = {
@@ -2236,13 +2357,13 @@ export type StrokeTurn = {
 
 /** The file formats that hold the structure of a plant, as text; written only. */
 export type StructureFormat =
-  | /** The structure of each plant as a multiscale tree graph. */
+  | /** Multiscale tree graph: axes, nodes and organs as text. */
   "mtg"
-  | /** The structure of each plant with the meshes of its organs, as Open Plant Format. */
+  | /** Open Plant Format: axes, internodes and organs with their meshes. */
   "opf"
-  | /** The structure of each plant as a table of cylinders. */
+  | /** Quantitative structure model: a table of cylinders. */
   "qsm"
-  | /** The skeleton of each plant as a table of points. */
+  | /** Skeleton: points with radii, each with the one that it grows from. */
   "swc";
 
 /** Surface of a measured blade (Wang et al. */
@@ -2450,11 +2571,20 @@ export type Turn = {
   degrees: number;
 };
 
-/** A vertical axis. */
-export type Up =
-  | /** As inside. */
+/** The unit of lengths in a file. */
+export type Unit =
+  | /** Metres, the unit inside. */
+  "m"
+  | /** Centimetres. */
+  "cm"
+  | /** Millimetres. */
+  "mm";
+
+/** Which axis of a file points up. */
+export type UpAxis =
+  | /** +Y, as inside and in glTF. */
   "y"
-  | /** As Blender and most CAD programs have it. */
+  | /** +Z, as in Blender and most survey data: file (x, y, z) is inside (x, z, -y). */
   "z";
 
 /** Which parameters an interpolating side vein has. */

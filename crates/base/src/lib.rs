@@ -19,6 +19,7 @@
 //! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
 //! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`], [`light_of_byte`], [`byte_of_light`] |
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
+//! | `words` | [`words!`], [`either`]: choices by the words that people write |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
 mod budget;
@@ -38,6 +39,7 @@ mod srgb;
 mod task;
 pub mod turn;
 mod units;
+mod words;
 
 pub use budget::{Budget, Counted, OverBudget, grouped};
 pub use check::{Bound, Check, Severity};
@@ -56,3 +58,4 @@ pub use task::{
     map_until_cancelled,
 };
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};
+pub use words::either;

@@ -1,5 +1,8 @@
 //! Conversions at the door: inside, everything is metres, radians, days, right-handed, +Y up.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::ops::PI;
 
 /// A value that must be finite was not.
@@ -73,18 +76,32 @@ impl Tolerance {
 }
 
 /// The unit of lengths in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Unit {
     /// Metres, the unit inside.
     #[default]
+    #[serde(rename = "m")]
     Metre,
     /// Centimetres.
+    #[serde(rename = "cm")]
     Centimetre,
     /// Millimetres.
+    #[serde(rename = "mm")]
     Millimetre,
 }
 
+crate::words!(Unit { Metre = "m", Centimetre = "cm", Millimetre = "mm" });
+
 impl Unit {
+    /// The plural of its name.
+    pub const fn plural(self) -> &'static str {
+        match self {
+            Self::Metre => "metres",
+            Self::Centimetre => "centimetres",
+            Self::Millimetre => "millimetres",
+        }
+    }
+
     /// Metres per unit.
     pub const fn metres(self) -> f64 {
         match self {
@@ -96,7 +113,8 @@ impl Unit {
 }
 
 /// Which axis of a file points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum UpAxis {
     /// +Y, as inside and in glTF.
     #[default]
@@ -104,3 +122,5 @@ pub enum UpAxis {
     /// +Z, as in Blender and most survey data: file (x, y, z) is inside (x, z, -y).
     Z,
 }
+
+crate::words!(UpAxis { Y = "y", Z = "z" });

@@ -6,7 +6,7 @@ use std::io;
 use base::{Report, Slip};
 
 use crate::foreign::Foreign;
-use crate::kind::{CloudFormat, DrawingFormat, ModelFormat};
+use crate::{CloudFormat, DrawingFormat, ModelFormat};
 
 /// Where in a file something is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -143,7 +143,7 @@ impl FileFault {
 
 /// A drawing could not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{place}: {fault}", format.word())]
+#[error("{}{place}: {fault}", format.name())]
 pub struct DrawingError {
     /// The format it was read as.
     pub format: DrawingFormat,
@@ -161,7 +161,7 @@ impl DrawingError {
 
 /// A model could not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{place}: {fault}", format.word())]
+#[error("{}{place}: {fault}", format.name())]
 pub struct ModelError {
     /// The format it was read as.
     pub format: ModelFormat,
@@ -179,7 +179,7 @@ impl ModelError {
 
 /// A scan could not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{place}: {fault}", format.word())]
+#[error("{}{place}: {fault}", format.name())]
 pub struct CloudError {
     /// The format it was read as.
     pub format: CloudFormat,

@@ -17,22 +17,27 @@ mod leaves;
 mod model;
 mod plant;
 mod summary;
+mod table;
 
 pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use foreign::Foreign;
-pub use kind::{CloudFormat, DrawingFormat, ModelFormat, StructureFormat};
 pub use leaves::{
     GrowthEntry, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadGrowth, ReadMarks,
     ReadProfile, ReadProfiles, ReadRays, is_rays, marks_template, read_growth, read_leaf_file, read_marks,
     read_profiles, read_rays, read_vein_graph, write_marks, write_rays,
 };
 pub use model::{
-    ExportSpec, FileStems, Level, MAX_MODEL_BYTES, Morph, NoFile, ObjFiles, Packing, PngCache, Resolver,
-    SideFile, UsdFiles, decode_uri, file_name, no_files, obj_files, read_model, read_picture, usd_files,
-    warn_of_wind, write_glb, write_glb_levels, write_glb_morph, write_glb_packed, write_glb_rigged,
-    write_glb_scene, write_glb_with, write_model, write_ply, write_png, write_stl,
+    BesideFile, ExportSpec, FileStems, Level, MAX_MODEL_BYTES, ModelFiles, Morph, NoFile, ObjFiles, Packing,
+    PngCache, Resolver, SideFile, UsdFiles, decode_uri, file_name, gltf_files, model_files, names_beside,
+    no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb, write_glb_levels,
+    write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with, write_model,
+    write_ply, write_png, write_stl,
 };
 pub use plant::{write_mtg, write_opf, write_qsm, write_structure, write_swc};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};
+pub use table::{
+    Access, Beside, CloudFormat, DrawingFormat, FormatRow, ModelFormat, Room, StructureFormat,
+    list_of_endings,
+};

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use formats::{ExportSpec, StructureFormat, WriteError};
+use formats::{ExportSpec, Room, StructureFormat, WriteError};
 use plant::Plant;
 use skin::{SkinSpec, shape_meshes};
 
@@ -17,6 +17,7 @@ pub fn write_structure(
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
-    let shapes = if format.has_meshes() { shape_meshes(plant, &SkinSpec::default()) } else { Vec::new() };
+    let has_meshes = format.holds(Room::OrganMeshes);
+    let shapes = if has_meshes { shape_meshes(plant, &SkinSpec::default()) } else { Vec::new() };
     formats::write_structure(plant, &shapes, format, spec, out)
 }

@@ -1,7 +1,7 @@
 //! Why something was not done.
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
-use burgeon::formats::{DrawingError, Foreign, ModelError, WriteError};
+use burgeon::formats::{DrawingError, DrawingFormat, Foreign, ModelError, ModelFormat, WriteError};
 use burgeon::{SceneError, Slip, SplitError, Stopped, TreeError};
 
 /// Why a workspace refused; it is as it was.
@@ -31,8 +31,10 @@ pub enum WorkspaceError {
     NoUsableStroke,
     /// Nothing says what the file is.
     #[error(
-        "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .svgz, .excalidraw, .tldr, .inkml, .ndjson, .json), marks \
-         of a leaf (.csv), a tree or flower (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
+        "this is no file that Burgeon reads: give a project (.burgeon), a drawing ({}), marks of a leaf (.csv), a tree or \
+         flower (.toml) or a model ({})",
+        DrawingFormat::read_endings(),
+        ModelFormat::read_endings()
     )]
     UnknownFile,
     /// It is a file of another program.
@@ -42,7 +44,7 @@ pub enum WorkspaceError {
     #[error(transparent)]
     NotText(#[from] core::str::Utf8Error),
     /// An obstacle that is no model.
-    #[error("an obstacle is a model: give a .glb, .gltf, .obj, .ply or .stl file")]
+    #[error("an obstacle is a model: give a {} file", ModelFormat::read_endings())]
     ObstacleFile,
     /// A model without triangles.
     #[error("there is no surface in it")]

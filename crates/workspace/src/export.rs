@@ -1,7 +1,9 @@
 //! Exports: the scene or one plant, in every format that the command line writes.
 
 use burgeon::document::{self, Document, DocumentPlant, PlantId};
-use burgeon::formats::{self, ExportSpec, ModelFormat, PngCache, StructureFormat, obj_files, usd_files};
+use burgeon::formats::{
+    self, DrawingFormat, ExportSpec, ModelFormat, PngCache, Room, StructureFormat, gltf_files, model_files,
+};
 use burgeon::mesh::{Model, Standing};
 use burgeon::plant::Plant;
 use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing};
@@ -19,42 +21,39 @@ const IMPOSTOR: u32 = 1024;
 /// A name and the bytes under it.
 pub type NamedFile = (String, Vec<u8>);
 
-/// As what something is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+/// A format that something is written as, by its word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
 pub enum ExportFormat {
-    /// A binary glTF file.
-    #[default]
-    Glb,
-    /// A USD stage with its textures.
-    Usda,
-    /// OBJ with its material file and textures.
-    Obj,
-    /// Triangles with colours.
-    Ply,
-    /// Bare triangles.
-    Stl,
-    /// The current drawing in our JSON.
-    Json,
-    /// The current drawing as SVG, with its layers.
-    Svg,
+    /// The meshes of the plants.
+    Model(ModelFormat),
     /// The structure of each plant.
-    #[serde(untagged)]
     Structure(StructureFormat),
+    /// The current drawing.
+    Drawing(DrawingFormat),
+}
+
+impl Default for ExportFormat {
+    fn default() -> Self {
+        Self::Model(ModelFormat::Glb)
+    }
 }
 
 impl ExportFormat {
+    /// The format of models that it is.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Format`] for one that holds no models.
     pub(crate) fn model(self) -> Result<ModelFormat, WorkspaceError> {
-        Ok(match self {
-            Self::Glb => ModelFormat::Glb,
-            Self::Usda => ModelFormat::Usda,
-            Self::Obj => ModelFormat::Obj,
-            Self::Ply => ModelFormat::Ply,
-            Self::Stl => ModelFormat::Stl,
-            Self::Structure(format) => return Err(WorkspaceError::Format(format.word())),
-            Self::Json => return Err(WorkspaceError::Format("json")),
-            Self::Svg => return Err(WorkspaceError::Format("svg")),
-        })
+        match self {
+            Self::Model(format) => Ok(format),
+            Self::Structure(format) => Err(WorkspaceError::Format(format.word())),
+            Self::Drawing(format) => Err(WorkspaceError::Format(format.word())),
+        }
+    }
+
+    fn holds(self, room: Room) -> bool {
+        self.model().is_ok_and(|format| format.holds(room))
     }
 }
 
@@ -67,9 +66,9 @@ pub struct ExportRequest {
     /// Levels of detail, 1 to 4: each has about half of the triangles of the one before.
     pub levels: u32,
     /// The vertical axis of the file.
-    pub up: Up,
+    pub up: UpAxis,
     /// The unit of the file.
-    pub unit: LengthUnit,
+    pub unit: Unit,
     /// The whole scene, else the current plant.
     pub whole: bool,
     /// How wind moves drawings and trees, where the format has room for it.
@@ -89,8 +88,8 @@ impl Default for ExportRequest {
         Self {
             format,
             levels: 1,
-            up: Up::Y,
-            unit: LengthUnit::M,
+            up: UpAxis::Y,
+            unit: Unit::Metre,
             whole: false,
             wind: false,
             one_file,
@@ -100,60 +99,29 @@ impl Default for ExportRequest {
     }
 }
 
-/// A vertical axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Up {
-    /// As inside.
-    Y,
-    /// As Blender and most CAD programs have it.
-    Z,
-}
-
-/// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LengthUnit {
-    /// Metres, as inside.
-    M,
-    /// Centimetres.
-    Cm,
-    /// Millimetres.
-    Mm,
-}
-
 impl ExportRequest {
     /// Whether what is written says how wind moves it.
     pub(crate) fn blown(&self) -> bool {
-        (self.wind && self.format.model().is_ok_and(ModelFormat::carries_wind)) || self.sways()
+        (self.wind && self.format.holds(Room::Wind)) || self.sways()
     }
 
     fn sways(&self) -> bool {
-        self.sway && self.format == ExportFormat::Glb
+        self.sway && self.format.holds(Room::Joints)
     }
 
     /// Whether the level after the others is views from all sides.
     pub(crate) fn ends_far(&self) -> bool {
-        self.impostor && self.format == ExportFormat::Glb
+        self.impostor && self.format.holds(Room::Levels)
     }
 
     /// Whether each level is written as one model of the whole scene.
     fn joined(&self) -> bool {
-        let one = self.format == ExportFormat::Glb && self.one_file && self.levels > 1;
+        let one = self.format.holds(Room::Levels) && self.one_file && self.levels > 1;
         self.sways() || self.ends_far() || one
     }
 
     pub(crate) fn spec(&self) -> ExportSpec {
-        let up = match self.up {
-            Up::Y => UpAxis::Y,
-            Up::Z => UpAxis::Z,
-        };
-        let unit = match self.unit {
-            LengthUnit::M => Unit::Metre,
-            LengthUnit::Cm => Unit::Centimetre,
-            LengthUnit::Mm => Unit::Millimetre,
-        };
-        ExportSpec { up, unit }
+        ExportSpec { up: self.up, unit: self.unit }
     }
 }
 
@@ -168,15 +136,15 @@ impl Workspace {
         wanted: &ExportRequest,
         run: &Run<'_>,
     ) -> Result<Vec<NamedFile>, WorkspaceError> {
-        if let ExportFormat::Json | ExportFormat::Svg = wanted.format {
+        if let ExportFormat::Drawing(format) = wanted.format {
             let drawing = self.current_plant().ok_or(WorkspaceError::NoDrawing)?.drawing();
             let mut out = Vec::new();
-            if wanted.format == ExportFormat::Svg {
-                formats::write_svg(&drawing, &mut out)?;
-                return Ok(vec![("drawing.svg".into(), out)]);
+            match format {
+                DrawingFormat::Svg => formats::write_svg(&drawing, &mut out)?,
+                DrawingFormat::Json => formats::write_drawing(&drawing, &mut out)?,
+                _ => return Err(WorkspaceError::Format(format.word())),
             }
-            formats::write_drawing(&drawing, &mut out)?;
-            return Ok(vec![("drawing.json".into(), out)]);
+            return Ok(vec![(format!("drawing.{}", format.extension()), out)]);
         }
         if let Some(model) = &self.guest {
             return written(model, wanted.format.model()?, "plant", &wanted.spec());
@@ -243,25 +211,31 @@ fn joined(
     {
         models.push(far);
     }
+    let format = wanted.format.model()?;
     let mut cache = PngCache::new();
-    let mut out = Vec::new();
     if wanted.one_file && !wanted.sways() {
+        let mut out = Vec::new();
         let levels: Vec<formats::Level<'_>> = models.iter().map(formats::Level::plain).collect();
         formats::write_glb_levels(&levels, None, &mut cache, &mut out)?;
-        return Ok(vec![("plant.glb".into(), out)]);
+        return gltf_named(out, format, "plant");
     }
-    let alone = models.len() == 1;
-    let file = |(level, model): (usize, &Model)| {
+    let mut files = Vec::new();
+    for (level, model) in models.iter().enumerate() {
         let mut out = Vec::new();
         let gust = burgeon::skin::gust(model);
         match burgeon::skin::sway(model, gust).filter(|_| wanted.sways()) {
             Some(rig) => formats::write_glb_rigged(model, &rig, &mut cache, &mut out)?,
             None => formats::write_glb_with(model, &mut cache, &mut out)?,
         }
-        let name = if alone { "plant.glb".into() } else { format!("plant_LOD{level}.glb") };
-        Ok((name, out))
-    };
-    models.iter().enumerate().map(file).collect()
+        let stem = if models.len() == 1 { "plant".into() } else { format!("plant_LOD{level}") };
+        files.extend(gltf_named(out, format, &stem)?);
+    }
+    Ok(files)
+}
+
+/// A binary glTF in a format of its family, with the names of its files.
+fn gltf_named(glb: Vec<u8>, format: ModelFormat, stem: &str) -> Result<Vec<NamedFile>, WorkspaceError> {
+    Ok(gltf_files(glb, format, stem)?.named(format!("{stem}.{}", format.extension())))
 }
 
 /// Views of a model from all sides; none of nothing.
@@ -335,7 +309,7 @@ impl Level {
     }
 }
 
-/// The files of a scene. Binary glTF has each model once, however often it stands there; others have room for one model.
+/// The files of a scene. glTF has each model once, however often it stands there; others have room for one model.
 pub(crate) fn scene_files(
     name: &str,
     plants: &[Standing<'_>],
@@ -344,10 +318,10 @@ pub(crate) fn scene_files(
     spec: &ExportSpec,
     cache: &mut PngCache,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
-    if format == ModelFormat::Glb {
+    if format.holds(Room::Instances) {
         let mut out = Vec::new();
         formats::write_glb_scene(name, plants, cache, &mut out)?;
-        return Ok(vec![(format!("{stem}.glb"), out)]);
+        return gltf_named(out, format, stem);
     }
     written(&scene_model(name, plants), format, stem, spec)
 }
@@ -368,16 +342,14 @@ fn structure<'a>(
     Ok(files)
 }
 
-/// One file as it is, several as a zip; USD always as a zip, so that the name of what is saved is known before its
-/// textures are.
+/// One file as it is, several as a zip; formats with files beside theirs always as a zip, so that the name of what is saved
+/// is known before their textures are.
 ///
 /// # Errors
 /// [`WorkspaceError::Archive`] for what no zip holds.
 pub fn packed(format: ExportFormat, mut files: Vec<NamedFile>) -> Result<Vec<u8>, WorkspaceError> {
-    match files.len() {
-        1 if format != ExportFormat::Usda => Ok(files.swap_remove(0).1),
-        _ => Ok(document::pack(&files)?),
-    }
+    let names_others = format.model().is_ok_and(|format| !format.row().beside.is_empty());
+    if files.len() == 1 && !names_others { Ok(files.swap_remove(0).1) } else { Ok(document::pack(&files)?) }
 }
 
 /// The files of a model.
@@ -387,24 +359,7 @@ pub(crate) fn written(
     stem: &str,
     spec: &ExportSpec,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
-    let (main, beside) = match format {
-        ModelFormat::Obj => {
-            let files = obj_files(model, stem, spec)?;
-            let mut beside = vec![(format!("{stem}.mtl"), files.mtl)];
-            beside.extend(files.textures);
-            (("obj", files.obj), beside)
-        }
-        ModelFormat::Usda => {
-            let files = usd_files(model, stem, spec)?;
-            (("usda", files.usda), files.textures)
-        }
-        _ => {
-            let mut out = Vec::new();
-            formats::write_model(model, format, spec, &mut out, &mut Report::default())?;
-            ((format.extension(), out), Vec::new())
-        }
-    };
-    let mut all = vec![(format!("{stem}.{}", main.0), main.1)];
-    all.extend(beside);
-    Ok(all)
+    let (cache, report) = (&mut PngCache::new(), &mut Report::default());
+    let files = model_files(model, format, stem, spec, cache, report)?;
+    Ok(files.named(format!("{stem}.{}", format.extension())))
 }

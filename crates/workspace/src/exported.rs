@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burgeon::document::PlantId;
-use burgeon::formats::ModelFormat;
+use burgeon::formats::{ModelFormat, Room};
 use burgeon::mesh::{Material, Model, Texture, TriMesh};
 use burgeon::{Run, scene_model};
 use schemars::JsonSchema;
@@ -173,21 +173,16 @@ impl Workspace {
 
 /// The textures of a material that a file has.
 fn pictures(m: &Material, format: ModelFormat) -> impl Iterator<Item = &Arc<Texture>> {
-    let (glb, obj) = (format == ModelFormat::Glb, format == ModelFormat::Obj);
-    let height = m.maps.height.as_ref().filter(|_| obj);
-    let through = m.maps.through.as_ref().filter(|_| glb && m.double_sided && m.translucency > 0.0);
+    let height = m.maps.height.as_ref().filter(|_| format.holds(Room::Heights));
+    let is_through = format.holds(Room::Translucence) && m.double_sided && m.translucency > 0.0;
+    let through = m.maps.through.as_ref().filter(|_| is_through);
     let all = [m.texture.as_ref(), m.maps.normal.as_ref(), m.maps.orm.as_ref(), height, through];
-    all.into_iter().flatten().filter(move |_| !is_single(format))
-}
-
-/// One mesh holds all, without textures.
-fn is_single(format: ModelFormat) -> bool {
-    matches!(format, ModelFormat::Ply | ModelFormat::Stl)
+    all.into_iter().flatten().filter(move |_| format.holds(Room::Textures))
 }
 
 /// Figures by kind, in the order of the parts, and how many meshes are drawn.
 fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> (Vec<PartFigures>, u32) {
-    let single = is_single(format);
+    let single = !format.holds(Room::Parts);
     let mut all: Vec<PartFigures> = Vec::new();
     for (k, model) in models.iter().enumerate() {
         // Without a plant of its own it is all that there is.
@@ -206,7 +201,7 @@ fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> 
                 if format == ModelFormat::Stl { 3 * triangles } else { mesh.positions.len() as u64 };
             figures.triangles += places * triangles;
             figures.vertices += places * vertices;
-            figures.bytes += bytes(mesh) * if format == ModelFormat::Glb { 1 } else { places };
+            figures.bytes += bytes(mesh) * if format.holds(Room::Instances) { 1 } else { places };
             if !single {
                 figures.draws += u32::try_from(places).unwrap_or(u32::MAX);
             }
@@ -345,9 +340,10 @@ mod tests {
             assert_eq!(view.file_bytes, saved.len() as u64, "{format:?}");
             view
         };
-        let glb = look(ExportFormat::Glb, false);
-        let obj = look(ExportFormat::Obj, true);
-        let [ply, stl] = [ExportFormat::Ply, ExportFormat::Stl].map(|f| look(f, true));
+        let glb = look(ExportFormat::Model(ModelFormat::Glb), false);
+        let obj = look(ExportFormat::Model(ModelFormat::Obj), true);
+        let [ply, stl] = [ExportFormat::Model(ModelFormat::Ply), ExportFormat::Model(ModelFormat::Stl)]
+            .map(|f| look(f, true));
         assert_eq!((obj.draws, obj.textures), (glb.draws, glb.textures));
         assert_eq!(told(&obj)[2], 2 * told(&glb)[2], "others hold a copy twice, and no wind");
         assert_eq!((ply.draws, ply.textures, stl.draws), (1, 0, 1));

@@ -41,7 +41,7 @@ mod workspace;
 mod tests;
 
 pub use error::WorkspaceError;
-pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
+pub use export::{ExportFormat, ExportRequest, NamedFile, packed};
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use held::CarriedPose;

@@ -131,23 +131,26 @@ fn every_format_opens_and_a_bad_file_changes_nothing() {
         assert!(said.len() > 20, "{name}: {said}");
         assert_eq!(json(&s.state()), state, "{name}");
     }
-    for (format, word) in [(ExportFormat::Glb, "glb"), (ExportFormat::Ply, "ply"), (ExportFormat::Stl, "stl")]
-    {
+    for (format, word) in [
+        (ExportFormat::Model(formats::ModelFormat::Glb), "glb"),
+        (ExportFormat::Model(formats::ModelFormat::Ply), "ply"),
+        (ExportFormat::Model(formats::ModelFormat::Stl), "stl"),
+    ] {
         let file = s.file(format);
         let mut other = Workspace::default();
         let opened = json(&other.open(&format!("plant.{word}"), &file, 0, false).unwrap());
         assert_eq!(opened["kind"], "model");
         let view = look(&mut other);
         assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
-        assert!(other.file(ExportFormat::Glb).starts_with(b"glTF"));
+        assert!(other.file(ExportFormat::Model(formats::ModelFormat::Glb)).starts_with(b"glTF"));
         let structure = ExportRequest {
             format: ExportFormat::Structure(formats::StructureFormat::Mtg),
             ..ExportRequest::default()
         };
         assert!(matches!(other.export(&structure, &run()), Err(WorkspaceError::Format("mtg"))));
     }
-    assert!(s.file(ExportFormat::Obj).starts_with(b"PK"));
-    let drawing = s.file(ExportFormat::Json);
+    assert!(s.file(ExportFormat::Model(formats::ModelFormat::Obj)).starts_with(b"PK"));
+    let drawing = s.file(ExportFormat::Drawing(formats::DrawingFormat::Json));
     assert_eq!(json(&Workspace::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
     let two = concat!(
         r#"{"word":"a","drawing":[[[0,9],[0,90]]]}"#,
@@ -248,7 +251,10 @@ fn organs_wear_materials_by_kind_and_by_stroke_and_files_keep_them() {
     let mut other = Workspace::default();
     other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(look(&mut other)["parts"], pictured["parts"]);
-    assert_eq!(other.file(ExportFormat::Glb), s.file(ExportFormat::Glb));
+    assert_eq!(
+        other.file(ExportFormat::Model(formats::ModelFormat::Glb)),
+        s.file(ExportFormat::Model(formats::ModelFormat::Glb))
+    );
     assert_eq!(other.document().plants()[0].wear(), s.document().plants()[0].wear());
     // A link has no room for pictures.
     other.open("l.burgeon", &s.share().unwrap(), 0, true).unwrap();
@@ -282,7 +288,7 @@ fn trees_flowers_and_measured_leaves_wear_materials_too() {
         s.ask(&format!(r#"{{"plant":[{id},{{"wear":["{wearer}",{{"pattern":"streaked"}}]}}]}}"#)).unwrap();
         let view = look(&mut s);
         assert!(names(&view).contains(&part.to_owned()), "{:?}", names(&view));
-        let glb = s.file(ExportFormat::Glb);
+        let glb = s.file(ExportFormat::Model(formats::ModelFormat::Glb));
         assert!(String::from_utf8_lossy(&glb).contains(&format!("{wearer}-streaked-1")));
     }
 }
@@ -309,7 +315,7 @@ fn layers_hide_lock_and_travel() {
     s.ask(r#"{"sketch":[0,"clear"]}"#).unwrap();
     assert_eq!((s.document().plants()[0].strokes().len(), s.undo()), (1, Some("clear")));
     // Files keep them; of an SVG the hidden one comes last.
-    let svg = s.file(ExportFormat::Svg);
+    let svg = s.file(ExportFormat::Drawing(formats::DrawingFormat::Svg));
     let mut other = Workspace::default();
     other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(look(&mut other)["item"]["digest"], hidden["item"]["digest"]);
@@ -585,7 +591,7 @@ fn branches_are_walked_by_keys() {
 #[test]
 fn a_model_that_is_looked_at_is_closed_and_the_scene_is_there_again() {
     let mut s = flower();
-    let file = s.file(ExportFormat::Glb);
+    let file = s.file(ExportFormat::Model(formats::ModelFormat::Glb));
     s.evaluate(&run()).unwrap();
     s.open("x.glb", &file, 0, false).unwrap();
     assert!(s.evaluate(&run()).unwrap().guest.is_some());

@@ -2,13 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use syn::visit::Visit;
 use syn::{Attribute, Item, ItemMod, ItemUse, UseTree};
 
 use xtask::shell::{Outcome, repository, say};
 
-/// For each module of a crate's root the others that it uses, each with one place where it does.
+/// For each module below another, or below a crate's root, the others beside it that it uses, each with one place where it
+/// does.
 type Uses = BTreeMap<String, BTreeMap<String, String>>;
 
 /// Looks for circles among the modules of every crate.
@@ -21,29 +23,88 @@ pub(crate) fn check() -> Outcome {
         roots.extend(sources.flat_map(|s| [s.join("lib.rs"), s.join("main.rs")]).filter(|f| f.is_file()));
     }
     roots.sort();
-    let mut faults = Vec::new();
+    let (mut faults, mut files) = (Vec::new(), 0);
     for root in &roots {
-        faults.extend(circles(&uses(root)?).iter().map(|c| format!("{}: {c}", root.display())));
+        let mut sources = Files::default();
+        for parent in parents(root, &mut sources)? {
+            let uses = uses(&parent, &mut sources)?;
+            files += uses.len();
+            faults.extend(circles(&uses).iter().map(|c| format!("{}: {c}", parent.file.display())));
+        }
     }
     if faults.is_empty() {
-        say(&format!("circles: none among the modules of {} crates", roots.len()));
+        say(&format!("circles: none among {files} files of {} crates", roots.len()));
         Ok(())
     } else {
         Err(format!("modules that use one another in a circle:\n  {}", faults.join("\n  ")))
     }
 }
 
-fn parse(path: &Path) -> Outcome<syn::File> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    syn::parse_file(&text).map_err(|e| format!("{}: {e}", path.display()))
+/// The files of a crate, each parsed once: a file is looked at for each module above it.
+#[derive(Default)]
+struct Files(BTreeMap<PathBuf, Rc<syn::File>>);
+
+impl Files {
+    fn parse(&mut self, path: &Path) -> Outcome<Rc<syn::File>> {
+        if let Some(file) = self.0.get(path) {
+            return Ok(Rc::clone(file));
+        }
+        let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let file = syn::parse_file(&text).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(Rc::clone(self.0.entry(path.into()).or_insert(Rc::new(file))))
+    }
 }
 
-/// Which module uses which, among those that a crate's root declares. Tests may use what they like.
-fn uses(root: &Path) -> Outcome<Uses> {
-    let file = parse(root)?;
-    let folder = root.parent().unwrap_or(Path::new("."));
+/// A module with modules below it, or the root of a crate.
+struct Parent {
+    file: PathBuf,
+    /// Where the files of the modules below it lie.
+    folder: PathBuf,
+    /// Its path from the root.
+    module: Vec<String>,
+}
+
+impl Parent {
+    /// A module in a file of its own; `module`: its path from the root.
+    fn new(file: &Path, module: Vec<String>) -> Self {
+        let is_folder = file.file_name().is_some_and(|n| n == "mod.rs" || n == "lib.rs" || n == "main.rs");
+        let folder = if is_folder { file.parent().unwrap_or(file).into() } else { file.with_extension("") };
+        Self { file: file.into(), folder, module }
+    }
+
+    /// The file of a module below it, if it has one.
+    fn child(&self, name: &str) -> Option<PathBuf> {
+        let own = [self.folder.join(format!("{name}.rs")), self.folder.join(name).join("mod.rs")];
+        own.into_iter().find(|p| p.is_file())
+    }
+
+    /// What comes after its own path, of a path from the root.
+    fn below<'a>(&self, path: &'a [String]) -> &'a [String] {
+        path.strip_prefix(&self.module[..]).unwrap_or_default()
+    }
+}
+
+/// The root of a crate and all modules with modules below them.
+fn parents(root: &Path, files: &mut Files) -> Outcome<Vec<Parent>> {
+    let mut all = Vec::new();
+    let mut open = vec![Parent::new(root, Vec::new())];
+    while let Some(parent) = open.pop() {
+        for module in declared(&*files.parse(&parent.file)?) {
+            let name = module.ident.to_string();
+            if let Some(file) = parent.child(&name) {
+                open.push(Parent::new(&file, parent.module.iter().cloned().chain([name]).collect()));
+            }
+        }
+        all.push(parent);
+    }
+    Ok(all)
+}
+
+/// Which module uses which, among those that their parent declares. Tests may use what they like.
+fn uses(parent: &Parent, files: &mut Files) -> Outcome<Uses> {
+    let file = files.parse(&parent.file)?;
     let modules: BTreeSet<String> = declared(&file).map(|m| m.ident.to_string()).collect();
-    // Names that the root gives to its modules' items: `crate::Name` means the module that has it.
+    // Names that the parent gives to its modules' items: `parent::Name` means the module that has it.
     let mut names = BTreeMap::new();
     for item in &file.items {
         if let Item::Use(u) = item {
@@ -51,7 +112,12 @@ fn uses(root: &Path) -> Outcome<Uses> {
             flatten(&u.tree, &mut Vec::new(), &mut paths);
             for path in paths {
                 let path: Vec<_> = path.into_iter().skip_while(|p| p == "crate" || p == "self").collect();
-                if let [first, .., last] = path.as_slice()
+                let own = if path.first().is_some_and(|p| modules.contains(p)) {
+                    &path[..]
+                } else {
+                    parent.below(&path)
+                };
+                if let [first, .., last] = own
                     && modules.contains(first)
                 {
                     names.insert(last.clone(), first.clone());
@@ -61,12 +127,13 @@ fn uses(root: &Path) -> Outcome<Uses> {
     }
     let mut all = Uses::new();
     for module in &modules {
-        let mut seen = Seen { module: vec![module.clone()], paths: Vec::new() };
-        let own = [folder.join(format!("{module}.rs")), folder.join(module).join("mod.rs")];
-        let Some(path) = own.into_iter().find(|p| p.is_file()) else { continue };
-        seen.file(&path)?;
+        let Some(path) = parent.child(module) else { continue };
+        let own = parent.module.iter().chain([module]).cloned().collect();
+        let mut seen = Seen { module: own, paths: Vec::new() };
+        seen.file(&path, files)?;
         let found = all.entry(module.clone()).or_default();
         for (path, place) in seen.paths {
+            let path = parent.below(&path);
             let Some(first) = path.first() else { continue };
             let used = if modules.contains(first) { Some(first) } else { names.get(first) };
             if let Some(used) = used.filter(|u| *u != module) {
@@ -115,23 +182,18 @@ struct Seen {
 }
 
 impl Seen {
-    fn file(&mut self, path: &Path) -> Outcome {
-        let file = parse(path)?;
+    fn file(&mut self, path: &Path, files: &mut Files) -> Outcome {
+        let file = files.parse(path)?;
         let place = path.strip_prefix(repository()).unwrap_or(path).display().to_string();
         let before = self.paths.len();
         self.visit_file(&file);
         self.paths[before..].iter_mut().for_each(|(_, at)| at.clone_from(&place));
-        let folder: PathBuf = if path.file_name().is_some_and(|n| n == "mod.rs") {
-            path.parent().unwrap_or(path).to_path_buf()
-        } else {
-            path.with_extension("")
-        };
+        let parent = Parent::new(path, Vec::new());
         for module in declared(&file) {
             let name = module.ident.to_string();
-            let own = [folder.join(format!("{name}.rs")), folder.join(&name).join("mod.rs")];
-            if let Some(path) = own.into_iter().find(|p| p.is_file()) {
+            if let Some(path) = parent.child(&name) {
                 self.module.push(name);
-                self.file(&path)?;
+                self.file(&path, files)?;
                 self.module.pop();
             }
         }
@@ -215,7 +277,10 @@ mod tests {
             std::fs::create_dir_all(path.parent().expect("a folder")).expect("can be made");
             std::fs::write(path, text).expect("can be written");
         }
-        let found = circles(&uses(&folder.join("lib.rs")).expect("can be parsed"));
+        let mut sources = Files::default();
+        let all = parents(&folder.join("lib.rs"), &mut sources).expect("can be parsed");
+        let uses = all.iter().map(|parent| uses(parent, &mut sources).expect("can be parsed"));
+        let found = uses.flat_map(|uses| circles(&uses)).collect();
         std::fs::remove_dir_all(folder).expect("was made");
         found
     }
@@ -233,5 +298,21 @@ mod tests {
             found.len() == 1 && found[0].contains("d.rs uses a::g") && found[0].contains("uses Thing"),
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn circles_are_found_among_files_below_a_module() {
+        let root = ("lib.rs", "mod a;");
+        let parent = ("a/mod.rs", "mod b; mod c; mod d; pub use c::Thing; fn own() {}");
+        let fine = [
+            root,
+            parent,
+            ("a/b.rs", "use super::Thing; fn f() { super::own(); }"),
+            ("a/c.rs", "pub struct Thing;"),
+            ("a/d.rs", "#[cfg(test)] mod tests { use super::super::b; }"),
+        ];
+        assert_eq!(of(&fine), Vec::<String>::new());
+        let found = of(&[root, parent, fine[2], ("a/c.rs", "use crate::a::b;"), fine[4], ("none.rs", "")]);
+        assert!(found.len() == 1 && found[0].contains("c.rs uses b"), "{found:?}");
     }
 }

@@ -1,10 +1,12 @@
 //! `burgeon bloom`.
 
+use burgeon::formats::{ModelFormat, Room};
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
 use super::given::Given;
+use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, ViewWord, ranged, size};
 
 /// The two commands.
@@ -99,9 +101,7 @@ pub(crate) struct BloomRunArgs {
     /// of your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
-    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl, .usda or .usdz (one shape), .mtg, .opf or
-    /// .swc (the structure of a flower or drawing), or a folder (a file a frame).
-    #[arg(long, short, value_name = "OUT")]
+    #[arg(long, short, value_name = "OUT", help = lists::bloom_output())]
     pub(crate) output: PathBuf,
     /// Last shape: a scan or a model.
     #[arg(long, value_name = "END")]
@@ -162,16 +162,14 @@ pub(crate) struct BloomRunArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex of a whole flower or a drawing, for shaders: attributes _WIND and _PIVOT
-    /// of .glb, primvars of .usda and .usdz.
-    #[arg(long)]
+    #[arg(long, help = lists::wind(" of a whole flower or a drawing"))]
     pub(crate) wind: bool,
     /// Coarser copies of one shape of a whole flower or a drawing (--day, or .obj, .usda, ...) to write beside it
     /// (OUT-lod1, OUT-lod2, ...), 0 to 6.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) lods: u32,
     /// Format of the files in a folder.
-    #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
+    #[arg(long, value_enum, default_value_t = crate::args::FormatWord::GLB)]
     pub(crate) format: crate::args::FormatWord,
     /// Also make a picture of the shape at --day; without it of the last shape (for a flower, of full bloom).
     #[arg(long, value_name = "FILE.png")]
@@ -214,7 +212,13 @@ pub(crate) enum FrameWord {
 impl BloomRunArgs {
     /// Whether an animation is written.
     pub(crate) fn is_film(&self) -> bool {
-        self.one_day().is_none() && self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"))
+        self.film().is_some()
+    }
+
+    /// The format of the animation that is written, if one is.
+    pub(crate) fn film(&self) -> Option<ModelFormat> {
+        let format = self.output.extension().and_then(|e| ModelFormat::from_extension(e.to_str()?));
+        format.filter(|f| f.row().is_written() && f.holds(Room::Morphs) && self.one_day().is_none())
     }
 
     /// The day that is made alone: that of `--day`, or of the only scan, if a plant is made of one.

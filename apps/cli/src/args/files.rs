@@ -1,11 +1,13 @@
 //! `burgeon render`, `convert`, `info` and `studio`.
 
+use burgeon::{Unit, UpAxis};
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, UnitWord, UpWord, seed};
+use super::lists;
+use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, seed, unit_words, up_words};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -16,8 +18,7 @@ pub(crate) struct RenderArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The model: .glb, .gltf, .obj, .ply or .stl.
-    #[arg(value_name = "MODEL")]
+    #[arg(value_name = "MODEL", help = lists::model_input())]
     pub(crate) input: PathBuf,
     /// The picture: .png.
     #[arg(long, short, value_name = "PNG")]
@@ -51,11 +52,11 @@ pub(crate) struct ConvertArgs {
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
     /// Axis that points up in the input, where it differs from --up.
-    #[arg(long, value_enum, value_name = "UP", help_heading = "Geometry")]
-    pub(crate) in_up: Option<UpWord>,
+    #[arg(long, value_parser = up_words(), value_name = "UP", help_heading = "Geometry")]
+    pub(crate) in_up: Option<UpAxis>,
     /// Unit of length in the input, where it differs from --unit.
-    #[arg(long, value_enum, value_name = "UNIT", help_heading = "Geometry")]
-    pub(crate) in_unit: Option<UnitWord>,
+    #[arg(long, value_parser = unit_words(), value_name = "UNIT", help_heading = "Geometry")]
+    pub(crate) in_unit: Option<Unit>,
     /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
     /// (docs/exports.md).
     #[arg(long, value_enum, value_name = "HOW")]
@@ -77,9 +78,7 @@ pub(crate) struct InfoArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The file: a model (.glb, .gltf, .obj, .ply, .stl), a drawing (.svg, .inkml, .ndjson, .json) or a project
-    /// (.burgeon).
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", help = lists::info_input())]
     pub(crate) input: PathBuf,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use burgeon::formats::ModelFormat;
+use burgeon::formats::{ModelFormat, Room};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 
-use super::shared::{CommonArgs, PictureArgs, PlantFormat, ViewWord};
+use super::plant_format::PlantFormat;
+use super::shared::{CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
 
 /// The options that stand on the command line, rather than those that have a default, by the names of their fields.
@@ -44,6 +45,16 @@ impl Given {
         if used { Ok(()) } else { self.refuse(options, users, this) }
     }
 
+    /// [`refuse`](Self::refuse), unless a format that is written `holds` the room that these options need.
+    pub(crate) fn only_if_holds(&self, holds: bool, options: &[&str], room: Room) -> Outcome {
+        self.only_if(
+            holds,
+            options,
+            &format!("models as {}", ModelFormat::endings_with(room)),
+            "none is made",
+        )
+    }
+
     /// The options of pictures, where none is made, and those of a turntable, where one view is taken.
     pub(crate) fn check_picture(&self, picture: bool, args: &PictureArgs) -> Outcome {
         let all = ["size", "view", "frames", "background", "no_shadow", "supersample"];
@@ -65,8 +76,7 @@ impl Given {
         self.only_if(seen.model.is_some() || seen.picture, &colours, "models and pictures", none)?;
         let counted = seen.model.is_some() || seen.picture || seen.report;
         self.only_if(counted, &["detail", "sides"], "models, pictures and reports", "none is made")?;
-        let wind = seen.model.is_some_and(ModelFormat::carries_wind);
-        self.only_if(wind, &["wind"], "models as .glb, .usda or .usdz", "none is made")?;
+        self.only_if_holds(seen.model.is_some_and(|f| f.holds(Room::Wind)), &["wind"], Room::Wind)?;
         self.only_if(seen.model.is_some(), &["lods"], "models", "none is made")
     }
 }

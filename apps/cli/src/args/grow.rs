@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use burgeon::TreeSpec;
 use burgeon::formats::Packing;
+use burgeon::formats::Room;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
 use burgeon::skin::{FoliageStyle, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
+use super::lists;
+use super::plant_format::PlantFormat;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
 use crate::failure::Outcome;
 
@@ -22,8 +25,7 @@ pub(crate) struct GrowArgs {
     /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
     #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
     pub(crate) what: Option<PathBuf>,
-    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "drawing", "report", "json"])]
+    #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "qsm", "drawing", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
     #[arg(long, value_name = "FILE.csv")]
@@ -86,13 +88,9 @@ pub(crate) struct GrowthArgs {
     /// envelope [default: the preset's].
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodWord>,
-    /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around, in the axes of --up and the --unit (glTF: metres, +Y
-    /// up); may be given several times.
-    #[arg(long, value_name = "MESH")]
+    #[arg(long, value_name = "MESH", help = lists::obstacle())]
     pub(crate) obstacle: Vec<PathBuf>,
-    /// A leaf that the tree bears instead of its own: marks (.csv), a vein graph (.json) or a model of one leaf (.glb,
-    /// .obj, .ply, .stl) with its root at the origin.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = lists::leaf_template("the tree bears instead of its own"))]
     pub(crate) leaf_template: Option<PathBuf>,
     /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<FoliageSpec>(s, "leaf_keep"))]
@@ -170,9 +168,11 @@ impl TreeSurfaceArgs {
         SkinSpec { wind: skin.wind || self.sway, ..skin }
     }
 
-    /// Fails on options that nothing uses. `glb`: the model is one.
-    pub(crate) fn check_used(&self, given: &Given, glb: bool) -> Outcome {
-        given.only_if(glb, &["pack", "lod_file", "sway"], "models as .glb", "none is made")?;
+    /// Fails on options that nothing uses. `format`: of the plant that is written.
+    pub(crate) fn check_used(&self, given: &Given, format: Option<PlantFormat>) -> Outcome {
+        for (option, room) in [("pack", Room::Packing), ("lod_file", Room::Levels), ("sway", Room::Joints)] {
+            given.only_if_holds(format.is_some_and(|f| f.holds(room)), &[option], room)?;
+        }
         given.only_if(self.lods > 0, &["lod_file"], "coarser copies (--lods)", "none is made")?;
         let apart = !(self.in_one_file() && self.sway);
         given.only_if(apart, &["sway"], "levels in files of their own", "--lod-file one puts them into one")

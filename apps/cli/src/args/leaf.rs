@@ -6,6 +6,7 @@ use burgeon::leaf::{BallMove, LeafSpec, SurfaceKind};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
+use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, whole};
 
 #[derive(Args, Debug)]
@@ -18,9 +19,7 @@ pub(crate) struct LeafArgs {
     /// measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the structure: .mtg, .opf or .swc. With --template the file to
-    /// fill in.
-    #[arg(long, short, value_name = "OUT")]
+    #[arg(long, short, value_name = "OUT", help = lists::leaf_output())]
     pub(crate) output: Option<PathBuf>,
     /// Write a file of marks to fill in, with instructions, to -o or to standard output.
     #[arg(long)]
@@ -61,8 +60,7 @@ pub(crate) struct LeafArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda and .usdz.
-    #[arg(long)]
+    #[arg(long, help = lists::wind(""))]
     pub(crate) wind: bool,
     /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]

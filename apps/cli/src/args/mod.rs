@@ -6,6 +6,8 @@ mod files;
 mod given;
 mod grow;
 mod leaf;
+mod lists;
+mod plant_format;
 mod presets;
 mod replay;
 mod scan;
@@ -21,14 +23,12 @@ pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurface
 pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };
+pub(crate) use plant_format::{FormatWord, PlantFormat};
 pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
 pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
-pub(crate) use shared::{
-    AxesArgs, CheckArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord,
-    UpWord,
-};
+pub(crate) use shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 
 use clap::{Args, Parser, Subcommand};
@@ -97,9 +97,7 @@ pub(crate) enum Command {
     /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
-    ///
-    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl, .usda or .usdz. Drawings: .svg, .inkml,
-    /// .ndjson and .json to .json. A drawing becomes a model with `burgeon sketch`.
+    #[command(long_about = lists::convert())]
     Convert(ConvertArgs),
     /// Describe a model, a drawing or a project
     ///

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::given::Given;
 use super::grow::TreeSurfaceArgs;
+use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, ranged, seed};
 
 #[derive(Args, Debug)]
@@ -21,8 +22,7 @@ pub(crate) struct ScanArgs {
     /// The scan: .laz, .las, .ply, .xyz, .txt, .pcd or .obj, with +Z up unless --up says otherwise.
     #[arg(value_name = "SCAN")]
     pub(crate) input: PathBuf,
-    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "mtg", "report", "json"])]
+    #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "qsm", "mtg", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
     #[arg(long, value_name = "FILE.csv")]

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::given::Given;
 use super::grow::TreeSurfaceArgs;
+use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, seed};
 
 #[derive(Args, Debug)]
@@ -21,8 +22,7 @@ pub(crate) struct ShapeArgs {
     /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
     #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
     pub(crate) edits: Option<PathBuf>,
-    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg, .opf, .swc).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
+    #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
     pub(crate) output: Option<PathBuf>,
     /// Which plant of a project that holds several: its name, or its number from 1.
     #[arg(long, value_name = "NAME|N")]

@@ -1,15 +1,16 @@
 //! Options that commands share, and their words.
 
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
-use burgeon::formats::{ModelFormat, Packing, StructureFormat};
+use burgeon::formats::Packing;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
 use burgeon::spec::Spec;
 use burgeon::{Seed, Unit, UpAxis};
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+
+use super::lists;
 
 /// Options of every command.
 #[derive(Args, Debug)]
@@ -77,9 +78,7 @@ pub(crate) struct SkinArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda and .usdz
-    /// (docs/exports.md).
-    #[arg(long)]
+    #[arg(long, help = lists::wind(""))]
     pub(crate) wind: bool,
 }
 
@@ -171,50 +170,27 @@ pub(crate) enum ViewWord {
 pub(crate) struct AxesArgs {
     /// Axis that points up in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and coordinates given as options; glTF
     /// is always +Y [default: y; z for MTG, OPF, QSM and SWC].
-    #[arg(long, value_enum)]
-    pub(crate) up: Option<UpWord>,
+    #[arg(long, value_parser = up_words())]
+    pub(crate) up: Option<UpAxis>,
     /// Unit of length in OBJ, PLY, STL, USD, MTG, OPF, QSM and SWC files, clouds, and lengths said to be in --unit; glTF is always
     /// in metres.
-    #[arg(long, value_enum, default_value_t = UnitWord::M)]
-    pub(crate) unit: UnitWord,
+    #[arg(long, value_parser = unit_words(), default_value = Unit::Metre.word())]
+    pub(crate) unit: Unit,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum UpWord {
-    /// +Y
-    Y,
-    /// +Z
-    Z,
+/// The words of axes that point up.
+pub(crate) fn up_words() -> impl TypedValueParser<Value = UpAxis> {
+    let words = [(UpAxis::Y, "+Y"), (UpAxis::Z, "+Z")];
+    let words = words.map(|(up, help)| PossibleValue::new(up.word()).help(help));
+    PossibleValuesParser::new(words).try_map(|word| UpAxis::from_word(&word).ok_or("no axis"))
 }
 
-impl From<UpWord> for UpAxis {
-    fn from(word: UpWord) -> Self {
-        match word {
-            UpWord::Y => Self::Y,
-            UpWord::Z => Self::Z,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub(crate) enum UnitWord {
-    /// Metres
-    #[default]
-    M,
-    /// Centimetres
-    Cm,
-    /// Millimetres
-    Mm,
-}
-
-impl From<UnitWord> for Unit {
-    fn from(word: UnitWord) -> Self {
-        match word {
-            UnitWord::M => Self::Metre,
-            UnitWord::Cm => Self::Centimetre,
-            UnitWord::Mm => Self::Millimetre,
-        }
-    }
+/// The words of units of length.
+pub(crate) fn unit_words() -> impl TypedValueParser<Value = Unit> {
+    let words =
+        [(Unit::Metre, "Metres"), (Unit::Centimetre, "Centimetres"), (Unit::Millimetre, "Millimetres")];
+    let words = words.map(|(unit, help)| PossibleValue::new(unit.word()).help(help));
+    PossibleValuesParser::new(words).try_map(|word| Unit::from_word(&word).ok_or("no unit"))
 }
 
 /// How a GLB is packed.
@@ -242,59 +218,6 @@ fn texture_size(text: &str) -> Result<u32, String> {
         _ if text == "off" => Ok(0),
         Ok(size @ 64..=4096) => Ok(size),
         _ => Err("give 64 to 4096 pixels, or off".to_owned()),
-    }
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum FormatWord {
-    /// Binary glTF: one file with textures and materials
-    Glb,
-    /// Wavefront OBJ with its material file and textures beside it
-    Obj,
-    /// PLY: one mesh with colours
-    Ply,
-    /// Universal Scene Description as text, with textures beside it
-    Usda,
-    /// Universal Scene Description with its textures in one file
-    Usdz,
-}
-
-impl FormatWord {
-    pub(crate) const fn format(self) -> ModelFormat {
-        match self {
-            Self::Glb => ModelFormat::Glb,
-            Self::Obj => ModelFormat::Obj,
-            Self::Ply => ModelFormat::Ply,
-            Self::Usda => ModelFormat::Usda,
-            Self::Usdz => ModelFormat::Usdz,
-        }
-    }
-}
-
-/// What a plant is written as, by the ending of its file.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PlantFormatWord(pub(crate) PlantFormat);
-
-impl PlantFormatWord {
-    pub(crate) const GLB: Self = Self(PlantFormat::Model(ModelFormat::Glb));
-}
-
-impl ValueEnum for PlantFormatWord {
-    fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<PlantFormatWord>> =
-            LazyLock::new(|| PlantFormat::written().into_iter().map(PlantFormatWord).collect());
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self.0 {
-            PlantFormat::Model(model) => {
-                FormatWord::value_variants().iter().find(|f| f.format() == model)?.to_possible_value()
-            }
-            PlantFormat::Structure(structure) => {
-                Some(PossibleValue::new(structure.extension()).help(structure.about()))
-            }
-        }
     }
 }
 
@@ -350,59 +273,6 @@ fn range<T: Spec>(field: &str) -> [f64; 2] {
     let range = burgeon::spec::range::<T>(field);
     debug_assert!(range.is_some(), "{field} has a range");
     range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
-}
-
-/// What a plant is written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PlantFormat {
-    /// Its meshes.
-    Model(ModelFormat),
-    /// Its structure.
-    Structure(StructureFormat),
-}
-
-impl PlantFormat {
-    /// The axes and the unit are the format's own.
-    pub(crate) const fn fixed_axes(self) -> bool {
-        matches!(self, Self::Model(format) if format.fixed_axes())
-    }
-
-    /// How names of its files end, without the dot.
-    pub(crate) fn extension(self) -> &'static str {
-        match self {
-            Self::Model(model) => model.extension(),
-            Self::Structure(structure) => structure.extension(),
-        }
-    }
-
-    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
-        StructureFormat::from_extension(extension)
-            .map(Self::Structure)
-            .or_else(|| ModelFormat::from_extension(extension).map(Self::Model))
-    }
-
-    /// All that a folder of plants can hold: bare triangles are written one by one.
-    fn written() -> Vec<Self> {
-        FormatWord::value_variants()
-            .iter()
-            .map(|f| Self::Model(f.format()))
-            .chain(Self::structures())
-            .collect()
-    }
-
-    /// The structures that are told by the ending of a file.
-    fn structures() -> impl Iterator<Item = Self> {
-        let named = |f: &StructureFormat| StructureFormat::from_extension(f.extension()) == Some(*f);
-        StructureFormat::ALL.into_iter().filter(named).map(Self::Structure)
-    }
-
-    /// How files of plants may end, for messages.
-    pub(crate) fn endings() -> String {
-        let models = ModelFormat::ALL.into_iter().filter(|f| *f != ModelFormat::Gltf).map(Self::Model);
-        let mut all: Vec<&str> = models.chain(Self::structures()).map(Self::extension).collect();
-        let last = all.pop().unwrap_or_default();
-        format!("plants are written as .{} or .{last}", all.join(", ."))
-    }
 }
 
 #[cfg(test)]

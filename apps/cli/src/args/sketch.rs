@@ -8,7 +8,9 @@ use burgeon::skin::{PetalColor, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, of, seed};
+use super::lists;
+use super::plant_format::PlantFormatWord;
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, of, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
@@ -20,9 +22,7 @@ pub(crate) struct SketchArgs {
     /// - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the plant's structure: .mtg (multiscale tree graph), .opf (Open
-    /// Plant Format) or .swc (skeleton). For several drawings a folder, which is created and gets one file each.
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "split", "report", "json"])]
+    #[arg(long, short, value_name = "OUT", help = lists::sketch_output(), required_unless_present_any = ["png", "qsm", "split", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = PlantFormatWord::GLB)]
@@ -109,9 +109,8 @@ pub(crate) struct ReadingArgs {
     /// Sag of drawn branches, 0 to 1 [default: 0].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "gravity"))]
     pub(crate) gravity: Option<f64>,
-    /// A leaf that the plant bears instead of the drawn or built-in ones: marks (.csv), a vein graph (.json) or a
-    /// model of one leaf (.glb, .obj, .ply, .stl) with its root at the origin.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE",
+          help = lists::leaf_template("the plant bears instead of the drawn or built-in ones"))]
     pub(crate) leaf_template: Option<PathBuf>,
     /// All settings of the sketch maker as TOML or JSON (what is missing keeps its default); options above win over it.
     #[arg(long, value_name = "FILE")]

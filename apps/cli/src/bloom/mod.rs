@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use burgeon::CheckReport;
 use burgeon::bloom::{FlowerSpec, GrowthLaw};
 use burgeon::document::PlantEdit;
+use burgeon::formats::{ModelFormat, Room};
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 
@@ -90,7 +91,8 @@ fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
             files::plan_plant(&mut outputs, &args.output, args.lods)?;
         }
         (None, Some(_)) => {
-            return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
+            let endings = ModelFormat::written_endings();
+            return Err(Failure::at(&args.output, format_args!("has no extension; end it with {endings}")));
         }
         // First: a report may lie in it.
         (None, None) => outputs.folder(&args.output)?,
@@ -136,17 +138,17 @@ fn run(args: &BloomRunArgs) -> Outcome {
 fn plant_formats(args: &BloomRunArgs) -> Outcome {
     let folder = files::extension(&args.output).is_none();
     let written =
-        if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
-    let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
+        if folder { PlantFormat::Model(args.format.0) } else { files::plant_writable(&args.output)? };
+    let wind = written.holds(Room::Wind);
     args.given.only_if(
         // An animation moves its vertices itself.
         wind && !args.is_film(),
         &["wind"],
-        "models of one day as .glb (--day), .usda or .usdz",
+        &format!("models of one day (--day) as {}", ModelFormat::endings_with(Room::Wind)),
         "none is made",
     )?;
     // Scans have axes and a unit themselves.
-    if args.plant { Ok(()) } else { args.given.check_axes(!written.fixed_axes()) }
+    if args.plant { Ok(()) } else { args.given.check_axes(written.holds(Room::Axes)) }
 }
 
 /// What is said of a law that sets no pace.
@@ -167,12 +169,14 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     let film = args.is_film();
     let several = film || args.one_day().is_none() && extension.is_none();
     let one = "one shape is written";
-    given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
-    given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
+    let films = format!("animations ({} without --day)", ModelFormat::endings_with(Room::Morphs));
+    given.only_if(several, &["frames"], &format!("{films} and folders"), one)?;
+    given.only_if(film, &["seconds"], &films, "none is written")?;
     let structure = extension.and_then(PlantFormat::from_extension);
     let structure = matches!(structure, Some(PlantFormat::Structure(_)));
-    let users = "models of one shape (--day, or another format than .glb)";
-    given.only_if(!several && !structure, &["lods"], users, "none is written")?;
+    let moving = ModelFormat::endings_with(Room::Morphs);
+    let users = format!("models of one shape (--day, or another format than {moving})");
+    given.only_if(!several && !structure, &["lods"], &users, "none is written")?;
     given.only_if(
         extension.is_none(),
         &["format"],

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
+use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, Room, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::PointCloud;
 use burgeon::plant::{Measures, Plant};
@@ -55,7 +55,6 @@ pub(super) fn write_show(
 ) -> Outcome<Written> {
     let mut written = Written::default();
     let mut digest = Digest::new();
-    let extension = files::extension(&args.output).map(str::to_ascii_lowercase);
     let at = |k: u32| {
         let share = f64::from(k) / f64::from(args.frames - 1);
         show.days[0] + (show.days[1] - show.days[0]) * share
@@ -67,16 +66,16 @@ pub(super) fn write_show(
         written.take(&shown);
         write_one(outputs, path, &shown, (axes, &args.axes))
     };
-    match (extension.as_deref(), args.one_day()) {
-        (None, _) => {
+    match (files::extension(&args.output), args.film(), args.one_day()) {
+        (None, ..) => {
             let name = names::safe(&show.name);
             for k in 0..args.frames {
-                let name = format!("{name}-{k:03}.{}", args.format.format().extension());
+                let name = format!("{name}-{k:03}.{}", args.format.0.extension());
                 one(at(k), &args.output.join(name), &mut written, &mut digest)?;
             }
         }
-        (Some(_), Some(day)) => one(day, &args.output, &mut written, &mut digest)?,
-        (Some("glb"), None) => {
+        (Some(_), _, Some(day)) => one(day, &args.output, &mut written, &mut digest)?,
+        (Some(_), Some(format), None) => {
             let mut models = Vec::new();
             for k in 0..args.frames {
                 machine.cancel.check()?;
@@ -95,10 +94,11 @@ pub(super) fn write_show(
                 let keys = (0..args.frames).zip(&models).filter(|(k, _)| *k != best);
                 let keys = keys.map(|(k, m)| (second(k), m)).collect();
                 let morph = Morph { name: "growth", at: second(best), keys };
-                outputs.write("-o", &args.output, |out| write_glb_morph(model, &morph, out))?;
+                let goal = Goal::new("-o", &args.output);
+                files::write_gltf(outputs, goal, format, |out| write_glb_morph(model, &morph, out))?;
             }
         }
-        (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,
+        (Some(_), None, None) => one(show.best, &args.output, &mut written, &mut digest)?,
     }
     if let Some(png) = &args.png {
         let model = (show.shape)(args.day.unwrap_or(show.best))?.model;
@@ -151,8 +151,8 @@ fn write_one(
         }
         return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));
     }
-    // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
-    let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
+    // --unit and --up were those of the scans: glTF in metres with +Y up is no surprise.
+    let axes = if format.holds(Room::Axes) { axes } else { &ExportSpec::default() };
     let mut cache = PngCache::new();
     files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut cache)?;
     for (model, level) in lods.iter().zip(1..) {

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use super::answer::{ALWAYS, Answer};
 use super::gate::MOST_WRONG;
-use super::site::{ALWAYS, Answer};
 
 /// What a browser is asked for at the door of the network.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,9 @@ use std::net::{IpAddr, Shutdown, TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::answer::Answer;
 use super::gate::{Pace, Peers};
-use super::site::{Answer, Site, refusal};
+use super::site::{Site, refusal};
 
 /// Longest request head in bytes.
 const MAX_HEAD: usize = 16 << 10;

@@ -1,6 +1,7 @@
 //! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else; with `--lan` to browsers of the
 //! network that were let in.
 
+mod answer;
 mod door;
 mod gate;
 mod http;

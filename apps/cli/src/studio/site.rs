@@ -14,6 +14,7 @@ use std::time::Instant;
 use burgeon::document::{MAX_PROJECT_BYTES, read_project};
 use sha2::{Digest as _, Sha256};
 
+use super::answer::{ALWAYS, Answer};
 use super::door::{Asks, doorway, locked, stopped};
 use super::gate::{Entry, Gate, Invitation, Pace, Peers};
 use super::lan::Identity;
@@ -27,12 +28,6 @@ use crate::placing::{Move, put_all};
 pub(crate) const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; \
     style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; manifest-src 'self'; base-uri 'none'; \
     form-action 'none'; frame-ancestors 'none'";
-
-/// Headers of every answer, the refusals included.
-pub(super) const ALWAYS: &str = "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
-    Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\
-    Cross-Origin-Resource-Policy: same-origin\r\nPermissions-Policy: camera=(), microphone=(), geolocation=()\r\n\
-    Connection: close\r\n";
 
 const TYPES: [(&str, &str); 8] = [
     ("html", "text/html; charset=utf-8"),
@@ -109,22 +104,6 @@ impl Network {
 
     fn door(&self) -> MutexGuard<'_, Door> {
         self.door.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// Status line, headers with the empty line, and the body (none for HEAD).
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Answer {
-    pub(crate) status: u16,
-    pub(crate) head: String,
-    pub(crate) body: Cow<'static, [u8]>,
-}
-
-impl Answer {
-    /// The answer to a request with this head: to HEAD the headers only, refusals included.
-    pub(crate) fn to(self, head: &[u8]) -> Self {
-        let body = if head.starts_with(b"HEAD ") { Cow::default() } else { self.body };
-        Self { body, ..self }
     }
 }
 

@@ -213,7 +213,7 @@ fn bad_input_is_told_in_one_line_and_leaves_nothing() {
         (&["sketch", "what.xyz", "-o", "x.glb"], &["what.xyz", ".svg"]),
         (&["sketch", "noise.glb", "-o", "x.glb"], &["noise.glb", "not a drawing"]),
         (&["sketch", "rose.svg", "-o", "no/where/x.glb"], &["no/where", "does not exist"]),
-        (&["sketch", "rose.svg", "-o", "x.gltf"], &["x.gltf", ".glb"]),
+        (&["sketch", "rose.svg", "-o", "x.dae"], &["x.dae", ".glb"]),
         (
             &["sketch", "rose.svg", "-o", "x.glb", "--classes", "wrong.csv"],
             &["wrong.csv", "line 2", "petall"],

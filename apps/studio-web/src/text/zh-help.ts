@@ -4,6 +4,21 @@
  * of what an English text says is a change of the Chinese, too.
  */
 export const zhHelp: Readonly<Record<string, string>> = {
+  // Formats
+  'format.glb': '二进制 glTF：一个文件，含纹理与材质',
+  'format.gltf': 'glTF 文本，数据文件与纹理在旁边',
+  'format.obj': 'Wavefront OBJ，材质文件与纹理在旁边',
+  'format.ply': 'PLY：带颜色的单一网格',
+  'format.stl': 'STL：仅三角形',
+  'format.usda': 'USD 文本（通用场景描述），纹理在旁边',
+  'format.usdz': 'USD（通用场景描述），纹理在同一文件中',
+  'format.mtg': '多尺度树图：轴、节点与器官的文本',
+  'format.opf': '开放植物格式：轴、节间与器官及其网格',
+  'format.qsm': '定量结构模型：圆柱体的表格',
+  'format.swc': '骨架：带半径的点，各自注明从哪一点长出',
+  'format.svg': '可缩放矢量图形；每个文件一幅绘图',
+  'format.json': '本程序自己的 drawing/1；每个文件一幅绘图',
+
   // Materials
   material: '叶片、花瓣或萼片的材质。',
   'material.amount': '第二种颜色有多少，0 至 1，默认 0.5。',

@@ -2,7 +2,7 @@
 import type { Shaping } from '../shaping';
 import { t, type TextKey, tOf } from '../text';
 import { isBrush, isNumber, rowOf, SHAPE_WORDS } from '../tools';
-import type { ExportFormat } from '../wire';
+import type { Written } from '../exporting';
 import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
 import type { Key } from './wrist';
@@ -45,7 +45,7 @@ const FORMATS = [
   ['glb', 'usda'],
   ['obj', 'ply'],
   ['stl', 'mtg'],
-] as const satisfies readonly (readonly ExportFormat[])[];
+] as const satisfies readonly (readonly Written[])[];
 
 type Rows = readonly (readonly Key[])[];
 

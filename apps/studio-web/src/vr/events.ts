@@ -1,5 +1,6 @@
 /** What the headset asks of the page. */
-import type { ExportFormat, GestureRecord, Obstacle, SetDown } from '../wire';
+import type { Written } from '../exporting';
+import type { GestureRecord, Obstacle, SetDown } from '../wire';
 import type { Found } from './recorder';
 
 export type Mode = 'immersive-vr' | 'immersive-ar';
@@ -13,7 +14,7 @@ export interface HeadsetEvents {
   copy(): void;
   run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
   /** Writes the scene as a model. */
-  model(format: ExportFormat): void;
+  model(format: Written): void;
   /** The document as a project file. */
   project(): Promise<Uint8Array>;
   /** The plant that is worked on, the numbers of all, and the digest of what is seen of it. */

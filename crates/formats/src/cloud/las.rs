@@ -2,13 +2,8 @@
 
 #[cfg(feature = "laz")]
 use super::laz_limits::Packed;
-use super::{CloudFormat, MAX_POINTS, Sink, too_many};
+use super::{CloudFormat, MAX_POINTS, Sink, broken_las as fail, too_many};
 use crate::error::{CloudError, FileFault, Place};
-
-pub(super) fn fail(at: usize, what: impl Into<String>) -> CloudError {
-    let fault = FileFault::malformed(what, "export the scan again");
-    CloudError::new(CloudFormat::Las, Place::Byte(at as u64), fault)
-}
 
 struct Bytes<'a>(&'a [u8]);
 

@@ -1,6 +1,6 @@
 //! What a compressed scan claims, against what its bytes can hold: before any memory is taken for it.
 
-use super::las::fail;
+use super::broken_las as fail;
 use crate::error::CloudError;
 use laz::{LazItem, LazItemType, LazVlr};
 

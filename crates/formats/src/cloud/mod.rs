@@ -13,10 +13,9 @@ use base::Report;
 use glam::DVec3;
 use mesh::PointCloud;
 
-use crate::ExportSpec;
 use crate::error::{CloudError, FileFault, Place, WriteError};
 use crate::foreign::Foreign;
-use crate::kind::CloudFormat;
+use crate::{CloudFormat, ExportSpec};
 
 impl CloudFormat {
     /// The format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
@@ -122,7 +121,7 @@ pub fn write_cloud_ply(cloud: &PointCloud, spec: &ExportSpec, mut out: impl Writ
         out,
         "ply\nformat binary_little_endian 1.0\ncomment unit {}\n{}element vertex {}\nproperty double x\n\
          property double y\nproperty double z\n",
-        spec.unit_word(),
+        spec.unit.plural(),
         spec.offset_line(cloud.offset_m, "comment"),
         cloud.points.len()
     )?;
@@ -169,6 +168,12 @@ fn too_many(format: CloudFormat) -> CloudError {
         advice: "thin the scan out or split it into several files",
     };
     CloudError::new(format, Place::File, fault)
+}
+
+/// What is wrong with an LAS file at a byte.
+fn broken_las(at: usize, what: impl Into<String>) -> CloudError {
+    let fault = FileFault::malformed(what, "export the scan again");
+    CloudError::new(CloudFormat::Las, Place::Byte(at as u64), fault)
 }
 
 #[cfg(test)]

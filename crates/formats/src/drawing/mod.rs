@@ -15,9 +15,9 @@ use base::{Report, Warning};
 use glam::DVec2;
 use ink::{Drawing, Figure, InkSample, Stroke};
 
+use crate::DrawingFormat;
 use crate::error::{DrawingError, FileFault, Place};
 use crate::foreign::Foreign;
-use crate::kind::DrawingFormat;
 pub use json::write_drawing;
 pub use svg::write_svg;
 

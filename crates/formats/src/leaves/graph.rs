@@ -60,13 +60,10 @@ pub fn read_vein_graph(input: impl Read) -> Result<ReadGraph, LeafFileError> {
     }
     let unit = match read.unit.as_deref().map(str::to_ascii_lowercase).as_deref() {
         None | Some("pixel" | "pixels" | "px") => None,
-        Some("m") => Some(Unit::Metre),
-        Some("cm") => Some(Unit::Centimetre),
-        Some("mm") => Some(Unit::Millimetre),
-        Some(other) => {
-            let what = format!("the unit \"{other}\" is not known");
-            return Err(file(FileFault::malformed(what, "a unit is m, cm, mm or pixel")));
-        }
+        Some(word) => Some(Unit::from_word(word).ok_or_else(|| {
+            let what = format!("the unit \"{word}\" is not known");
+            file(FileFault::malformed(what, "a unit is m, cm, mm or pixel"))
+        })?),
     };
     let metres = unit.map_or(1.0, Unit::metres);
     let up = if unit.is_some() { metres } else { -metres };

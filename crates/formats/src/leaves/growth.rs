@@ -96,14 +96,10 @@ fn unit_of(comment: &str) -> Result<Option<Unit>, FileFault> {
     if !key.trim().eq_ignore_ascii_case("unit") {
         return Ok(None);
     }
-    match value.trim().to_ascii_lowercase().as_str() {
-        "m" => Ok(Some(Unit::Metre)),
-        "cm" => Ok(Some(Unit::Centimetre)),
-        "mm" => Ok(Some(Unit::Millimetre)),
-        other => {
-            Err(FileFault::malformed(format!("`unit: {other}` is not understood"), "a unit is m, cm or mm"))
-        }
-    }
+    let word = value.trim().to_ascii_lowercase();
+    let unknown =
+        || FileFault::malformed(format!("`unit: {word}` is not understood"), "a unit is m, cm or mm");
+    Unit::from_word(&word).map(Some).ok_or_else(unknown)
 }
 
 fn header(fields: &[&str], warnings: &mut Vec<Warning>) -> Result<[Option<usize>; 4], FileFault> {

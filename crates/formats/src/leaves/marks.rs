@@ -154,13 +154,14 @@ pub(super) fn setting(
     let word = value.to_ascii_lowercase();
     let unknown = |advice| Err(FileFault::malformed(format!("`{key}: {value}` is not understood"), advice));
     match (key.as_str(), word.as_str()) {
-        ("unit", "m") => axes.unit = Unit::Metre,
-        ("unit", "cm") => axes.unit = Unit::Centimetre,
-        ("unit", "mm") => axes.unit = Unit::Millimetre,
-        ("unit", _) => return unknown("a unit is m, cm or mm"),
-        ("up", "y") => axes.up = UpAxis::Y,
-        ("up", "z") => axes.up = UpAxis::Z,
-        ("up", _) => return unknown("the axis that points up is y or z"),
+        ("unit", word) => match Unit::from_word(word) {
+            Some(unit) => axes.unit = unit,
+            None => return unknown("a unit is m, cm or mm"),
+        },
+        ("up", word) => match UpAxis::from_word(word) {
+            Some(up) => axes.up = up,
+            None => return unknown("the axis that points up is y or z"),
+        },
         ("thickness", "diameter") => *rule = Some(ThicknessRule::Diameter),
         ("thickness", "radius") => *rule = Some(ThicknessRule::Radius),
         ("thickness", _) => return unknown("a thickness is a diameter or a radius"),

@@ -88,13 +88,10 @@ pub fn read_profiles(input: impl Read, name: &str, axes: MarksAxes) -> Result<Re
     };
     let unit = match unit.as_deref() {
         None => axes.unit,
-        Some("m") => Unit::Metre,
-        Some("cm") => Unit::Centimetre,
-        Some("mm") => Unit::Millimetre,
-        Some(other) => {
-            let what = format!("the unit \"{}\" is not known", other.chars().take(20).collect::<String>());
-            return Err(file(FileFault::malformed(what, "a unit is m, cm or mm")));
-        }
+        Some(word) => Unit::from_word(word).ok_or_else(|| {
+            let what = format!("the unit \"{}\" is not known", word.chars().take(20).collect::<String>());
+            file(FileFault::malformed(what, "a unit is m, cm or mm"))
+        })?,
     };
     if leaves.is_empty() {
         return Err(file(FileFault::Empty));

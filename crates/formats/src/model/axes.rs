@@ -25,15 +25,6 @@ impl ExportSpec {
         *self == Self::default()
     }
 
-    /// The unit in words.
-    pub(crate) fn unit_word(&self) -> &'static str {
-        match self.unit {
-            Unit::Metre => "metres",
-            Unit::Centimetre => "centimetres",
-            Unit::Millimetre => "millimetres",
-        }
-    }
-
     /// A model's position as the file has it.
     pub fn point(&self, p: [f32; 3]) -> [f32; 3] {
         let per_metre = match self.unit {

@@ -4,13 +4,17 @@ use std::io::Write;
 use std::sync::Arc;
 
 use glam::DVec3;
-use mesh::{MaterialKind, Model, TriMesh};
+use mesh::{CopyPlace, MaterialKind, Model, TriMesh};
 use serde_json::{Value, json};
 
-use super::glb_write::{Encoded, Level, Writer, check_levels, row};
-use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
+use super::glb_write::{Encoded, InstanceColumns, Level, Writer, check_levels, row};
+use super::gltf::{
+    Accessor, Attributes, Buffer, FLOAT, I8, I16, Mesh, Node, POINTS, Primitive, U8, U16, U32, View,
+};
 use super::meshopt::{encode_attributes, encode_triangles};
-use super::meshopt_filter::{COARSE, FINE, OCTAHEDRAL, octahedral};
+use super::meshopt_filter::{
+    COARSE, EXPONENTIAL, FINE, OCTAHEDRAL, QUATERNION, exponential, octahedral, power_within, quaternion,
+};
 use super::picture::{WEBP_TYPE, webp};
 use super::{PngCache, share, unit};
 use crate::error::WriteError;
@@ -26,6 +30,10 @@ const STEPS: f64 = 8192.0;
 /// Textures within the range of compressed coordinates, of which each has 512 steps, and of a large plant 255, which fit into a byte.
 const TEXTURES: f32 = 65_535.0 / 512.0;
 const TEXTURES_OF_LARGE: f32 = 257.0;
+/// Most steps of a place of a compressed instance from the origin: 24 bits hold twice as many.
+const STEPS_FROM_ORIGIN: f64 = 4_194_304.0;
+/// Least steps of the largest of the sizes of compressed instances.
+const SIZES: f64 = 256.0;
 /// What sixteen bits count to.
 const MOST: f64 = 65_535.0;
 /// Of JPEG textures: differences are hardly seen beside the picture.
@@ -40,7 +48,9 @@ pub enum Packing {
     /// Those, compressed (`EXT_meshopt_compression`), with positions in steps of a millimetre or of an 8,192th of the model's
     /// size, whichever is finer, texture coordinates in steps of a 512th of a texture if they are within 128 of it, normals to a
     /// degree (of plants of more than eight metres: a 255th within 257, normals of leaves to four degrees), and textures with
-    /// holes as WebP without loss (`EXT_texture_webp`; as PNG without the feature `webp`). A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
+    /// holes as WebP without loss (`EXT_texture_webp`; as PNG without the feature `webp`). Instances stand where they should to
+    /// half a millimetre (half a 8,192th of the size of small plants), turned to two thirds of a degree, with a size to a 512th
+    /// of the largest and a colour to a 255th. A reader must know both: three.js with its decoder, Babylon, Godot, and Burgeon do;
     /// Blender does not.
     Compressed,
 }
@@ -177,6 +187,13 @@ fn used(mesh: &TriMesh) -> TriMesh {
     }
 }
 
+/// A colour as bytes, opaque.
+fn color_bytes(color: [f32; 3]) -> [u8; 4] {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+    let [r, g, b] = color.map(|x| (share(x) * 255.0).round() as u8);
+    [r, g, b, 255]
+}
+
 /// 0 to 1 in sixteen bits.
 fn fine(x: f64) -> [u8; 2] {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65,535")]
@@ -199,6 +216,8 @@ struct Layout {
     bounds: Option<[Vec<f64>; 2]>,
     /// How compressed bytes store it, by the word of the extension.
     filter: Option<&'static str>,
+    /// Rows are of vertices.
+    is_vertex: bool,
 }
 
 impl Packer {
@@ -255,9 +274,51 @@ impl Packer {
             });
             root.nodes[under as usize].children.push(at);
             if let Some(places) = places {
-                self.w.stand(places, (origin, size))?;
+                // Where the mesh stands whose coordinates are those of its own cube.
+                let stand = |p: &CopyPlace| CopyPlace {
+                    at: p.at + p.turn * (origin * p.scale),
+                    scale: p.scale * size,
+                    ..*p
+                };
+                self.stand(&places.iter().map(stand).collect::<Vec<_>>())?;
             }
         }
+        Ok(())
+    }
+
+    /// Lets the mesh of the last node stand in many places: [`Packing`] says how exactly.
+    fn stand(&mut self, places: &[CopyPlace]) -> Result<(), WriteError> {
+        if self.packing == Packing::Quantized {
+            return self.w.stand(places);
+        }
+        let instance = |kind, shape, stride, filter| Layout {
+            kind,
+            shape,
+            stride,
+            bounds: None,
+            filter,
+            is_vertex: false,
+        };
+        let all = || places.iter().map(|p| p.at);
+        let (low, high) =
+            all().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+        let farthest = low.abs().max(high.abs()).max_element();
+        let step = STEP_M.min((high - low).max_element() / STEPS);
+        let at = power_within(step.max(farthest / STEPS_FROM_ORIGIN));
+        let largest = places.iter().map(|p| p.scale).fold(0.0, f64::max);
+        let scale = power_within(largest / SIZES);
+        let translation: Vec<u8> =
+            places.iter().flat_map(|p| p.at.to_array()).flat_map(|x| exponential(x, at)).collect();
+        let rotation: Vec<u8> = places.iter().flat_map(|p| quaternion(p.turn.to_array())).collect();
+        let scales: Vec<u8> = places.iter().flat_map(|p| [exponential(p.scale, scale); 3].concat()).collect();
+        let color: Vec<u8> = places.iter().flat_map(|p| color_bytes(p.color)).collect();
+        let columns = InstanceColumns {
+            translation: self.column(&translation, instance(FLOAT, "VEC3", 12, Some(EXPONENTIAL)))?,
+            rotation: self.column(&rotation, instance(I16, "VEC4", 8, Some(QUATERNION)))?,
+            scale: self.column(&scales, instance(FLOAT, "VEC3", 12, Some(EXPONENTIAL)))?,
+            color: self.column(&color, instance(U8, "VEC4", 4, None))?,
+        };
+        self.w.instances(&columns);
         Ok(())
     }
 
@@ -271,7 +332,8 @@ impl Packer {
         let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - origin) / size;
         let mut attributes =
             Attributes { position: Some(self.positions(mesh, &local)?), ..Default::default() };
-        let column = |kind, shape, stride| Layout { kind, shape, stride, bounds: None, filter: None };
+        let column =
+            |kind, shape, stride| Layout { kind, shape, stride, bounds: None, filter: None, is_vertex: true };
         if !mesh.normals.is_empty() {
             #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
             let byte = |x: f32| ((x.clamp(-1.0, 1.0) * 127.0).round() as i8).to_le_bytes()[0];
@@ -294,12 +356,7 @@ impl Packer {
             attributes.uv = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U16, "VEC2", 4))?);
         }
         if !mesh.colors.is_empty() {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-            let byte = |x: f32| (share(x) * 255.0).round() as u8;
-            let bytes = mesh.colors.iter().flat_map(|c| {
-                let [r, g, b] = c.map(byte);
-                [r, g, b, 255]
-            });
+            let bytes = mesh.colors.iter().flat_map(|&c| color_bytes(c));
             attributes.color = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U8, "VEC4", 4))?);
         }
         if !mesh.wind.is_empty() {
@@ -309,7 +366,7 @@ impl Packer {
         if !mesh.pivots.is_empty() {
             let bytes = mesh.pivots.iter().flat_map(|&p| local(p).as_vec3().to_array());
             let bytes: Vec<u8> = bytes.flat_map(f32::to_le_bytes).collect();
-            attributes.pivot = Some(self.column(&bytes, column(super::gltf::FLOAT, "VEC3", 12))?);
+            attributes.pivot = Some(self.column(&bytes, column(FLOAT, "VEC3", 12))?);
         }
         let points = mesh.triangles.is_empty();
         Ok(Primitive {
@@ -336,12 +393,19 @@ impl Packer {
         let bounds = [low, high].map(|b| b.map(f64::from).to_vec());
         self.column(
             &bytes,
-            Layout { kind: U16, shape: "VEC3", stride: 8, bounds: Some(bounds), filter: None },
+            Layout {
+                kind: U16,
+                shape: "VEC3",
+                stride: 8,
+                bounds: Some(bounds),
+                filter: None,
+                is_vertex: true,
+            },
         )
     }
 
     fn column(&mut self, bytes: &[u8], layout: Layout) -> Result<u32, WriteError> {
-        let Layout { kind, shape, stride, bounds, filter } = layout;
+        let Layout { kind, shape, stride, bounds, filter, is_vertex } = layout;
         let view = match self.packing {
             Packing::Quantized => {
                 let view =
@@ -354,11 +418,15 @@ impl Packer {
                 self.compressed(&stream, bytes.len(), (stride, "ATTRIBUTES", filter))?
             }
         };
+        if !is_vertex {
+            let view = &mut self.w.root.buffer_views[view as usize];
+            (view.target, view.byte_stride) = (None, None);
+        }
         let [min, max] = bounds.map_or([None, None], |b| b.map(Some));
         self.w.root.accessors.push(Accessor {
             buffer_view: Some(view),
             component_type: kind,
-            normalized: kind != super::gltf::FLOAT,
+            normalized: kind != FLOAT,
             count: (bytes.len() / stride) as u64,
             shape: shape.to_owned(),
             min,

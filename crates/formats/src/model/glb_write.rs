@@ -141,27 +141,6 @@ impl<'a> Level<'a> {
     }
 }
 
-/// Writes levels of one model, finest first, as one GLB: the first as [`write_glb`] or, packed, as
-/// [`write_glb_packed`](super::write_glb_packed) does; each coarser one below a node of its own that the first's node names
-/// (`MSFT_lod`) and that stands in no scene, so that a program without levels shows the first alone. Each level is meant for
-/// half the size in a picture of the one before (`MSFT_screencoverage`); the last is for all sizes below. Textures that
-/// levels share are there once. Copies are instances (`EXT_mesh_gpu_instancing`, required where there are any), each with
-/// its colour as `_COLOR_0`.
-///
-/// # Errors
-/// As [`write_glb`], for any of the models.
-pub fn write_glb_levels(
-    levels: &[Level<'_>],
-    packing: Option<super::Packing>,
-    cache: &mut PngCache,
-    out: impl Write,
-) -> Result<(), WriteError> {
-    match packing {
-        Some(packing) => super::glb_pack::write_packed(levels, packing, cache, out),
-        None => write_all(levels, &Morph::default(), cache, out),
-    }
-}
-
 /// Writes a model with joints and their looping animation: as [`write_glb`], each vertex held by its joints, and the parts
 /// at the top of the scene, where glTF wants what joints move. Attributes for wind are left out: joints do what they ask for.
 ///
@@ -193,7 +172,7 @@ fn write(model: &Model, morph: &Morph<'_>, cache: &mut PngCache, out: impl Write
     write_all(&[Level::plain(model)], morph, cache, out)
 }
 
-fn write_all(
+pub(super) fn write_all(
     levels: &[Level<'_>],
     morph: &Morph<'_>,
     cache: &mut PngCache,
@@ -220,7 +199,7 @@ fn write_all(
             let one = Model { parts: vec![part], ..Model::default() };
             let mesh = w.meshes(&one, first, &still)?;
             w.hang(under, &mesh)?;
-            w.stand(&copies.places, (DVec3::ZERO, 1.0))?;
+            w.stand(&copies.places)?;
         }
         if number == 0 {
             w.animation(model, morph)?;
@@ -259,6 +238,14 @@ fn room(model: &Model) -> usize {
 
 pub(super) fn row(n: usize) -> Result<u32, WriteError> {
     u32::try_from(n).ok().ok_or(WriteError::TooLarge { what: "the number of parts", format: "glTF" })
+}
+
+/// The accessors of instances.
+pub(super) struct InstanceColumns {
+    pub(super) translation: u32,
+    pub(super) rotation: u32,
+    pub(super) scale: u32,
+    pub(super) color: u32,
 }
 
 pub(super) struct Writer {
@@ -469,30 +456,36 @@ impl Writer {
         self.root.scene = Some(0);
     }
 
-    /// Lets the mesh of the last node stand in many places. `(origin, size)`: what its coordinates are in.
-    pub(super) fn stand(
-        &mut self,
-        places: &[CopyPlace],
-        (origin, size): (DVec3, f64),
-    ) -> Result<(), WriteError> {
+    /// Lets the mesh of the last node stand in many places.
+    pub(super) fn stand(&mut self, places: &[CopyPlace]) -> Result<(), WriteError> {
         #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in files, by design")]
         let narrow = |x: f64| x as f32;
-        let at: Vec<[f32; 3]> =
-            (places.iter()).map(|p| (p.at + p.turn * (origin * p.scale)).to_array().map(narrow)).collect();
+        let at: Vec<[f32; 3]> = places.iter().map(|p| p.at.to_array().map(narrow)).collect();
         let turns: Vec<[f32; 4]> = places.iter().map(|p| p.turn.to_array().map(narrow)).collect();
-        let scales: Vec<[f32; 3]> = places.iter().map(|p| [narrow(p.scale * size); 3]).collect();
+        let scales: Vec<[f32; 3]> = places.iter().map(|p| [narrow(p.scale); 3]).collect();
         let colors: Vec<[f32; 3]> = places.iter().map(|p| p.color.map(share)).collect();
+        let columns = InstanceColumns {
+            translation: self.rows("VEC3", &at, None)?,
+            rotation: self.rows("VEC4", &turns, None)?,
+            scale: self.rows("VEC3", &scales, None)?,
+            color: self.rows("VEC3", &colors, None)?,
+        };
+        self.instances(&columns);
+        Ok(())
+    }
+
+    /// Makes the last node stand in many places, by accessors with a row for each.
+    pub(super) fn instances(&mut self, columns: &InstanceColumns) {
         let attributes = json!({
-            "TRANSLATION": self.rows("VEC3", &at, None)?,
-            "ROTATION": self.rows("VEC4", &turns, None)?,
-            "SCALE": self.rows("VEC3", &scales, None)?,
-            "_COLOR_0": self.rows("VEC3", &colors, None)?,
+            "TRANSLATION": columns.translation,
+            "ROTATION": columns.rotation,
+            "SCALE": columns.scale,
+            "_COLOR_0": columns.color,
         });
         self.needs(INSTANCES);
         if let Some(node) = self.root.nodes.last_mut() {
             node.extensions = Some(json!({ INSTANCES: { "attributes": attributes } }));
         }
-        Ok(())
     }
 
     /// The node of a level: the root for number 0, which must come first; else one of its own.

@@ -384,6 +384,8 @@ pub(super) fn decode_triangles(stream: &[u8], count: usize) -> Option<Vec<u32>> 
 
 #[cfg(test)]
 mod tests {
+    use meshoptimizer_rs::codec;
+
     use super::*;
 
     fn noise(n: usize) -> impl Iterator<Item = u32> {
@@ -431,5 +433,35 @@ mod tests {
         for cut in 0..stream.len().min(400) {
             assert!(decode_triangles(&stream[..cut], 3 * all.len()).is_none(), "{cut}");
         }
+    }
+
+    #[test]
+    fn an_independent_codec_reads_what_is_written_and_writes_what_is_read() {
+        let mut work = meshoptimizer_rs::Workspace::default();
+        let plain = codec::VertexEncoding::new(0, 0).expect("known");
+        for (stride, count) in [(4, 1), (4, 700), (8, 257), (12, 1000), (20, 16), (256, 40)] {
+            // Bytes that change little, much, and not at all.
+            let rough = noise(count * stride).enumerate();
+            let byte = |(i, x): (usize, u32)| u8::try_from(x & [3, 255, 0][i % stride % 3]).unwrap();
+            let bytes: Vec<u8> = rough.map(byte).collect();
+            let stream = encode_attributes(&bytes, stride);
+            let theirs = codec::decode_vertex_buffer(count, stride, &stream, &mut work);
+            assert_eq!(theirs.expect("reads"), bytes, "{stride} {count}");
+            let stream = codec::encode_vertex_buffer(&bytes, count, stride, plain, &mut work);
+            let ours = decode_attributes(&stream.expect("writes"), count, stride);
+            assert_eq!(ours, Some(bytes), "{stride} {count}");
+        }
+        let grid = (0..3000_u32).flat_map(|i| [[i, i + 1, i + 61], [i, i + 61, i + 60]]);
+        let far: Vec<u32> = noise(900).map(|x| x % 70_000).collect();
+        let all: Vec<[u32; 3]> = grid.chain(far.chunks(3).map(|t| [t[0], t[1], t[2]])).collect();
+        let stream = encode_triangles(&all);
+        let theirs = codec::decode_index_buffer(3 * all.len(), 4, &stream, &mut work).expect("reads");
+        let theirs: Vec<u32> = theirs.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect();
+        assert_eq!(decode_triangles(&stream, 3 * all.len()), Some(theirs));
+        let encoding = codec::IndexEncoding::DEFAULT;
+        let stream = codec::encode_index_buffer(all.as_flattened(), encoding, &mut work).expect("writes");
+        let theirs = codec::decode_index_buffer(3 * all.len(), 4, &stream, &mut work).expect("reads");
+        let theirs: Vec<u32> = theirs.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect();
+        assert_eq!(decode_triangles(&stream, 3 * all.len()), Some(theirs));
     }
 }

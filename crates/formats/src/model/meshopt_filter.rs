@@ -4,6 +4,10 @@
 
 /// The word of [`Filter::Octahedral`].
 pub(super) const OCTAHEDRAL: &str = "OCTAHEDRAL";
+/// The word of [`Filter::Quaternion`].
+pub(super) const QUATERNION: &str = "QUATERNION";
+/// The word of [`Filter::Exponential`].
+pub(super) const EXPONENTIAL: &str = "EXPONENTIAL";
 
 /// How the elements of a stream of attributes are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +25,8 @@ impl Filter {
     pub(super) fn of(word: &str) -> Option<Self> {
         match word {
             OCTAHEDRAL => Some(Self::Octahedral),
-            "QUATERNION" => Some(Self::Quaternion),
-            "EXPONENTIAL" => Some(Self::Exponential),
+            QUATERNION => Some(Self::Quaternion),
+            EXPONENTIAL => Some(Self::Exponential),
             _ => None,
         }
     }
@@ -57,15 +61,19 @@ impl Filter {
             (Self::Exponential, _) if stride.is_multiple_of(4) => bytes.chunks_exact_mut(4).for_each(|e| {
                 let stored = i32::from_le_bytes([e[0], e[1], e[2], e[3]]);
                 let (power, whole) = (stored >> 24, stored << 8 >> 8);
-                let two = f64::from_bits(u64::from((1023 + power).unsigned_abs()) << 52);
                 #[expect(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
-                let value = (f64::from(whole) * two) as f32;
+                let value = (f64::from(whole) * two_to(power)) as f32;
                 e.copy_from_slice(&value.to_le_bytes());
             }),
             _ => return None,
         }
         Some(())
     }
+}
+
+/// A power of two, of -1022 to 1023.
+fn two_to(power: i32) -> f64 {
+    f64::from_bits(u64::from((1023 + power).unsigned_abs()) << 52)
 }
 
 fn words(element: &[u8]) -> [i16; 4] {
@@ -119,9 +127,93 @@ pub(super) fn octahedral(n: [f32; 3], steps: i8) -> [u8; 4] {
     [byte(best[0]), byte(best[1]), steps.to_le_bytes()[0], 0]
 }
 
+/// Steps of a number of a stored quaternion, from 0 to the largest that one of the lesser three can be.
+const TURN_STEPS: f64 = 127.0;
+
+/// A unit quaternion (x, y, z, w) as [`Filter::Quaternion`] stores it: of the eight rows of whole numbers around it the one
+/// whose turn comes back nearest, to two thirds of a degree.
+pub(super) fn quaternion(q: [f64; 4]) -> [u8; 8] {
+    let largest = (0..4).fold(0, |best, k| if q[k].abs() > q[best].abs() { k } else { best });
+    // A quaternion and its negative are one turn: the number that is left out is positive.
+    let sign = if q[largest] < 0.0 { -1.0 } else { 1.0 };
+    let scale = TURN_STEPS * core::f64::consts::SQRT_2;
+    let own = [1, 2, 3].map(|k| sign * q[(largest + k) % 4]);
+    let around = |corner: usize| {
+        let step = |k: usize| (own[k] * scale).floor() + f64::from(u8::from(corner >> k & 1 == 1));
+        [0, 1, 2].map(|k| step(k).clamp(-TURN_STEPS, TURN_STEPS))
+    };
+    // The cosine of half the turn between the two.
+    let nearness = |steps: [f64; 3]| {
+        let lesser = steps.map(|x| x / scale);
+        let rest = 1.0 - lesser.iter().map(|x| x * x).sum::<f64>();
+        let w = rest.max(0.0).sqrt();
+        w * q[largest].abs() + (0..3).map(|k| lesser[k] * own[k]).sum::<f64>()
+    };
+    let best = (0..8).map(around).max_by(|a, b| nearness(*a).total_cmp(&nearness(*b))).unwrap_or_default();
+    #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
+    let [x, y, z] = best.map(|x| x as i16);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "124 to 127")]
+    let last = (TURN_STEPS as i16 & !3) | largest as i16;
+    let mut stored = [0; 8];
+    put(&mut stored, [x, y, z, last]);
+    stored
+}
+
+/// The power of two of the largest step that is no longer than `step`, which is above 0.
+pub(super) fn power_within(step: f64) -> i32 {
+    let exponent = i32::try_from(step.to_bits() >> 52 & 0x7ff).unwrap_or(0) - 1023;
+    exponent.clamp(LEAST_POWER, MOST_POWER)
+}
+
+/// Powers of two of steps that single precision can hold, with 24 bits of them.
+const LEAST_POWER: i32 = -100;
+const MOST_POWER: i32 = 100;
+/// The largest whole number of 24 bits with a sign.
+const MOST_WHOLE: f64 = 8_388_607.0;
+
+/// A number as [`Filter::Exponential`] stores it, in steps of 2 to the power of `power`: it comes back to half a step.
+pub(super) fn exponential(x: f64, power: i32) -> [u8; 4] {
+    let step = two_to(power);
+    #[expect(clippy::cast_possible_truncation, reason = "24 bits")]
+    let whole = (x / step).round().clamp(-MOST_WHOLE, MOST_WHOLE) as i32;
+    (power << 24 | whole & 0x00ff_ffff).to_le_bytes()
+}
+
 #[cfg(test)]
 mod tests {
+    use meshoptimizer_rs::codec;
+
     use super::*;
+
+    #[test]
+    fn turns_come_back_to_two_thirds_of_a_degree() {
+        let mut worst: f64 = 0.0;
+        for i in 0..60_000 {
+            let mut q =
+                [0.618_034, 0.754_878, 0.569_840, 0.819_173].map(|k| (f64::from(i) * k).fract() - 0.5);
+            // A third are near those whose numbers are equal, where what is left out takes the errors of all.
+            if i % 3 == 0 {
+                q = q.map(|x| if x < 0.0 { -0.5 } else { 0.5 } + x / 10.0);
+            }
+            let q = glam::DQuat::from_array(q).normalize();
+            let mut stored = quaternion(q.to_array());
+            Filter::Quaternion.decode(&mut stored, 8).expect("eight bytes");
+            let back = glam::DQuat::from_array(words(&stored).map(f64::from)).normalize();
+            worst = worst.max(2.0 * base::ops::acos_clamped(back.dot(q).abs()).to_degrees());
+        }
+        assert!(worst < 2.0 / 3.0 && worst > 0.1, "{worst} degrees");
+    }
+
+    #[test]
+    fn numbers_come_back_to_half_a_step() {
+        assert_eq!([1.0, 0.9, 0.001, 2.5].map(power_within), [0, -1, -10, 1]);
+        for (x, power) in [(12.345, -10), (-0.004, -10), (0.0, -3), (1e-5, -24), (-8191.0, -10), (3.5, 1)] {
+            let mut stored = exponential(x, power);
+            Filter::Exponential.decode(&mut stored, 4).expect("four bytes");
+            let off = (f64::from(f32::from_le_bytes(stored)) - x).abs();
+            assert!(off <= two_to(power) / 2.0, "{x}: {off}");
+        }
+    }
 
     #[test]
     fn unit_vectors_come_back_to_a_degree_or_to_four() {
@@ -172,5 +264,39 @@ mod tests {
         }
         assert_eq!(Filter::Quaternion.decode(&mut [0; 4], 4), None);
         assert_eq!(Filter::of("WRONG"), None);
+    }
+
+    #[test]
+    fn an_independent_codec_undoes_the_filters_in_the_same_way() {
+        let mut work = meshoptimizer_rs::Workspace::default();
+        let turn = |i: f64| [base::ops::sin(i), base::ops::cos(i) * 0.6, base::ops::cos(i) * 0.8];
+        let mut octahedrons = Vec::new();
+        let (mut quaternions, mut floats) = (Vec::new(), Vec::new());
+        for i in 0..600 {
+            let [x, y, z] = turn(f64::from(i));
+            #[expect(clippy::cast_possible_truncation, reason = "-1 to 1")]
+            octahedrons
+                .extend(octahedral([x, y, z].map(|v| v as f32), if i % 2 == 0 { FINE } else { COARSE }));
+            quaternions.extend(quaternion(glam::DQuat::from_xyzw(x, z, y, 0.3).normalize().to_array()));
+            floats.extend(exponential(x * 30.0, -10));
+        }
+        let (mut ours, mut theirs) = (octahedrons.clone(), octahedrons);
+        Filter::Octahedral.decode(&mut ours, 4).expect("four bytes");
+        codec::decode_filter_oct(&mut theirs, 600, 4, &mut work).expect("reads");
+        let off = |a: &u8, b: &u8| (i16::from(a.cast_signed()) - i16::from(b.cast_signed())).abs();
+        assert!(
+            ours.iter().zip(&theirs).all(|(a, b)| off(a, b) <= 1),
+            "to a step, which is rounded in single precision"
+        );
+        let (mut ours, mut theirs) = (quaternions.clone(), quaternions);
+        Filter::Quaternion.decode(&mut ours, 8).expect("eight bytes");
+        codec::decode_filter_quat(&mut theirs, 600, 8, &mut work).expect("reads");
+        for (a, b) in ours.chunks(8).zip(theirs.chunks(8)) {
+            assert!((0..4).all(|k| words(a)[k].abs_diff(words(b)[k]) <= 1), "{:?} {:?}", words(a), words(b));
+        }
+        let (mut ours, mut theirs) = (floats.clone(), floats);
+        Filter::Exponential.decode(&mut ours, 4).expect("four bytes");
+        codec::decode_filter_exp(&mut theirs, 600, 4, &mut work).expect("reads");
+        assert_eq!(ours, theirs);
     }
 }

@@ -1,12 +1,14 @@
 //! bytes <-> [`mesh::Model`].
 
 mod axes;
+mod glb_levels;
 mod glb_pack;
 mod glb_read;
 mod glb_write;
 mod gltf;
 mod gltf_bytes;
 mod gltf_look;
+mod gltf_text;
 mod meshopt;
 mod meshopt_filter;
 mod named;
@@ -27,10 +29,10 @@ use glam::DVec3;
 use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
+pub use glb_levels::write_glb_levels;
 pub use glb_pack::{Packing, write_glb_packed};
 pub use glb_write::{
-    Level, Morph, write_glb, write_glb_levels, write_glb_morph, write_glb_rigged, write_glb_scene,
-    write_glb_with,
+    Level, Morph, write_glb, write_glb_morph, write_glb_rigged, write_glb_scene, write_glb_with,
 };
 pub use named::decode_uri;
 pub use obj_write::{FileStems, ObjFiles, obj_files};
@@ -41,7 +43,7 @@ pub use usd_write::{UsdFiles, usd_files};
 
 use crate::error::{FileFault, ModelError, Place, WriteError};
 use crate::foreign::Foreign;
-use crate::kind::ModelFormat;
+use crate::{Beside, ModelFormat, Room};
 
 /// Largest model file that is read: 1 GiB.
 pub const MAX_MODEL_BYTES: u64 = 1 << 30;
@@ -111,12 +113,7 @@ pub fn read_model(
     FileFault::if_foreign(Foreign::sniff_no_drawing(&bytes)).map_err(file)?;
     let mut model = match format {
         ModelFormat::Glb | ModelFormat::Gltf => {
-            if !spec.is_default() {
-                report.warn(
-                    "gltf-fixed-units",
-                    "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
-                );
-            }
+            warn_of_axes(format, spec, report);
             return glb_read::read(&bytes, format, name, resolve, report);
         }
         ModelFormat::Obj => obj_read::read(&bytes, name, resolve, report)?,
@@ -138,8 +135,8 @@ pub fn read_model(
     Ok(model)
 }
 
-/// Writes a model to one stream. An OBJ is written without its material file, USD without its textures: see
-/// [`obj_files`] and [`usd_files`]. What the wind does is left out, with a warning, where the format has no room for it.
+/// Writes a model to one stream; of formats with files beside theirs ([`FormatRow::beside`](crate::FormatRow)) without
+/// these: see [`model_files`]. What the wind does is left out, with a warning, where the format has no room for it.
 ///
 /// # Errors
 /// [`WriteError`] of the sink or for a model that is not sound.
@@ -150,23 +147,138 @@ pub fn write_model(
     mut out: impl Write,
     report: &mut Report,
 ) -> Result<(), WriteError> {
-    if format.fixed_axes() && !spec.is_default() {
+    match format {
+        ModelFormat::Glb => {
+            warn_of_axes(format, spec, report);
+            write_glb(model, out)
+        }
+        ModelFormat::Ply => {
+            warn_of_wind(model, format.name(), report);
+            write_ply(model, spec, out)
+        }
+        ModelFormat::Stl => {
+            warn_of_wind(model, format.name(), report);
+            write_stl(model, spec, out)
+        }
+        ModelFormat::Usdz => usdz::write_usdz(&usd_files(model, "model", spec)?, "model", out),
+        ModelFormat::Obj | ModelFormat::Gltf | ModelFormat::Usda => {
+            let files = model_files(model, format, "model", spec, &mut PngCache::new(), report)?;
+            Ok(out.write_all(&files.own)?)
+        }
+    }
+}
+
+/// A model's file and those that it names: keep the names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ModelFiles {
+    /// The bytes of its own file.
+    pub own: Vec<u8>,
+    /// The files beside it.
+    pub beside: Vec<BesideFile>,
+}
+
+/// A file that a model's own names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BesideFile {
+    /// What it holds.
+    pub what: Beside,
+    /// Its name, without a folder.
+    pub name: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+impl ModelFiles {
+    fn new(own: Vec<u8>, textures: Vec<(String, Vec<u8>)>) -> Self {
+        let file = |(name, bytes)| BesideFile { what: Beside::Textures, name, bytes };
+        Self { own, beside: textures.into_iter().map(file).collect() }
+    }
+
+    /// All files with their names, the model's own, `name`, first.
+    pub fn named(self, name: String) -> Vec<(String, Vec<u8>)> {
+        let beside = self.beside.into_iter().map(|file| (file.name, file.bytes));
+        std::iter::once((name, self.own)).chain(beside).collect()
+    }
+}
+
+/// Writes a model with the files beside it, which are named after `stems`. What the wind does is left out, with a warning,
+/// where the format has no room for it. `cache`: encoded textures, kept for the next time.
+///
+/// # Errors
+/// [`WriteError`] for a model that is not sound.
+///
+/// ```
+/// use formats::{Beside, ModelFormat, PngCache, model_files};
+/// let (model, mut report) = (mesh::Model::default(), base::Report::default());
+/// let spec = formats::ExportSpec::default();
+/// let files = model_files(&model, ModelFormat::Obj, "oak", &spec, &mut PngCache::new(), &mut report)?;
+/// assert_eq!((files.beside[0].what, &files.beside[0].name[..]), (Beside::Materials, "oak.mtl"));
+/// # Ok::<(), formats::WriteError>(())
+/// ```
+pub fn model_files<'a>(
+    model: &Model,
+    format: ModelFormat,
+    stems: impl Into<FileStems<'a>>,
+    spec: &ExportSpec,
+    cache: &mut PngCache,
+    report: &mut Report,
+) -> Result<ModelFiles, WriteError> {
+    let stems = stems.into();
+    match format {
+        ModelFormat::Obj => {
+            warn_of_wind(model, format.name(), report);
+            let ObjFiles { obj, mtl, mtl_name, textures } = obj_files(model, stems, spec)?;
+            let mut files = ModelFiles::new(obj, textures);
+            files.beside.insert(0, BesideFile { what: Beside::Materials, name: mtl_name, bytes: mtl });
+            Ok(files)
+        }
+        ModelFormat::Usda => {
+            let UsdFiles { usda, textures } = usd_files(model, stems.textures, spec)?;
+            Ok(ModelFiles::new(usda, textures))
+        }
+        ModelFormat::Glb | ModelFormat::Gltf => {
+            warn_of_axes(format, spec, report);
+            let mut glb = Vec::new();
+            write_glb_with(model, cache, &mut glb)?;
+            gltf_files(glb, format, stems)
+        }
+        ModelFormat::Ply | ModelFormat::Stl | ModelFormat::Usdz => {
+            let mut own = Vec::new();
+            write_model(model, format, spec, &mut own, report)?;
+            Ok(ModelFiles::new(own, Vec::new()))
+        }
+    }
+}
+
+/// The files of a binary glTF that is to be in `format`, one with room for the same ([`Room::Packing`] and the like).
+///
+/// # Errors
+/// [`WriteError::ReadOnly`] of other formats.
+pub fn gltf_files<'a>(
+    glb: Vec<u8>,
+    format: ModelFormat,
+    stems: impl Into<FileStems<'a>>,
+) -> Result<ModelFiles, WriteError> {
+    match format {
+        ModelFormat::Glb => Ok(ModelFiles::new(glb, Vec::new())),
+        ModelFormat::Gltf => gltf_text::text_files(&glb, stems.into()),
+        _ => Err(WriteError::ReadOnly { format: format.name(), instead: ".glb" }),
+    }
+}
+
+/// The files beside a model's own whose names are known before there is a model; textures are named after materials.
+pub fn names_beside(format: ModelFormat, stem: &str) -> Vec<(Beside, String)> {
+    let named = |what: &Beside| Some((*what, format!("{}.{}", file_name(stem, "model"), what.ending()?)));
+    format.row().beside.iter().filter_map(named).collect()
+}
+
+/// Says so where a format fixes its axes and unit and others are asked for.
+fn warn_of_axes(format: ModelFormat, spec: &ExportSpec, report: &mut Report) {
+    if !format.holds(Room::Axes) && !spec.is_default() {
         report.warn(
             "gltf-fixed-units",
             "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
         );
-    }
-    if !format.carries_wind() {
-        warn_of_wind(model, format.word(), report);
-    }
-    match format {
-        ModelFormat::Glb => write_glb(model, out),
-        ModelFormat::Gltf => Err(WriteError::ReadOnly { format: "glTF as JSON", instead: ".glb" }),
-        ModelFormat::Obj => Ok(out.write_all(&obj_files(model, "model", spec)?.obj)?),
-        ModelFormat::Ply => write_ply(model, spec, out),
-        ModelFormat::Stl => write_stl(model, spec, out),
-        ModelFormat::Usda => Ok(out.write_all(&usd_files(model, "model", spec)?.usda)?),
-        ModelFormat::Usdz => usdz::write_usdz(&usd_files(model, "model", spec)?, "model", out),
     }
 }
 

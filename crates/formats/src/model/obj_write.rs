@@ -58,7 +58,7 @@ pub fn obj_files<'a>(
     let stems = stems.into();
     let [stem, textures] = [stems.model, stems.textures].map(|s| file_name(s, "model"));
     let mut obj = Vec::with_capacity(64 + 100 * model.vertex_count() + 40 * model.triangle_count());
-    writeln!(obj, "# Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit_word(), spec.up)?;
+    writeln!(obj, "# Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit.plural(), spec.up)?;
     obj.extend_from_slice(spec.offset_line(model.offset_m, "#").as_bytes());
     writeln!(obj, "# model {}\nmtllib {stem}.mtl", one_line(&model.name))?;
     // OBJ counts all vertices of a file, from 1.

@@ -33,7 +33,7 @@ pub fn write_ply(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Resul
         out,
         "ply\nformat binary_little_endian 1.0\ncomment Burgeon {}; {}, +{:?} up\n{}element vertex {vertices}\n",
         env!("CARGO_PKG_VERSION"),
-        spec.unit_word(),
+        spec.unit.plural(),
         spec.up,
         spec.offset_line(model.offset_m, "comment")
     )?;

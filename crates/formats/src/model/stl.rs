@@ -31,7 +31,7 @@ pub fn write_stl(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Resul
         return Err(WriteError::NoTriangles);
     }
     // Must not begin with `solid`: that marks the text form.
-    let text = format!("Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit_word(), spec.up);
+    let text = format!("Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit.plural(), spec.up);
     let mut header = [b' '; HEADER];
     header.iter_mut().zip(text.bytes()).for_each(|(h, b)| *h = b);
     let count = u32::try_from(model.triangle_count())

@@ -20,7 +20,7 @@ use plant::{AxisId, NodeId, Plant};
 use crate::{ExportSpec, StructureFormat, WriteError};
 
 /// Writes the structure of a sound plant. `shapes`: the meshes of its shapes, which a format with meshes
-/// ([`StructureFormat::has_meshes`]) writes with its organs ([`write_opf`]); the others need none. Cost: linear.
+/// ([`Room::OrganMeshes`](crate::Room::OrganMeshes)) writes with its organs ([`write_opf`]); the others need none. Cost: linear.
 ///
 /// # Errors
 /// [`WriteError::Io`].

@@ -120,7 +120,7 @@ impl<W: Write> Writer<'_, W> {
         writeln!(
             out,
             "# Lengths in {} and {up} upwards. TopDia is the diameter at a node",
-            self.spec.unit_word()
+            self.spec.unit.plural()
         )?;
         writeln!(out, "CODE:\tFORM-A\n\nCLASSES:\nSYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION")?;
         writeln!(out, "$\t0\tFREE\tFREE\tIMPLICIT\nP\t1\tFREE\tFREE\tEXPLICIT\nA\t2\tFREE\tFREE\tEXPLICIT")?;

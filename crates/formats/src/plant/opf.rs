@@ -121,7 +121,7 @@ impl<W: Write> Writer<'_, W> {
         writeln!(self.out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
         writeln!(self.out, "<opf version=\"2.0\" editable=\"true\">")?;
         let version = env!("CARGO_PKG_VERSION");
-        writeln!(self.out, "<!-- Burgeon {version}; lengths in {}, +{up} up -->", self.spec.unit_word())?;
+        writeln!(self.out, "<!-- Burgeon {version}; lengths in {}, +{up} up -->", self.spec.unit.plural())?;
         // Organs of one shape and kind share a mesh and a material, which has the colour of the first.
         let mut first: Vec<&Organ> = Vec::new();
         for organ in &self.plant.organs {

@@ -13,3 +13,4 @@ mod opf;
 mod opf_reader;
 mod scans;
 mod structure;
+mod types;

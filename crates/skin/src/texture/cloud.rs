@@ -11,10 +11,7 @@ use glam::DVec3;
 use mesh::Texture;
 use plant::Sheet;
 
-use super::filled::{Cell, filled};
-
-/// Linear red, green and blue, 0 to 1.
-pub(super) type Light = [f64; 3];
+use super::filled::{Cell, Light, filled};
 
 /// More points are gathered into cubes of one colour each: a leaf's texture shows no more.
 const MOST_DOTS: usize = 60_000;

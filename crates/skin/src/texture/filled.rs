@@ -1,7 +1,7 @@
 //! Holes of a picture -> what is around them: means of ever larger squares, from the finest that has any (Gortler et al. 1996).
 
-use super::cloud::Light;
-
+/// Linear red, green and blue, 0 to 1.
+pub(super) type Light = [f64; 3];
 /// A texel that is known, or not.
 pub(super) type Cell = Option<Light>;
 

@@ -91,9 +91,9 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     assert!(s.ask(r#"{"tree":[1,{"set-field":["/no/such",1]}]}"#).is_err());
     let refused = s.ask(r#"{"tree":[1,{"set-field":["/clearance_m",-1]}]}"#).unwrap_err();
     assert!(format!("{refused:?}").contains("clearance_m"), "{refused:?}");
-    let model = s.file(ExportFormat::Obj);
+    let model = s.file(ExportFormat::Model(formats::ModelFormat::Obj));
     assert!(model.starts_with(b"PK"));
-    let ball = s.file(ExportFormat::Ply);
+    let ball = s.file(ExportFormat::Model(formats::ModelFormat::Ply));
     s.add_obstacle("itself.ply", &ball).unwrap();
     assert!(!s.obstacle(ids[0], 1).is_empty() && s.obstacle(ids[0], 0).is_empty());
     s.undo();
@@ -277,7 +277,7 @@ fn meshes(s: &mut Workspace) -> Vec<u64> {
 fn copies_share_meshes_in_the_view_and_in_binary_gltf() {
     let mut s = flower();
     let id = s.current().unwrap();
-    let alone = s.file(ExportFormat::Glb).len();
+    let alone = s.file(ExportFormat::Model(formats::ModelFormat::Glb)).len();
     for k in 1..4 {
         s.run(SceneCommand::Duplicate(id, DVec3::X * f64::from(k))).unwrap();
     }

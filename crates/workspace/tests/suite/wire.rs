@@ -6,6 +6,7 @@ use crate::typescript;
 use std::fmt::Write as _;
 
 use burgeon::document::Command;
+use burgeon::formats::{DrawingFormat, FormatRow, ModelFormat, StructureFormat};
 use burgeon::shape::ToolKind;
 use burgeon::skin::OrganMaterial;
 use burgeon::{Coded, LeafBalls, Refusal};
@@ -34,6 +35,26 @@ fn the_types_of_the_page_are_those_of_the_workspace() {
     let kept = std::fs::read_to_string(FILE).unwrap_or_default();
     let differs = made.lines().zip(kept.lines()).find(|(a, b)| a != b);
     assert!(made == kept, "stale, run `cargo xtask types`; first {differs:?}");
+}
+
+/// The formats that are written, as the page lists them.
+fn formats(out: &mut String) {
+    let models = ModelFormat::ALL.into_iter().map(|f| ("model", f.row()));
+    let structures = StructureFormat::ALL.into_iter().map(|f| ("structure", f.row()));
+    let drawings = DrawingFormat::ALL.into_iter().map(|f| ("drawing", f.row()));
+    *out += "\n/** The formats that are written, by their words. */\nexport const FORMATS = {\n";
+    for (kind, row) in models.chain(structures).chain(drawings).filter(|(_, row)| row.is_written()) {
+        let FormatRow { word, media_type, about, .. } = row;
+        let (ending, zipped) = (row.endings[0], !row.beside.is_empty());
+        let holds: Vec<&str> = row.holds.iter().map(|room| room.word()).collect();
+        writeln!(
+            out,
+            "  {word}: {{\n    kind: {kind:?},\n    ending: {ending:?},\n    type: {media_type:?},\n    about: {about:?},\n    \
+             holds: {holds:?},\n    zipped: {zipped},\n  }},"
+        )
+        .expect("strings take all");
+    }
+    *out += "} as const;\n";
 }
 
 fn types() -> String {
@@ -68,6 +89,7 @@ fn types() -> String {
         writeln!(out, "  {code:?}: {fields:?},").expect("strings take all");
     }
     out += "} as const;\n";
+    formats(&mut out);
     typescript::declare(&mut out, &all.take_definitions(true));
     out
 }

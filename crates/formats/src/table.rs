@@ -1,0 +1,468 @@
+//! The table of formats: what every list of formats, help text, message and page of the docs is made from.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What files of a format have room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// Any unit and up axis; other formats fix theirs.
+    Axes,
+    /// Several meshes; other formats of models hold a single one.
+    Parts,
+    /// Textures.
+    Textures,
+    /// Heights of bark, as a texture.
+    Heights,
+    /// How much light leaves let through, as a texture.
+    Translucence,
+    /// How wind moves each vertex.
+    Wind,
+    /// All levels of detail in one file.
+    Levels,
+    /// Meshes that stand in many places and are there once.
+    Instances,
+    /// Joints with an animation.
+    Joints,
+    /// Shapes that an animation leads through.
+    Morphs,
+    /// Numbers in few bits, compressed.
+    Packing,
+    /// The meshes of a plant's organs, beside its structure.
+    OrganMeshes,
+}
+
+base::words!(Room {
+    Axes = "axes",
+    Parts = "parts",
+    Textures = "textures",
+    Heights = "heights",
+    Translucence = "translucence",
+    Wind = "wind",
+    Levels = "levels",
+    Instances = "instances",
+    Joints = "joints",
+    Morphs = "morphs",
+    Packing = "packing",
+    OrganMeshes = "organ-meshes",
+});
+
+/// What lies beside a file, named by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// A file of materials.
+    Materials,
+    /// The numbers of its meshes.
+    Buffer,
+    /// The pictures of its materials.
+    Textures,
+}
+
+impl Beside {
+    /// A phrase for messages.
+    pub const fn phrase(self) -> &'static str {
+        match self {
+            Self::Materials => "the materials",
+            Self::Buffer => "the buffer",
+            Self::Textures => "a texture",
+        }
+    }
+
+    /// How the name of its file ends, without the dot, where the rest is the stem of the file that names it: of textures it
+    /// is not.
+    pub const fn ending(self) -> Option<&'static str> {
+        match self {
+            Self::Materials => Some("mtl"),
+            Self::Buffer => Some("bin"),
+            Self::Textures => None,
+        }
+    }
+}
+
+/// Whether Burgeon reads a format, writes it, or both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read only.
+    Read,
+    /// Written only.
+    Write,
+    /// Read and written.
+    Both,
+}
+
+/// A row of the table of formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FormatRow {
+    /// The word by which the format is asked for, each once in the whole table.
+    pub word: &'static str,
+    /// The name for messages.
+    pub name: &'static str,
+    /// How the names of its files end, without the dot; what is written has the first.
+    pub endings: &'static [&'static str],
+    /// The media type of its files.
+    pub media_type: &'static str,
+    /// What it is, in a line without a full stop.
+    pub about: &'static str,
+    /// Whether it is read, written or both.
+    pub access: Access,
+    /// What its files have room for.
+    pub holds: &'static [Room],
+    /// What lies beside its files.
+    pub beside: &'static [Beside],
+}
+
+impl FormatRow {
+    /// Whether Burgeon reads the format.
+    pub const fn is_read(&self) -> bool {
+        !matches!(self.access, Access::Write)
+    }
+
+    /// Whether Burgeon writes the format.
+    pub const fn is_written(&self) -> bool {
+        !matches!(self.access, Access::Read)
+    }
+}
+
+/// Formats of one kind of content, a row each.
+macro_rules! formats {
+    ($(#[$meta:meta])* $name:ident { $($variant:ident = $word:literal {
+        name: $label:literal,
+        endings: $endings:expr,
+        media_type: $media_type:literal,
+        about: $about:literal,
+        access: $access:ident,
+        holds: [$($room:ident),*],
+        beside: [$($beside:ident),*],
+    })+ }) => {
+        $(#[$meta])*
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+        )]
+        pub enum $name { $(
+            #[doc = concat!($about, ".")]
+            #[serde(rename = $word)]
+            $variant,
+        )+ }
+
+        base::words!($name { $($variant = $word),+ });
+
+        impl $name {
+            /// The format's row of the table.
+            pub const fn row(self) -> &'static FormatRow {
+                match self { $(Self::$variant => &FormatRow {
+                    word: $word,
+                    name: $label,
+                    endings: $endings,
+                    media_type: $media_type,
+                    about: $about,
+                    access: Access::$access,
+                    holds: &[$(Room::$room),*],
+                    beside: &[$(Beside::$beside),*],
+                },)+ }
+            }
+
+            /// The name for messages.
+            pub const fn name(self) -> &'static str {
+                self.row().name
+            }
+
+            /// How the names of written files end, without the dot.
+            pub const fn extension(self) -> &'static str {
+                self.row().endings[0]
+            }
+
+            /// Whether its files have room for something.
+            pub fn holds(self, room: Room) -> bool {
+                self.row().holds.contains(&room)
+            }
+
+            /// The format that the ending of a file's name (without the dot, any case) stands for.
+            pub fn from_extension(extension: &str) -> Option<Self> {
+                let is_own = |f: &Self| f.row().endings.iter().any(|e| e.eq_ignore_ascii_case(extension));
+                Self::ALL.into_iter().find(is_own)
+            }
+
+            /// The endings of all formats that are read, as a list for people: `.a, .b or .c`.
+            pub fn read_endings() -> String {
+                let read = Self::ALL.into_iter().map(Self::row).filter(|row| row.is_read());
+                list_of_endings(read.flat_map(|row| row.endings))
+            }
+
+            /// The endings of all formats that are written, as a list for people: `.a, .b or .c`.
+            pub fn written_endings() -> String {
+                let written = Self::ALL.into_iter().map(Self::row).filter(|row| row.is_written());
+                list_of_endings(written.map(|row| &row.endings[0]))
+            }
+
+            /// The endings of all written formats with room for something, as a list for people.
+            pub fn endings_with(room: Room) -> String {
+                let written = Self::ALL.into_iter().filter(|f| f.row().is_written() && f.holds(room));
+                list_of_endings(written.map(|f| &f.row().endings[0]))
+            }
+        }
+    };
+}
+
+formats! {
+    /// The file formats that hold models.
+    ModelFormat {
+        Glb = "glb" {
+            name: "GLB",
+            endings: &["glb"],
+            media_type: "model/gltf-binary",
+            about: "Binary glTF: one file with textures and materials",
+            access: Both,
+            holds: [Parts, Textures, Translucence, Wind, Levels, Instances, Joints, Morphs, Packing],
+            beside: [],
+        }
+        Gltf = "gltf" {
+            name: "glTF",
+            endings: &["gltf"],
+            media_type: "model/gltf+json",
+            about: "glTF as text, with its buffer and textures beside it",
+            access: Both,
+            holds: [Parts, Textures, Translucence, Wind, Levels, Instances, Joints, Morphs, Packing],
+            beside: [Buffer, Textures],
+        }
+        Obj = "obj" {
+            name: "OBJ",
+            endings: &["obj"],
+            media_type: "model/obj",
+            about: "Wavefront OBJ with its material file and textures beside it",
+            access: Both,
+            holds: [Axes, Parts, Textures, Heights],
+            beside: [Materials, Textures],
+        }
+        Ply = "ply" {
+            name: "PLY",
+            endings: &["ply"],
+            media_type: "application/octet-stream",
+            about: "PLY: one mesh with colours",
+            access: Both,
+            holds: [Axes],
+            beside: [],
+        }
+        Stl = "stl" {
+            name: "STL",
+            endings: &["stl"],
+            media_type: "model/stl",
+            about: "Stereolithography: bare triangles",
+            access: Both,
+            holds: [Axes],
+            beside: [],
+        }
+        Usda = "usda" {
+            name: "USD",
+            endings: &["usda"],
+            media_type: "model/vnd.usda",
+            about: "Universal Scene Description as text, with textures beside it",
+            access: Write,
+            holds: [Axes, Parts, Textures, Wind],
+            beside: [Textures],
+        }
+        Usdz = "usdz" {
+            name: "USD",
+            endings: &["usdz"],
+            media_type: "model/vnd.usdz+zip",
+            about: "Universal Scene Description with its textures in one file",
+            access: Write,
+            holds: [Axes, Parts, Textures, Wind],
+            beside: [],
+        }
+    }
+}
+
+formats! {
+    /// The file formats that hold the structure of a plant, as text; written only.
+    StructureFormat {
+        Mtg = "mtg" {
+            name: "MTG",
+            endings: &["mtg"],
+            media_type: "text/plain",
+            about: "Multiscale tree graph: axes, nodes and organs as text",
+            access: Write,
+            holds: [Axes],
+            beside: [],
+        }
+        Opf = "opf" {
+            name: "OPF",
+            endings: &["opf"],
+            media_type: "application/xml",
+            about: "Open Plant Format: axes, internodes and organs with their meshes",
+            access: Write,
+            holds: [Axes, OrganMeshes],
+            beside: [],
+        }
+        Qsm = "qsm" {
+            name: "QSM",
+            endings: &["qsm.csv"],
+            media_type: "text/csv",
+            about: "Quantitative structure model: a table of cylinders",
+            access: Write,
+            holds: [Axes],
+            beside: [],
+        }
+        Swc = "swc" {
+            name: "SWC",
+            endings: &["swc"],
+            media_type: "text/plain",
+            about: "Skeleton: points with radii, each with the one that it grows from",
+            access: Write,
+            holds: [Axes],
+            beside: [],
+        }
+    }
+}
+
+formats! {
+    /// The file formats that hold strokes.
+    DrawingFormat {
+        Svg = "svg" {
+            name: "SVG",
+            endings: &["svg", "svgz"],
+            media_type: "image/svg+xml",
+            about: "Scalable Vector Graphics; one drawing a file",
+            access: Both,
+            holds: [],
+            beside: [],
+        }
+        InkMl = "inkml" {
+            name: "InkML",
+            endings: &["inkml", "ink"],
+            media_type: "application/inkml+xml",
+            about: "Ink Markup Language (W3C 2011); one drawing a file",
+            access: Read,
+            holds: [],
+            beside: [],
+        }
+        Ndjson = "ndjson" {
+            name: "ndjson",
+            endings: &["ndjson", "jsonl"],
+            media_type: "application/x-ndjson",
+            about: "One JSON object a line, as in \"Quick, Draw!\"; any number of drawings a file",
+            access: Read,
+            holds: [],
+            beside: [],
+        }
+        Json = "json" {
+            name: "drawing JSON",
+            endings: &["json"],
+            media_type: "application/json",
+            about: "Our own `drawing/1`; one drawing a file",
+            access: Both,
+            holds: [],
+            beside: [],
+        }
+        Excalidraw = "excalidraw" {
+            name: "Excalidraw",
+            endings: &["excalidraw"],
+            media_type: "application/vnd.excalidraw+json",
+            about: "Excalidraw's files and what it puts on the clipboard; one drawing a file",
+            access: Read,
+            holds: [],
+            beside: [],
+        }
+        Tldraw = "tldraw" {
+            name: "tldraw",
+            endings: &["tldr"],
+            media_type: "application/vnd.tldraw+json",
+            about: "tldraw's files; one drawing a file",
+            access: Read,
+            holds: [],
+            beside: [],
+        }
+    }
+}
+
+formats! {
+    /// The file formats that hold scans.
+    CloudFormat {
+        Ply = "ply" {
+            name: "PLY",
+            endings: &["ply"],
+            media_type: "application/octet-stream",
+            about: "Polygon file format, text or binary; faces are left out",
+            access: Both,
+            holds: [Axes],
+            beside: [],
+        }
+        Xyz = "xyz" {
+            name: "XYZ",
+            endings: &["xyz", "txt", "csv", "asc", "pts", "xyzn", "xyzrgb"],
+            media_type: "text/plain",
+            about: "One point a line: x y z and more columns, separated by spaces, commas or semicolons",
+            access: Read,
+            holds: [Axes],
+            beside: [],
+        }
+        Pcd = "pcd" {
+            name: "PCD",
+            endings: &["pcd"],
+            media_type: "application/octet-stream",
+            about: "Point cloud data of PCL, text, binary or compressed",
+            access: Read,
+            holds: [Axes],
+            beside: [],
+        }
+        Las = "las" {
+            name: "LAS",
+            endings: &["las", "laz"],
+            media_type: "application/vnd.las",
+            about: "LAS 1.0 to 1.4; compressed as LAZ in the command",
+            access: Read,
+            holds: [Axes],
+            beside: [],
+        }
+        Obj = "obj" {
+            name: "OBJ",
+            endings: &["obj"],
+            media_type: "model/obj",
+            about: "Vertices of a Wavefront OBJ; faces are left out",
+            access: Read,
+            holds: [Axes],
+            beside: [],
+        }
+    }
+}
+
+/// Endings as a list for people, such as `.glb, .obj or .ply`.
+pub fn list_of_endings<'a>(endings: impl IntoIterator<Item = &'a &'static str>) -> String {
+    let all: Vec<String> = endings.into_iter().map(|e| format!(".{e}")).collect();
+    base::either(&all.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<&'static FormatRow> {
+        let models = ModelFormat::ALL.into_iter().map(ModelFormat::row);
+        let structures = StructureFormat::ALL.into_iter().map(StructureFormat::row);
+        models.chain(structures).chain(DrawingFormat::ALL.into_iter().map(DrawingFormat::row)).collect()
+    }
+
+    #[test]
+    fn words_and_endings_of_what_is_written_are_there_once() {
+        for column in [|row: &FormatRow| row.word, |row: &FormatRow| row.endings[0]] {
+            let mut all: Vec<&str> = rows().into_iter().map(column).collect();
+            let count = all.len();
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(all.len(), count);
+        }
+    }
+
+    #[test]
+    fn a_format_is_found_by_its_word_and_by_its_endings() {
+        for format in ModelFormat::ALL {
+            assert_eq!(ModelFormat::from_word(format.word()), Some(format));
+            for ending in format.row().endings {
+                assert_eq!(ModelFormat::from_extension(&ending.to_uppercase()), Some(format));
+            }
+            let written = serde_json::to_string(&format).unwrap();
+            assert_eq!(written, format!("{:?}", format.word()));
+        }
+        assert_eq!(StructureFormat::from_extension("csv"), None, "a table may be anything");
+        assert_eq!(DrawingFormat::from_extension("docx"), None);
+    }
+}
