@@ -1,5 +1,5 @@
 //! Drawings of many strokes that lie on one another, on one thread: what each stage takes, and how it grows.
-//! `cargo run --release --package burgeon-bench --example overlapping_ink [STROKES ...]`
+//! `cargo run --release --package burgeon-bench --example overlapping_ink [DRAWING ...] [STROKES ...]`
 
 #![expect(
     clippy::unwrap_used,
@@ -12,12 +12,21 @@ use burgeon::{Budget, CancelToken, Clock, Run, Seed, SketchOptions, make_from_sk
 use burgeon_bench::{Pile, Stopwatch};
 
 fn main() {
-    let mut counts: Vec<u32> = std::env::args().skip(1).map(|count| count.parse().unwrap()).collect();
+    let (mut counts, mut piles) = (Vec::new(), Vec::new());
+    for arg in std::env::args().skip(1) {
+        match Pile::ALL.into_iter().find(|pile| pile.name() == arg) {
+            Some(pile) => piles.push(pile),
+            None => counts.push(arg.parse::<u32>().unwrap()),
+        }
+    }
     if counts.is_empty() {
         counts = vec![1_000, 10_000, 100_000];
     }
+    if piles.is_empty() {
+        piles = Pile::ALL.to_vec();
+    }
     println!("seconds    strokes   whole  preprocess classify structure   depth fidelity    mesh  exponent");
-    for pile in Pile::ALL {
+    for pile in piles {
         let mut before: Option<(u32, f64)> = None;
         for &count in &counts {
             let drawing = pile.drawing(count);

@@ -15,11 +15,13 @@ pub enum Pile {
     Crossing,
     /// Short lines side by side.
     Hatching,
+    /// Circles of all sizes anywhere, most of which cut others.
+    Circles,
 }
 
 impl Pile {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Equal, Self::Jittered, Self::Crossing, Self::Hatching];
+    pub const ALL: [Self; 5] = [Self::Equal, Self::Jittered, Self::Crossing, Self::Hatching, Self::Circles];
 
     /// Its name in tables.
     pub const fn name(self) -> &'static str {
@@ -28,6 +30,7 @@ impl Pile {
             Self::Jittered => "jittered",
             Self::Crossing => "crossing",
             Self::Hatching => "hatching",
+            Self::Circles => "circles",
         }
     }
 
@@ -52,6 +55,10 @@ impl Pile {
                     Self::Crossing => 1000.0 * DVec2::new(a, b).lerp(DVec2::new(c, d), t),
                     Self::Hatching => {
                         10.0 * DVec2::new(f64::from(k) - row * along, row) + DVec2::new(7.0 * t + a, 7.0 * t)
+                    }
+                    Self::Circles => {
+                        let (sin, cos) = ops::sin_cos(ops::TAU * t);
+                        1000.0 * DVec2::new(a, b) + (2.0 + 38.0 * c) * DVec2::new(cos, sin)
                     }
                 };
                 (0..20).map(|i| point(f64::from(i) / 19.0)).collect()

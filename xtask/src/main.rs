@@ -25,8 +25,9 @@ cargo xtask COMMAND
   studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
   test           sets up what the tests need and runs them: native, WASM in Node, Khronos validator, npm, Python, Studio.
-                 With --all everything of it: all on one thread and on four, all kills of pages, all journeys in a headset,
-                 and the packages for people (wheel, archive, extension for Blender)
+                 With --all everything of it: all on one thread and on four, all species in each test,
+                 all interruptions of commands and kills of pages, all journeys in a headset, and the packages for people
+                 (wheel, archive, extension for Blender)
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
@@ -198,12 +199,15 @@ fn share(args: &[String]) -> Outcome<Share> {
     }
 }
 
+/// Moments at which each command is interrupted where all is asked for.
+const ALL_INTERRUPTS: &str = "20";
+
 /// Everything that must be green. What waits much runs beside what computes.
 fn test(share: Share) -> Outcome {
     let mut minutes = Minutes::default();
     let tools = minutes.of("tools", web::setup)?;
     minutes.of("tests and programs compiled", || cargo(&["test", "--workspace", "--no-run", "--quiet"]))?;
-    minutes.of("native tests, cores compiled", || beside(test_native, || web::compile(&tools)))?;
+    minutes.of("native tests, cores compiled", || beside(|| test_native(share), || web::compile(&tools)))?;
     minutes.of("digests, WASM in Node, validator", || web::test(&tools, true, share))?;
     minutes.of("npm", || npm::test(&tools))?;
     minutes.of("the page in Node", || studio::check(&tools))?;
@@ -221,8 +225,13 @@ fn test(share: Share) -> Outcome {
     Ok(())
 }
 
-fn test_native() -> Outcome {
-    cargo(&["test", "--workspace", "--no-fail-fast"])?;
+fn test_native(share: Share) -> Outcome {
+    say("$ cargo test --workspace --no-fail-fast");
+    let mut c = shell::prepare(shell::cargo_path(), &["test", "--workspace", "--no-fail-fast"]);
+    if share == Share::All {
+        c.envs([("BURGEON_TESTS", "all"), ("BURGEON_INTERRUPTS", ALL_INTERRUPTS)]);
+    }
+    shell::finish(c)?;
     // The library as programs of their own use it: built with the tests.
     for (example, args) in [("inventory", &[][..]), ("stand", &["hazel", "--seeds", "2", "--ages", "5,10"])] {
         say(&format!("$ {example} {}", args.join(" ")));

@@ -393,18 +393,23 @@ fn add_entry(
     let origin = out.origin;
     let near = |p: [f64; 3]| mirrored_if(entry.mirror, origin.place(place(p)));
     let spec = SegmentSpec { foot: entry.base.map(near), ..SegmentSpec::default() };
+    let run = machine.run();
     let mut found = match (&entry.organ, entry.seed) {
         (Some(name), Some(at)) => {
-            let mut one = bloom::organ_at(&points, near(at), &spec).map_err(Failure::bloom(&scan))?;
+            let mut one = bloom::organ_at(&points, near(at), &spec, &run).map_err(Failure::bloom(&scan))?;
             one.name.clone_from(name);
             vec![one]
         }
-        (None, Some(at)) => vec![bloom::organ_at(&points, near(at), &spec).map_err(Failure::bloom(&scan))?],
-        (Some(name), None) => vec![bloom::single_organ(&points, name, &spec).map_err(Failure::bloom(&scan))?],
-        (None, None) if file.split == Split::None || mesh.is_some() => {
-            vec![bloom::single_organ(&points, "organ", &spec).map_err(Failure::bloom(&scan))?]
+        (None, Some(at)) => {
+            vec![bloom::organ_at(&points, near(at), &spec, &run).map_err(Failure::bloom(&scan))?]
         }
-        (None, None) => bloom::organs(&points, &spec).map_err(Failure::bloom(&scan))?,
+        (Some(name), None) => {
+            vec![bloom::single_organ(&points, name, &spec, &run).map_err(Failure::bloom(&scan))?]
+        }
+        (None, None) if file.split == Split::None || mesh.is_some() => {
+            vec![bloom::single_organ(&points, "organ", &spec, &run).map_err(Failure::bloom(&scan))?]
+        }
+        (None, None) => bloom::organs(&points, &spec, &run).map_err(Failure::bloom(&scan))?,
     };
     if let (Some(base), [one]) = (entry.base.map(near), &mut found[..]) {
         one.base = base;
@@ -524,15 +529,16 @@ pub(crate) fn load_files(
     let spec = SegmentSpec::default();
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;
+    let run = machine.run();
     for &(path, day) in shapes {
         let (PointCloud { points, colors, .. }, mesh, mut told) =
             prepare(path, day, (axes, false), Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
         let organs = if split {
-            bloom::organs(&points, &spec).map_err(Failure::bloom(path))?
+            bloom::organs(&points, &spec, &run).map_err(Failure::bloom(path))?
         } else {
-            vec![bloom::single_organ(&points, "organ", &spec).map_err(Failure::bloom(path))?]
+            vec![bloom::single_organ(&points, "organ", &spec, &run).map_err(Failure::bloom(path))?]
         };
         told.organs =
             organs.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
@@ -551,7 +557,7 @@ pub(crate) fn load_files(
         for stage in &mut out.stages {
             let all: Vec<DVec3> = stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect();
             let colors: Vec<[u8; 3]> = stage.organs.iter().flat_map(|o| o.colors.iter().copied()).collect();
-            let one = bloom::single_organ(&all, "organ", &spec).map_err(Failure::bloom(first))?;
+            let one = bloom::single_organ(&all, "organ", &spec, &run).map_err(Failure::bloom(first))?;
             stage.organs = vec![one.coloured(&colors)];
         }
         split = false;

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { bush, changed, count, data, settled, until } from './journeys.mjs';
-import { felt, reloaded, rested, saved } from './waits.mjs';
+import { eventually, felt, reloaded, rested, saved } from './waits.mjs';
 
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
 export const WIDE = { viewport: { width: 700, height: 420 } };
@@ -154,8 +154,11 @@ export async function key(page, word, side = 'right', { last = false } = {}) {
   const other = side === 'right' ? 'left' : 'right';
   await hand(page, other, [0, 1.25, -0.35]);
   await frames(page);
-  const place = await page.evaluate((w) => JSON.parse(document.body.dataset.wrist ?? '{}')[w], word);
-  assert.ok(place, `a key ${word}`);
+  const place = await eventually(
+    () => page.evaluate((w) => JSON.parse(document.body.dataset.wrist ?? '{}')[w], word),
+    (there) => there !== undefined,
+    `a key ${word}`,
+  );
   await hand(page, side, [place[0], place[1] + 0.02, place[2] + 0.25], place);
   await frames(page);
   // Out of the headset there are no frames to wait for.
@@ -722,7 +725,8 @@ const whole =
       way(held, [0.012, 0.008, 0.006], 10),
       async () => {
         await carries(page);
-        await frames(page, 6);
+        // Where the hand is now, and not where it was some pictures ago.
+        await felt(page, () => {});
         carried = await data(page, 'carried');
       },
       side,

@@ -7,14 +7,12 @@ export const data = (page, key) => page.evaluate((k) => document.body.dataset[k]
 export const count = async (page, key) => Number(await data(page, key));
 const TESTS = { is: (n, m) => n === m, above: (n, m) => n > m };
 // The page's policy allows no text to become code, so the tests are named.
-export async function until(page, key, [test, value], what) {
-  const began = Date.now();
-  while (Date.now() - began < 45_000) {
-    if (TESTS[test](await count(page, key), value)) return;
-    await page.waitForTimeout(40);
-  }
-  throw new Error(`${what}: ${key} is ${await data(page, key)}, not ${test} ${value}`);
-}
+export const until = (page, key, [test, value], what) =>
+  eventually(
+    () => count(page, key),
+    (now) => TESTS[test](now, value),
+    `${what}: ${key} is not ${test} ${value}, but`,
+  );
 
 export async function begin(page, url) {
   await page.goto(url);

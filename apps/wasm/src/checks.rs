@@ -122,7 +122,8 @@ pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> R
     let mut stages = Vec::new();
     for (day, bytes) in [(0.0, first), (1.0, middle), (2.0, last)] {
         let cloud = formats::read_cloud(bytes, CloudFormat::Xyz, &axes, &mut Report::default())?;
-        let organ = bloom::single_organ(&cloud.points, "organ", &bloom::SegmentSpec::default())?;
+        let spec = bloom::SegmentSpec::default();
+        let organ = bloom::single_organ(&cloud.points, "organ", &spec, &Run::plain())?;
         stages.push(bloom::Stage { day, organs: vec![organ] });
     }
     let law = bloom::fit_stages("stages", &stages, &bloom::LawSpec::default(), &Run::plain())?;

@@ -1,6 +1,6 @@
 //! A cloud -> how many blades it shows: one leaf, or several that each sit on a neck of their own.
 
-use base::{Run, Seed};
+use base::{Cancelled, Run, Seed};
 use glam::DVec3;
 
 use crate::clean::{CleanSpec, clean};
@@ -24,33 +24,35 @@ const POINTS: f64 = 0.08;
 ///
 /// Any way may be up: the ways run from the ends of the cloud along each axis, and most of them must agree that it parts.
 /// Cost: n log n.
-pub fn blades(points: &[DVec3]) -> usize {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn blades(points: &[DVec3], run: &Run<'_>) -> Result<usize, Cancelled> {
     let few: Vec<DVec3> = thin(points, SAMPLE).into_iter().map(|i| points[i as usize]).collect();
     let spec = CleanSpec { plane: false, ..CleanSpec::default() };
-    let Ok(cleaned) = clean(&few, &spec, Seed::new(1), &Run::plain()) else { return 1 };
+    let cleaned = clean(&few, &spec, Seed::new(1), run)?;
     let kept: Vec<DVec3> = cleaned.kept.into_iter().map(|i| few[i]).collect();
     let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let mut counts: Vec<usize> = axes
         .iter()
         .filter_map(|up| kept.iter().copied().min_by(|a, b| a.dot(*up).total_cmp(&b.dot(*up))))
-        .map(|foot| from(&kept, foot))
-        .collect();
+        .map(|foot| from(&kept, foot, run))
+        .collect::<Result<_, Cancelled>>()?;
     counts.sort_unstable();
-    counts.get(counts.len() / 2).copied().unwrap_or(1)
+    Ok(counts.get(counts.len() / 2).copied().unwrap_or(1))
 }
 
 /// Blades as the ways from one place show them.
-fn from(points: &[DVec3], foot: DVec3) -> usize {
+fn from(points: &[DVec3], foot: DVec3, run: &Run<'_>) -> Result<usize, Cancelled> {
     let spec = SegmentSpec { foot: Some(foot), ..SegmentSpec::default() };
-    let Ok(found) = organs(points, &spec) else { return 1 };
-    if found.len() < 2 {
-        return 1;
-    }
+    let found = organs(points, &spec, run);
+    run.cancel.check()?;
+    let Some(found) = found.ok().filter(|found| found.len() > 1) else { return Ok(1) };
     let forms: Vec<Form> = found.iter().map(|o| Form::of(o, points.len())).collect();
     let widest = forms.iter().map(|f| f.width).fold(0.0, f64::max);
     let is_blade = |f: &&Form| f.neck <= NECK[1] && f.width >= AS_WIDE * widest && f.share >= POINTS;
     let found: Vec<&Form> = forms.iter().filter(is_blade).collect();
-    if found.iter().any(|f| f.neck <= NECK[0]) { found.len() } else { 1 }
+    Ok(if found.iter().any(|f| f.neck <= NECK[0]) { found.len() } else { 1 })
 }
 
 /// How wide an organ is.
@@ -124,11 +126,15 @@ mod tests {
         (0..count).map(|_| at(s.range(0.0, ops::TAU), s.range(-0.03, 0.02))).collect()
     }
 
+    fn seen(points: &[DVec3]) -> usize {
+        blades(points, &Run::plain()).expect("not cancelled")
+    }
+
     #[test]
     fn leaves_on_necks_are_counted_and_lobes_are_not() {
         for depth in [0.0, 0.3, 0.6] {
             for count in [6000, 3000, 1500] {
-                assert_eq!(blades(&leaf(0.3, depth, count, 1)), 1, "{depth} {count}");
+                assert_eq!(seen(&leaf(0.3, depth, count, 1)), 1, "{depth} {count}");
             }
         }
         for leaves in [2_usize, 3, 4] {
@@ -136,15 +142,15 @@ mod tests {
             for k in 0..leaves {
                 plant.extend(leaf(ops::TAU * k as f64 / leaves as f64, 0.0, 4000, k as u64));
             }
-            assert_eq!(blades(&plant), leaves);
+            assert_eq!(seen(&plant), leaves);
             // Any way up.
             let lying: Vec<DVec3> = plant.iter().map(|p| DVec3::new(p.y, p.z, p.x)).collect();
-            assert!(blades(&lying) > 1, "{leaves}");
+            assert!(seen(&lying) > 1, "{leaves}");
             let few: Vec<DVec3> = plant.iter().copied().step_by(4).collect();
-            assert_eq!(blades(&few), leaves, "a quarter of the points");
+            assert_eq!(seen(&few), leaves, "a quarter of the points");
         }
-        assert_eq!(blades(&[]), 1);
-        assert_eq!(blades(&[DVec3::ONE; 500]), 1);
-        assert_eq!(blades(&[DVec3::NAN; 500]), 1);
+        assert_eq!(seen(&[]), 1);
+        assert_eq!(seen(&[DVec3::ONE; 500]), 1);
+        assert_eq!(seen(&[DVec3::NAN; 500]), 1);
     }
 }

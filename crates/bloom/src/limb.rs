@@ -2,6 +2,7 @@
 //!
 //! Bands of the way from the base do not depend on how dense the points are, so the line does not, either.
 
+use base::Run;
 use geom::KdTree;
 use glam::{DVec2, DVec3};
 
@@ -36,9 +37,9 @@ const ROUND: f64 = 0.35;
 /// The line of a stem from its lowest place to its farthest.
 ///
 /// # Errors
-/// [`BloomError::TooFew`] below 16 finite points.
-pub fn stem(points: &[DVec3]) -> Result<Limb, BloomError> {
-    let organ = single_organ(points, "stem", &SegmentSpec::default())?;
+/// [`BloomError::TooFew`] below 16 finite points; cancelled.
+pub fn stem(points: &[DVec3], run: &Run<'_>) -> Result<Limb, BloomError> {
+    let organ = single_organ(points, "stem", &SegmentSpec::default(), run)?;
     let bands = Bands::of(&organ);
     let (line, radii) = bands.line(0..bands.bands.len());
     Ok(Limb { line, radii, beyond: Vec::new() })
@@ -47,9 +48,10 @@ pub fn stem(points: &[DVec3]) -> Result<Limb, BloomError> {
 /// The stalk of a leaf that sits on its bearer at `base`: what is thin from there on. The rest is its blade.
 ///
 /// # Errors
-/// [`BloomError::TooFew`] below 16 finite points.
-pub fn stalk(points: &[DVec3], base: DVec3) -> Result<Limb, BloomError> {
-    let organ = single_organ(points, "leaf", &SegmentSpec { foot: Some(base), ..SegmentSpec::default() })?;
+/// [`BloomError::TooFew`] below 16 finite points; cancelled.
+pub fn stalk(points: &[DVec3], base: DVec3, run: &Run<'_>) -> Result<Limb, BloomError> {
+    let spec = SegmentSpec { foot: Some(base), ..SegmentSpec::default() };
+    let organ = single_organ(points, "leaf", &spec, run)?;
     let bands = Bands::of(&organ);
     let widths: Vec<f64> = bands.bands.iter().map(|b| width(b)).collect();
     let mut sorted = widths.clone();
@@ -202,7 +204,7 @@ mod tests {
     #[test]
     fn stalk_and_blade_part_at_the_same_place_at_every_density() {
         for n in [16_000, 4_000, 1_000] {
-            let limb = stalk(&leaf(n), DVec3::ZERO).expect("points");
+            let limb = stalk(&leaf(n), DVec3::ZERO, &Run::plain()).expect("points");
             let end = limb.line.last().expect("a stalk").y;
             assert!((0.016..0.028).contains(&end), "{n} points: the stalk ends at {end}");
             let radius = limb.radii[limb.radii.len() / 2];
@@ -219,11 +221,11 @@ mod tests {
             let (sin, cos) = ops::sin_cos(ops::TAU * s.uniform());
             DVec3::new(0.002 * cos, 0.1 * s.uniform(), 0.002 * sin)
         });
-        let limb = stem(&tube.collect::<Vec<_>>()).expect("points");
+        let limb = stem(&tube.collect::<Vec<_>>(), &Run::plain()).expect("points");
         assert!(limb.radii.iter().all(|r| (r - 0.002).abs() < 1e-4), "{:?}", limb.radii);
         assert!((geom::polyline_length3(&limb.line) - 0.1).abs() < 0.005);
         let blade: Vec<DVec3> = leaf(4000).into_iter().filter(|p| p.y > 0.022).collect();
-        assert!(stalk(&blade, DVec3::Y * 0.022).expect("points").line.len() < 6);
-        assert!(matches!(stem(&[DVec3::ZERO; 3]), Err(BloomError::TooFew { is: 3, .. })));
+        assert!(stalk(&blade, DVec3::Y * 0.022, &Run::plain()).expect("points").line.len() < 6);
+        assert!(matches!(stem(&[DVec3::ZERO; 3], &Run::plain()), Err(BloomError::TooFew { is: 3, .. })));
     }
 }

@@ -352,7 +352,7 @@ mod tests {
 
     fn stage(day: f64, g: f64, seed: u64) -> Stage {
         let spec = SegmentSpec { foot: Some(DVec3::ZERO), ..SegmentSpec::default() };
-        let mut organ = single_organ(&petal(g, seed, 2500), "petal-1", &spec).unwrap();
+        let mut organ = single_organ(&petal(g, seed, 2500), "petal-1", &spec, &Run::plain()).unwrap();
         organ.base = DVec3::ZERO;
         Stage { day, organs: vec![organ] }
     }

@@ -5,6 +5,7 @@
 
 use std::collections::BinaryHeap;
 
+use base::{CancelToken, Cancelled, Run};
 use geom::{KdTree, Step, Voxels};
 use glam::DVec3;
 
@@ -87,14 +88,14 @@ const NONE: usize = usize::MAX;
 /// belongs to exactly one organ. Not guaranteed: organs that touch one another are one. Cost: n log n.
 ///
 /// # Errors
-/// [`BloomError::TooFew`] below 16 finite points.
-pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<ScanOrgan>, BloomError> {
-    let ways = ways(points, spec)?;
-    let tree = Tree::new(&ways, spec);
+/// [`BloomError::TooFew`] below 16 finite points; cancelled.
+pub fn organs(points: &[DVec3], spec: &SegmentSpec, run: &Run<'_>) -> Result<Vec<ScanOrgan>, BloomError> {
+    let ways = ways(points, spec, run.cancel)?;
+    let tree = Tree::new(&ways, run.cancel)?;
     let labels = tree.labels(&ways, spec);
     let count = labels.iter().copied().max().unwrap_or(0) + 1;
-    let mut out: Vec<ScanOrgan> =
-        (0..count).map(|label| cut(points, &ways, |c| labels[c] == label)).collect();
+    let one = |label| run.cancel.check().map(|()| cut(points, &ways, |c| labels[c] == label));
+    let mut out: Vec<ScanOrgan> = (0..count).map(one).collect::<Result<_, Cancelled>>()?;
     if out.len() > 1 {
         base::sort_by_key(&mut out[1..], |o| core::cmp::Reverse(o.points.len()));
     }
@@ -108,8 +109,13 @@ pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<ScanOrgan>, Bl
 ///
 /// # Errors
 /// As [`organs`].
-pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<ScanOrgan, BloomError> {
-    let all = organs(points, spec)?;
+pub fn organ_at(
+    points: &[DVec3],
+    place: DVec3,
+    spec: &SegmentSpec,
+    run: &Run<'_>,
+) -> Result<ScanOrgan, BloomError> {
+    let all = organs(points, spec, run)?;
     let nearest =
         |o: &ScanOrgan| o.points.iter().map(|p| p.distance_squared(place)).fold(f64::INFINITY, f64::min);
     let best = all.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
@@ -119,20 +125,26 @@ pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<Sc
 /// The whole cloud as one organ, such as a petal that was cut out already.
 ///
 /// # Errors
-/// [`BloomError::TooFew`] below 16 finite points.
-pub fn single_organ(points: &[DVec3], name: &str, spec: &SegmentSpec) -> Result<ScanOrgan, BloomError> {
-    let ways = ways(points, spec)?;
+/// [`BloomError::TooFew`] below 16 finite points; cancelled.
+pub fn single_organ(
+    points: &[DVec3],
+    name: &str,
+    spec: &SegmentSpec,
+    run: &Run<'_>,
+) -> Result<ScanOrgan, BloomError> {
+    let ways = ways(points, spec, run.cancel)?;
     let mut organ = cut(points, &ways, |_| true);
     organ.name = name.to_owned();
     Ok(organ)
 }
 
-fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
+fn ways(points: &[DVec3], spec: &SegmentSpec, cancel: &CancelToken) -> Result<Ways, BloomError> {
     let is = points.iter().filter(|p| p.is_finite()).count();
     if is < 16 {
         return Err(BloomError::TooFew { what: "the scan".into(), is, wanted: 16 });
     }
     let voxels = Voxels::new(points, 3.0);
+    cancel.check()?;
     let means = voxels.means(points);
     let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
     let height = |c: &usize| match spec.foot {
@@ -146,7 +158,7 @@ fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
     let mut front = vec![foot];
     // A scan in more pieces than this is dust, which belongs to what is nearest.
     for _ in 0..200 {
-        ways.spread(&front);
+        ways.spread(&front, cancel)?;
         let (reached, lost): (Vec<usize>, Vec<usize>) =
             (0..ways.way.len()).partition(|&c| ways.way[c].is_finite());
         let places: Vec<DVec3> = reached.iter().map(|&c| ways.means[c]).collect();
@@ -171,10 +183,11 @@ fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
 
 impl Ways {
     /// Dijkstra 1959 from cubes whose way is known.
-    fn spread(&mut self, from: &[usize]) {
+    fn spread(&mut self, from: &[usize], cancel: &CancelToken) -> Result<(), Cancelled> {
         let mut heap: BinaryHeap<Step<_>> = from.iter().map(|&c| Step(self.way[c], c)).collect();
         let mut near = Vec::new();
         while let Some(Step(way, c)) = heap.pop() {
+            cancel.check()?;
             if way > self.way[c] {
                 continue;
             }
@@ -189,6 +202,7 @@ impl Ways {
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -209,7 +223,7 @@ struct Tree {
 }
 
 impl Tree {
-    fn new(ways: &Ways, _: &SegmentSpec) -> Self {
+    fn new(ways: &Ways, cancel: &CancelToken) -> Result<Self, Cancelled> {
         let n = ways.way.len();
         let longest = ways.way.iter().copied().fold(0.0, f64::max);
         let band = (3.0 * ways.voxels.cell()).max(longest / 400.0).max(1e-12);
@@ -233,6 +247,7 @@ impl Tree {
             if tree.piece[first] != NONE {
                 continue;
             }
+            cancel.check()?;
             let mark = tree.below.len();
             members.clear();
             stack.push(first);
@@ -271,7 +286,7 @@ impl Tree {
                 tree.reach[below] = tree.reach[below].max(tree.reach[p] + band);
             }
         }
-        tree
+        Ok(tree)
     }
 
     /// 0 for the stem, 1 and on for each organ; one a cube.
@@ -472,7 +487,7 @@ mod tests {
     #[test]
     fn a_seedling_falls_into_its_stem_and_leaves() {
         let (points, sizes) = seedling([0.03, 0.03, 0.03]);
-        let got = organs(&points, &SegmentSpec::default()).unwrap();
+        let got = organs(&points, &SegmentSpec::default(), &Run::plain()).unwrap();
         assert_eq!(got.len(), 4, "{:?}", got.iter().map(|o| (&o.name, o.rows.len())).collect::<Vec<_>>());
         assert_eq!(got.iter().map(|o| o.rows.len()).sum::<usize>(), points.len());
         let mut begin = 0;
@@ -506,13 +521,14 @@ mod tests {
     #[test]
     fn a_seed_point_picks_its_organ_and_leaves_are_found_again_after_turning() {
         let (points, _) = seedling([0.03, 0.025, 0.02]);
-        let one = organ_at(&points, DVec3::new(0.025, 0.031, 0.0), &SegmentSpec::default()).unwrap();
+        let one =
+            organ_at(&points, DVec3::new(0.025, 0.031, 0.0), &SegmentSpec::default(), &Run::plain()).unwrap();
         assert!(one.points.iter().filter(|p| p.x > 0.01).count() * 2 > one.points.len(), "{:?}", one.tip);
         let q = base::turn::about(DVec3::Y, 0.6);
         let turned: Vec<DVec3> = points.iter().map(|p| q * *p * 1.2).collect();
         let (a, b) = (
-            organs(&points, &SegmentSpec::default()).unwrap(),
-            organs(&turned, &SegmentSpec::default()).unwrap(),
+            organs(&points, &SegmentSpec::default(), &Run::plain()).unwrap(),
+            organs(&turned, &SegmentSpec::default(), &Run::plain()).unwrap(),
         );
         let pairs = match_organs(&a, &b, DVec3::Y);
         assert_eq!(pairs.len(), 4);
@@ -522,17 +538,29 @@ mod tests {
     }
 
     #[test]
+    fn a_cancelled_run_cuts_nothing() {
+        let (points, cancel) = (seedling([0.03; 3]).0, CancelToken::new());
+        let (spec, run) = (SegmentSpec::default(), Run { cancel: &cancel, ..Run::plain() });
+        assert!(organs(&points, &spec, &run).is_ok());
+        cancel.cancel();
+        assert!(matches!(organs(&points, &spec, &run), Err(BloomError::Cancelled)));
+        assert!(matches!(single_organ(&points, "petal", &spec, &run), Err(BloomError::Cancelled)));
+        assert_eq!(crate::blades(&points, &run), Err(Cancelled));
+    }
+
+    #[test]
     fn one_petal_and_too_few_points() {
         let (points, _) = seedling([0.03; 3]);
         let petal = single_organ(
             &points[3000..8000],
             "petal",
             &SegmentSpec { foot: Some(DVec3::ZERO), ..Default::default() },
+            &Run::plain(),
         );
         let petal = petal.unwrap();
         assert!(petal.rows.len() == 5000 && petal.base.length() < 0.032, "{:?}", petal.base);
         assert!(matches!(
-            organs(&points[..9], &SegmentSpec::default()),
+            organs(&points[..9], &SegmentSpec::default(), &Run::plain()),
             Err(BloomError::TooFew { is: 9, .. })
         ));
     }

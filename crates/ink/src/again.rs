@@ -2,6 +2,7 @@
 //!
 //! `clean strokes -> rows of strokes that follow another all the way, with the row of that one`
 
+use base::CancelToken;
 use geom::closest_on_polyline;
 use glam::DVec2;
 
@@ -29,10 +30,12 @@ const CLOSED: f64 = 0.1;
 /// The other is the longer one, or of two alike the earlier one, and follows none itself. Quadratic in strokes up to 400,
 /// beyond nothing is found.
 ///
-/// `strokes`: points and length of each; `alike`: whether two may be the same line, by mode and colour.
+/// `strokes`: points and length of each; `alike`: whether two may be the same line, by mode and colour. A cancelled run ends
+/// soon, with part of them.
 pub(crate) fn drawn_again(
     strokes: &[(&[DVec2], f64)],
     alike: impl Fn(usize, usize) -> bool,
+    cancel: &CancelToken,
 ) -> Vec<(usize, usize)> {
     if !(2..=MOST_STROKES).contains(&strokes.len()) {
         return Vec::new();
@@ -43,6 +46,9 @@ pub(crate) fn drawn_again(
     let mut first: Vec<usize> = Vec::new();
     let mut again = Vec::new();
     for row in order {
+        if cancel.check().is_err() {
+            break;
+        }
         let (s, (lo, hi)) = (strokes[row], boxes[row]);
         let far = FAR.min(FAR_SHARE * s.1);
         let holds = |other: &&usize| {

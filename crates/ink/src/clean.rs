@@ -4,7 +4,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use base::{Report, ops};
+use base::{CancelToken, Report, Run, ops};
 use geom::polyline_length;
 use glam::DVec2;
 
@@ -170,7 +170,7 @@ impl Ink {
                 ..InkStroke::default()
             })
             .collect();
-        even(&mut strokes, &[]);
+        even(&mut strokes, &[], Run::plain().cancel);
         let plants = vec![(0..strokes.len()).collect()];
         Self { strokes, map, subjects: Subjects { plants, ..Subjects::default() }, ..Self::default() }
     }
@@ -190,12 +190,12 @@ impl Ink {
 /// assert!((ink.strokes[0].length - 1.0).abs() < 1e-12);
 /// ```
 pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
-    clean_again(drawing, None, report)
+    clean_again(drawing, None, &Run::plain(), report)
 }
 
 /// As [`clean`], of a drawing that changed a little: strokes that are as they were, in a box that is as it was, are taken
-/// over from the ink before. The same ink comes out.
-pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report) -> Ink {
+/// over from the ink before. The same ink comes out. A cancelled run ends soon, with ink that means nothing.
+pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, run: &Run<'_>, report: &mut Report) -> Ink {
     let mut notes = Notes::default();
     let usable = usable_samples(drawing, &mut notes);
     let map = ink_map(drawing, &usable);
@@ -206,6 +206,9 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
         } else {
             Vec::new()
         };
+        if run.cancel.check().is_err() {
+            return ink;
+        }
         if stroke.hidden {
             continue;
         }
@@ -228,13 +231,16 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
             ..InkStroke::default()
         });
     }
-    even(&mut ink.strokes, before.map_or(&[], |b| &b.strokes));
+    even(&mut ink.strokes, before.map_or(&[], |b| &b.strokes), run.cancel);
     let lines: Vec<(&[DVec2], f64)> = ink.strokes.iter().map(|s| (&*s.points, s.length)).collect();
     let alike = |a: usize, b: usize| {
         let (a, b) = (&ink.strokes[a], &ink.strokes[b]);
         a.mode == b.mode && a.color == b.color
     };
-    let again = drawn_again(&lines, alike);
+    let again = drawn_again(&lines, alike, run.cancel);
+    if run.cancel.check().is_err() {
+        return ink;
+    }
     ink.subjects = subjects(&lines).without(again);
     notes.tell(report);
     if ink.strokes.is_empty() {
@@ -244,13 +250,16 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, report: &mut Report)
 }
 
 /// Resamples and smooths strokes of which `raw` is known. `before`: strokes that were, some of them the same.
-fn even(strokes: &mut [InkStroke], before: &[InkStroke]) {
+fn even(strokes: &mut [InkStroke], before: &[InkStroke], cancel: &CancelToken) {
     for stroke in strokes.iter_mut() {
         stroke.length = polyline_length(&stroke.raw);
     }
     let total: f64 = strokes.iter().map(|s| s.length).sum();
     let step = STEP.max(total / MAX_POINTS);
     for stroke in strokes {
+        if cancel.check().is_err() {
+            return;
+        }
         stroke.step = step.min(stroke.length / MIN_STEPS);
         let at = before.binary_search_by_key(&stroke.index, |s| s.index);
         let known = at.ok().map(|at| &before[at]);
@@ -546,6 +555,17 @@ mod tests {
         assert_eq!((s.points[0], s.points[s.points.len() - 1]), (s.raw[0], s.raw[s.raw.len() - 1]));
         let corner = s.points.iter().map(|p| p.distance(s.raw[100])).fold(1.0, f64::min);
         assert!(corner < STEP, "corner moved by {corner}");
+    }
+
+    #[test]
+    fn a_cancelled_run_cleans_nothing() {
+        let drawing = lines(&[vec![DVec2::ZERO, DVec2::Y], vec![DVec2::X, DVec2::ONE]]);
+        let cancel = CancelToken::new();
+        let run = Run { cancel: &cancel, ..Run::plain() };
+        let clean = || clean_again(&drawing, None, &run, &mut Report::default()).strokes.len();
+        assert_eq!(clean(), 2);
+        cancel.cancel();
+        assert_eq!(clean(), 0);
     }
 
     #[test]

@@ -106,7 +106,7 @@ pub(crate) fn same_bits(a: DVec2, b: DVec2) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use base::{Report, Run, ops};
+    use base::{CancelToken, Report, Run, ops};
     use ink::{Drawing, Ink};
 
     use super::*;
@@ -140,7 +140,7 @@ mod tests {
         let ink: Ink = ink::clean(&Drawing::from_polylines("grows", lines), &mut Report::default());
         let classes = ink::classify(&ink, &Run::plain());
         let afresh = read_as(kind, &ink, &classes, &mut Report::default());
-        [afresh, read_again(kind, &[], (&ink, &classes), kept, &mut Report::default())]
+        [afresh, read_again(kind, &[], (&ink, &classes), kept, &Run::plain(), &mut Report::default())]
     }
 
     #[test]
@@ -159,6 +159,23 @@ mod tests {
             last = kept.blades.0.iter().map(Vec::len).sum::<usize>();
         }
         assert!((1..=8 * all.len()).contains(&last), "what is no longer needed is forgotten: {last}");
+    }
+
+    #[test]
+    fn a_cancelled_run_reads_nothing_and_spoils_nothing() {
+        let ink: Ink = ink::clean(&Drawing::from_polylines("stops", &lines()), &mut Report::default());
+        let classes = ink::classify(&ink, &Run::plain());
+        let cancel = CancelToken::new();
+        let run = Run { cancel: &cancel, ..Run::plain() };
+        let (mut kept, mut report) = (KeptStrokes::default(), Report::default());
+        let mut read = || read_again(None, &[], (&ink, &classes), &mut kept, &run, &mut report);
+        let whole = read();
+        assert!(!whole.flowers.is_empty() && !whole.leaves.is_empty());
+        cancel.cancel();
+        let stopped = read();
+        assert_eq!(stopped, Reading::default());
+        let again = read_again(None, &[], (&ink, &classes), &mut kept, &Run::plain(), &mut report);
+        assert_eq!(again, whole);
     }
 
     #[test]

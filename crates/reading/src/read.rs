@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use base::Report;
+use base::{CancelToken, Cancelled, Report, Run};
 use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
@@ -47,25 +47,26 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
 
 /// As [`read`], taking every plant of the drawing for one kind, whatever it looks like.
 pub fn read_as(kind: Option<Kind>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    read_again(kind, &[], (ink, classes), &mut KeptStrokes::default(), report)
+    read_again(kind, &[], (ink, classes), &mut KeptStrokes::default(), &Run::plain(), report)
 }
 
 /// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
 pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    read_again(None, off, (ink, classes), &mut KeptStrokes::default(), report)
+    read_again(None, off, (ink, classes), &mut KeptStrokes::default(), &Run::plain(), report)
 }
 
 /// As [`read_as`], and as [`read_without`], of a drawing that changes: what the strokes that stay gave is kept.
 ///
-/// Guaranteed: the same reading as with nothing kept.
+/// Guaranteed: the same reading as with nothing kept. A cancelled run ends soon, with a reading that means nothing.
 pub fn read_again(
     kind: Option<Kind>,
     off: &[&str],
     (ink, classes): (&Ink, &[Classified]),
     kept: &mut KeptStrokes,
+    run: &Run<'_>,
     report: &mut Report,
 ) -> Reading {
-    let asked = Asked { kind, off, kept: &RefCell::new(core::mem::take(kept)) };
+    let asked = Asked { kind, off, kept: &RefCell::new(core::mem::take(kept)), cancel: run.cancel };
     let other: Vec<Classified> = classes.iter().map(|said| without(off, said)).collect();
     let reading = whole(&asked, ink, &other, report);
     *kept = asked.kept.take();
@@ -77,12 +78,13 @@ pub fn read_again(
 pub fn read_but_last(
     (ink, classes): (&Ink, &[Classified]),
     kept: &mut KeptStrokes,
+    run: &Run<'_>,
     report: &mut Report,
 ) -> Reading {
     let Some(last) = ink.strokes.last() else { return Reading::default() };
     let part = several::part(ink, classes, (0..ink.strokes.len() - 1).collect());
     let mut whole = several::Collected::new(ink, classes);
-    whole.add(&part, read_again(None, &[], (&part.ink, &part.classes), kept, report));
+    whole.add(&part, read_again(None, &[], (&part.ink, &part.classes), kept, run, report));
     let mut reading = whole.finish(report);
     let said = classes.get(ink.strokes.len() - 1).copied().unwrap_or_default();
     let (index, organ) = (last.index, OrganWord::Ignored);
@@ -106,7 +108,7 @@ fn without(off: &[&str], said: &Classified) -> Classified {
 /// What a drawing of one plant measures, for the model of kinds: [`kind_features`](crate::kind_features) of its first
 /// reading.
 pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
-    let asked = Asked { kind: None, off: &[], kept: &RefCell::default() };
+    let asked = Asked { kind: None, off: &[], kept: &RefCell::default(), cancel: Run::plain().cancel };
     let first = attempt(&asked, &Proposal::default(), ink, classes, &mut Report::default());
     kinds::kind_features(ink, classes, &first)
 }
@@ -124,6 +126,7 @@ struct Asked<'a> {
     /// Rules that are switched off.
     off: &'a [&'a str],
     kept: &'a RefCell<KeptStrokes>,
+    cancel: &'a CancelToken,
 }
 
 impl Asked<'_> {
@@ -131,6 +134,11 @@ impl Asked<'_> {
     fn is_free(&self, ink: &Ink, classes: &[Classified]) -> bool {
         let guessed = classes.iter().all(|c| c.source != Source::User);
         guessed && ink.strokes.len() <= MOST_STROKES && !self.off.contains(&READ_AS)
+    }
+
+    /// Whether nobody waits for it any more: what is read from here on means nothing.
+    fn is_over(&self) -> bool {
+        self.cancel.check().is_err()
     }
 
     /// Whether what looks like no plant is left out where it stands beside one.
@@ -153,7 +161,7 @@ impl First {
     fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
         let reading = attempt(asked, &Proposal::default(), ink, classes, &mut said);
-        if ink.strokes.len() > MOST_JUDGED {
+        if ink.strokes.len() > MOST_JUDGED || asked.is_over() {
             // As it was read, and as nothing else.
             let kinds = vec![Scored { kind: Kind::of(&reading), score: 1.0 }];
             let shares = kinds::Shares { kinds, ..kinds::Shares::default() };
@@ -192,6 +200,9 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
         let first = First::of(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);
+    }
+    if asked.is_over() {
+        return Reading::default();
     }
     // Leaflets of one leaf and petals of one flower may stand apart.
     let is_apart = |p: &structure::readers::Proposal| matches!(p.kind, Kind::Leaf | Kind::Flower);
@@ -281,6 +292,9 @@ const TOLD: usize = 3;
 
 /// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
 fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
+    if asked.is_over() {
+        return Reading::default();
+    }
     let First { mut reading, mut said, shares, glance, .. } = first;
     let mut kind = Kind::of(&reading);
     // What it is taken for beyond what its strokes say.
@@ -331,6 +345,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     {
         (reading, said) = (tree, Report::default());
     }
+    if asked.is_over() {
+        return Reading::default();
+    }
     let (mut structure, mut is_structural, mut is_cut) = (None, false, false);
     if asked.kind.is_none()
         && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| group(&scores, k))
@@ -338,6 +355,9 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         kind = Kind::of(&found.reading);
         (reading, said, taken) = (found.reading, found.said, None);
         (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
+    }
+    if asked.is_over() {
+        return Reading::default();
     }
     let mut sure = None;
     if let Some((composed, proposed, score)) = by_readers(asked, (ink, classes), &scores)
@@ -596,7 +616,7 @@ fn by_structure(
     let mut report = Report::default();
     let (tried, says) = if let Some(cut) = Composed::without_sides(ink, classes, &tubes) {
         let kept = RefCell::default();
-        let own = Asked { kind: None, off: asked.off, kept: &kept };
+        let own = Asked { kind: None, kept: &kept, ..*asked };
         let proposal = Proposal { structure: Some(cut.structure.clone()), ..Proposal::default() };
         let parts = attempt(&own, &proposal, &cut.ink, &cut.classes, &mut report);
         (cut.back(ink, parts), None)
@@ -647,7 +667,7 @@ fn by_readers(
     let score = odds(&proposal) / (1.0 + odds(&proposal));
     let composed = Composed::new(ink, &proposal);
     let kept = RefCell::default();
-    let own = Asked { kind: Some(proposal.kind), off: asked.off, kept: &kept };
+    let own = Asked { kind: Some(proposal.kind), kept: &kept, ..*asked };
     let how =
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
@@ -679,7 +699,7 @@ struct Proposal {
     is_cut: bool,
 }
 
-/// One reading of one plant.
+/// One reading of one plant; an empty one where it is no longer wanted.
 fn attempt(
     asked: &Asked<'_>,
     proposal: &Proposal,
@@ -687,6 +707,17 @@ fn attempt(
     classes: &[Classified],
     report: &mut Report,
 ) -> Reading {
+    understood(asked, proposal, (ink, classes), report).unwrap_or_default()
+}
+
+fn understood(
+    asked: &Asked<'_>,
+    proposal: &Proposal,
+    (ink, classes): (&Ink, &[Classified]),
+    report: &mut Report,
+) -> Result<Reading, Cancelled> {
+    let is_wanted = || asked.cancel.check();
+    is_wanted()?;
     let off = asked.off;
     let mut draft = Draft::new(ink, classes, asked.kept);
     if let Some(kind) = proposal.kind {
@@ -703,7 +734,9 @@ fn attempt(
     outlines::trunk_sides(&mut draft);
     outlines::bodies(&mut draft);
     outlines::crowns(&mut draft, report);
+    is_wanted()?;
     draft.blades();
+    is_wanted()?;
     if !off.contains(&GREEN_LEAVES) {
         draft.green_leaves();
     }
@@ -723,16 +756,20 @@ fn attempt(
     attach::grass_blades(&mut draft);
     let (discs, nuts) = attach::part_discs(&draft, discs);
     let bearers = flowers::Bearers::new(&draft);
+    is_wanted()?;
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
+    is_wanted()?;
     attach::stamens(&mut draft, &mut flowers, &roots, &mut veins);
     outlines::lobes(&mut draft);
     let mut fruits = draft.fruits(&nuts);
     let hints = draft.hints(&flowers.iter().map(|f| f.centre).collect::<Vec<_>>());
     let lines = std::mem::take(&mut draft.lines);
     draft.forest.grow(lines, &hints);
+    is_wanted()?;
     attach::roots(&mut draft);
     let region_bearers = outlines::bear_regions(&mut draft);
     let (flowers, leaves) = attach::organs(&mut draft, flowers, &roots, veins, &hints.soil);
+    is_wanted()?;
     attach::fruits(&mut draft, &mut fruits);
-    draft.finish(region_bearers, flowers, leaves, fruits, thorns)
+    Ok(draft.finish(region_bearers, flowers, leaves, fruits, thorns))
 }

@@ -17,27 +17,31 @@ use crate::report::{GrowthReport, LeafReport, ReadingReport};
 /// Between which values results are plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlausibilityLimits {
-    /// The longest side of a plant, metres: water rises no higher than 122 to 130 m in a tree (Koch et al. 2004).
+    /// The longest side of a plant, metres: trees could reach 122 to 130 m (Koch et al., Nature 428, 2004).
     pub size_most_m: f64,
-    /// The longest side of a plant, metres: the smallest flowering plants, of the genus Wolffia, have 0.3 mm (Landolt 1986).
+    /// The longest side of a plant, metres: the smallest flowering plants, of the genus Wolffia, are half a millimetre long. A
+    /// round bound below them.
     pub size_least_m: f64,
-    /// The length of a leaf on a plant, metres: those of the palm Raphia regalis have 25 m (Hallé 1977).
+    /// The length of a leaf on a plant, metres: the longest that was measured, of the palm Raphia regalis, had 25.11 m. A round
+    /// bound above it.
     pub leaf_most_m: f64,
-    /// The length of a blade in one piece, metres: those of the banana Musa ingens have 5 m (Argent 1976).
+    /// The length of a blade in one piece, metres: those of the banana Musa ingens have 5 m (Argent, Notes from the Royal Botanic
+    /// Garden Edinburgh 35, 1976).
     pub blade_most_m: f64,
     /// The length of a leaf that is measured, metres: less than a millimetre is a unit that is wrong.
     pub blade_least_m: f64,
-    /// The height of a stem over that at which a column of wood as thick as its foot would buckle under its own weight
-    /// (`McMahon` 1973; trees have a quarter of it). Culms are hollow: reeds of 4 m with 1 cm have 1.1.
+    /// The height of a stem over that at which a column of wood as thick as its foot would buckle under its own weight. Culms are
+    /// hollow: a reed of 4 m and 1 cm has 1.08. A round bound above it.
     pub slender_most: f64,
     /// The volume of the shoot over the cube of the plant's longest side: a cactus that is a ball has 0.52.
     pub volume_most: f64,
-    /// The same of a plant of more than [`Self::tall_m`]: a baobab of 22 m and 10 m across has 0.08.
+    /// The same of a plant of more than [`Self::tall_m`]: a tree of 22 m whose trunk is a cylinder of 10 m across and 11 m high, as
+    /// stout as a baobab, has 0.081.
     pub wood_most: f64,
-    /// What is no ball any more, metres: the largest barrel cacti have 2.5 m (Anderson 2001).
+    /// What is no ball any more, metres: the largest barrel cacti, of Echinocactus platyacanthus, have 2.5 m, one has 2.95 m.
     pub tall_m: f64,
-    /// One side of all leaves over the square of the plant's longest side: leaf area indices above 12 are rare, above 18
-    /// unknown (Asner, Scurlock and Hicke 2003), and no crown is wider than the longest side.
+    /// One side of all leaves over the square of the plant's longest side: leaf area indices are 18 at most (Asner, Scurlock and
+    /// Hicke, Global Ecology and Biogeography 12, 2003), and no crown is wider than the longest side. A round bound above it.
     pub leaf_area_most: f64,
     /// The share of the input that may stay unused: ink, points, stages.
     pub unused_most: f64,
@@ -69,7 +73,7 @@ pub struct PlausibilityLimits {
 pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
     size_most_m: 130.0,
     size_least_m: 0.000_3,
-    leaf_most_m: 25.0,
+    leaf_most_m: 26.0,
     blade_most_m: 5.0,
     blade_least_m: 0.001,
     slender_most: 1.5,
@@ -91,9 +95,9 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
     growth_least: 0.95,
 };
 
-/// A column of green wood as thick as `d` metres buckles at this times d^(2/3) metres: 0.792 (E/w)^(1/3) with 1.05e6 m for
-/// its stiffness over its weight (`McMahon` 1973).
-const BUCKLING: f64 = 80.5;
+/// A column of green wood as thick as `d` metres buckles at this times d^(2/3) metres: (7.837 E / 16 w)^(1/3) for a cylinder
+/// (Greenhill 1881), with a stiffness E of 10.3 GPa and the weight w of water, 9.81 kN in a cubic metre.
+const BUCKLING: f64 = 80.1;
 
 /// The names of all checks, which are the codes of their warnings.
 pub const CHECKS: [&str; 23] = [
@@ -572,7 +576,7 @@ mod tests {
         assert_eq!(failed_of(&column(0.4, 0.2)), [""; 0]);
         assert_eq!(failed_of(&column(0.000_2, 0.000_02)), ["size-small"]);
         assert_eq!(failed_of(&column(20.0, 5.0)), ["volume-large"]);
-        // McMahon's column of 0.1 m buckles at 17.3 m.
+        // A column of 0.1 m buckles at 17.26 m.
         assert_eq!(failed_of(&column(1.5 * 17.2, 0.05)), [""; 0]);
         assert_eq!(failed_of(&column(1.5 * 17.5, 0.05)), ["stem-slender"]);
     }

@@ -55,14 +55,14 @@ impl ScannedDays {
             kept.push((*day, cloud.select(&cleaned.kept)));
         }
         let one = |cloud: &PointCloud| -> Result<Vec<ScanOrgan>, BloomError> {
-            let organ = bloom::single_organ(&cloud.points, "organ", &spec)?;
+            let organ = bloom::single_organ(&cloud.points, "organ", &spec, run)?;
             Ok(vec![organ.coloured(&cloud.colors)])
         };
         let cut = |cloud: &PointCloud| -> Result<Vec<ScanOrgan>, BloomError> {
             if whole {
                 return one(cloud);
             }
-            let organs = bloom::organs(&cloud.points, &spec)?.into_iter();
+            let organs = bloom::organs(&cloud.points, &spec, run)?.into_iter();
             Ok(organs.map(|o| o.coloured(&cloud.colors)).collect())
         };
         let mut stages: Vec<Stage> = kept

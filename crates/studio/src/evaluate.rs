@@ -189,7 +189,8 @@ impl Evaluator {
         if self.strokes.as_ref().is_none_or(|k| k.from.strokes != drawing.strokes) {
             let mut report = Report::default();
             let before = self.strokes.as_ref().map(|k| &k.value.0);
-            let ink = report.stage("preprocess", run.clock, |r| ink::clean_again(drawing, before, r));
+            let ink = report.stage("preprocess", run.clock, |r| ink::clean_again(drawing, before, run, r));
+            run.cancel.check()?;
             if ink.strokes.is_empty() {
                 return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
             }
@@ -263,12 +264,12 @@ impl Evaluator {
         let kept = &mut self.understood;
         let mut reading =
             report.stage("structure", run.clock, |r| match self.taken.filter(|_| read_as.is_none()) {
-                Some(Taken::For(kind)) => reading::read_again(Some(kind), &[], (ink, &classes), kept, r),
-                Some(Taken::Arranged) => reading::read_but_last((ink, &classes), kept, r),
+                Some(Taken::For(kind)) => reading::read_again(Some(kind), &[], (ink, &classes), kept, run, r),
+                Some(Taken::Arranged) => reading::read_but_last((ink, &classes), kept, run, r),
                 Some(Taken::Strokes) => {
-                    reading::read_again(None, &[reading::READ_AS], (ink, &classes), kept, r)
+                    reading::read_again(None, &[reading::READ_AS], (ink, &classes), kept, run, r)
                 }
-                None => reading::read_again(read_as, &[], (ink, &classes), kept, r),
+                None => reading::read_again(read_as, &[], (ink, &classes), kept, run, r),
             });
         run.cancel.check()?;
         if self.preview {

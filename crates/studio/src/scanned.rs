@@ -35,7 +35,7 @@ pub fn make_leaf_from_scan(
     let alone = alone(cloud, &mut report);
     let cloud = alone.as_ref().unwrap_or(cloud);
     let points = cloud.points.as_slice();
-    let blades = bloom::blades(points);
+    let blades = bloom::blades(points, run)?;
     if blades > 1 {
         return Err(LeafError::Several(blades));
     }

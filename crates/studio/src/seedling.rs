@@ -85,7 +85,7 @@ pub fn make_seedling(
     let stem = organs.iter().find(|o| o.name == "stem");
     let (mut bearers, mut textures) = (Vec::new(), Vec::new());
     if let Some(OrganPoints { name, points, colors }) = stem {
-        let limb = bloom::stem(points)?;
+        let limb = bloom::stem(points, run)?;
         let colours = colours_of(points, colors, run);
         bearers = add_axis(&mut plant, (AxisKind::Stem, 0), None, &limb, colours.as_ref());
         fits.push(OrganFit { name: name.clone(), ..OrganFit::of(&limb) });
@@ -98,7 +98,7 @@ pub fn make_seedling(
         let joint = bloom::joint(points, trunk).unwrap_or_else(|| lowest(points));
         let nearest = |n: &&NodeId| plant.nodes.position[n.index()].distance(joint);
         let bearer = bearers.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))).copied();
-        let limb = bloom::stalk(points, joint)?;
+        let limb = bloom::stalk(points, joint, run)?;
         let foot = limb.line.last().copied().unwrap_or(joint);
         let scan = ScanSpec { base: Some(foot), ..options.scan };
         // What it warns of, single leaves have: strays, a stalk that is missing.
@@ -162,7 +162,7 @@ impl Grove<'_> {
                 limb.line.push(found.grid[found.columns / 2]);
                 limb.radii.push(0.5 * radius);
             }
-            None => limb = bloom::stem(points)?,
+            None => limb = bloom::stem(points, self.run)?,
         }
         if let Some((place, _)) = at {
             limb.line.insert(0, place);

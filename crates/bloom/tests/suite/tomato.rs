@@ -44,7 +44,7 @@ fn stages() -> Option<Vec<Stage>> {
         // Every point of a large scan would take minutes without optimisation.
         let step = kept.kept.len().div_ceil(25_000);
         let points: Vec<DVec3> = kept.kept.iter().step_by(step).map(|&i| all[i]).collect();
-        let mut found = organs(&points, &SegmentSpec::default()).unwrap();
+        let mut found = organs(&points, &SegmentSpec::default(), &run).unwrap();
         if let Some(before) = stages.last() {
             name_alike(&before.organs, &mut found, DVec3::Y);
         }

@@ -1,11 +1,12 @@
 //! Plants of drawings that change: what is taken over from the last time gives the same bits as a fresh start.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use burgeon::formats::{DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
-use burgeon::{Evaluator, Run, Seed, SketchOptions};
+use burgeon::{CancelToken, Clock, Evaluator, MakeError, Run, Seed, SketchOptions};
 
 fn drawing(name: &str) -> Drawing {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fixtures/sketches/{name}.svg"));
@@ -41,6 +42,50 @@ fn a_drawing_that_changes_gives_what_a_fresh_start_gives() {
         options.skin.detail = 0.4;
         check(&moved, &options, "coarser");
     }
+}
+
+/// Cancels when a stage begins or ends, which is when the clock is read; counts how often that is.
+struct StopAt<'a> {
+    reads: AtomicU32,
+    last: u32,
+    cancel: &'a CancelToken,
+}
+
+impl Clock for StopAt<'_> {
+    fn now_ms(&self) -> f64 {
+        if self.reads.fetch_add(1, Ordering::Relaxed) == self.last {
+            self.cancel.cancel();
+        }
+        0.0
+    }
+}
+
+#[test]
+fn a_stage_that_is_no_longer_wanted_is_the_last_and_spoils_nothing() {
+    let (drawing, options, seed) = (drawing("gallery/tulip"), SketchOptions::default(), Seed::new(1));
+    let mut fresh = Evaluator::default();
+    fresh.update(&drawing, &options, seed, &Run::plain()).expect("a plant");
+    let mut stopped = 0;
+    for last in 0.. {
+        let cancel = CancelToken::new();
+        let clock = StopAt { reads: AtomicU32::new(0), last, cancel: &cancel };
+        let run = Run { cancel: &cancel, clock: &clock, ..Run::plain() };
+        let mut kept = Evaluator::default();
+        let made = kept.update(&drawing, &options, seed, &run);
+        let reads = clock.reads.into_inner();
+        if reads <= last {
+            break;
+        }
+        if made.is_err() {
+            assert!(matches!(made, Err(MakeError::Cancelled(_))), "at {last}");
+            // The stage ends, and the next one reads the clock before it stops.
+            assert!(reads <= last + 3, "another stage went on: {reads} after {last}");
+            stopped += 1;
+        }
+        kept.update(&drawing, &options, seed, &Run::plain()).expect("a plant");
+        assert!(kept.plant() == fresh.plant() && kept.model() == fresh.model(), "at {last}");
+    }
+    assert!(stopped >= 10, "{stopped}");
 }
 
 #[test]

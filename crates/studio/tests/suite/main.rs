@@ -2,6 +2,8 @@
 
 #[path = "../../../base/tests/missing/mod.rs"]
 mod missing;
+#[path = "../../../base/tests/share/mod.rs"]
+mod share;
 
 mod again;
 mod colours;
@@ -12,3 +14,6 @@ mod lives;
 mod scans;
 mod schemas;
 mod wood;
+
+/// Where a test grows a species at many ages or measures all of its meshes, each run looks at one species of so many.
+const SPECIES: usize = 4;
