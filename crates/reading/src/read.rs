@@ -301,28 +301,10 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let mut taken = None;
     let (mut scores, no_plant) = (shares.kinds, shares.no_plant);
     let built = kind;
-    let group = |scores: &[Scored], kind: Kind| -> f64 {
-        scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
-    };
-    // Petals round a middle were no chance either.
-    let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
     // The model learnt from no drawing that has roots.
     let rooted = is_rooted(&reading);
-    let better = if clear { MUCH_BETTER } else { BETTER };
-    let likelier = |s: &&Scored| {
-        let own = group(&scores, s.kind);
-        !s.kind.is_like(built) && own > SURE && own > better * group(&scores, built)
-    };
-    // The kind may be right, and still its crown be taken for a blade, or most of it for something else; or the leaves on a
-    // fruit for petals.
     let free = asked.is_free(ink, classes);
-    let poor_tree = bears_a_crown_as_blade(&reading) || crown_share(ink, &reading) < POOR_CROWN;
-    let half = free
-        && (built.is_like(Kind::Tree) && poor_tree
-            || built == Kind::Palm && bare_lines(&reading) > 0
-            || built.is_like(Kind::Fruit) && !reading.flowers.is_empty());
-    let same = |s: &&Scored| half && s.kind.is_like(built) && group(&scores, built) > SURE;
-    let other = scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied();
+    let other = kind_to_try((ink, classes), (&reading, built), &scores, free);
     if let Some(wanted) = asked.kind {
         kind = wanted;
         (reading, said) = taken_for(asked, wanted, ink, classes);
@@ -350,7 +332,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     let (mut structure, mut is_structural, mut is_cut) = (None, false, false);
     if asked.kind.is_none()
-        && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| group(&scores, k))
+        && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| share_of(&scores, k))
     {
         kind = Kind::of(&found.reading);
         (reading, said, taken) = (found.reading, found.said, None);
@@ -394,7 +376,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     as_body(ink, kind, free, &mut reading);
     let evidence = Evidence {
-        share: group(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
+        share: share_of(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
         undecided: glance::entropy(&glance.words),
         no_plant,
         strokes: ink.strokes.len(),
@@ -404,6 +386,37 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let readings = readings(kind, &evidence, &scores);
     reading.plants = vec![described(ink, kind, (evidence, readings), &glance)];
     reading
+}
+
+/// How likely a kind is, with all that are built alike.
+fn share_of(scores: &[Scored], kind: Kind) -> f64 {
+    scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
+}
+
+/// The kind that explains a drawing clearly better than what was built of it, or that same kind where not all of it was built:
+/// its crown was taken for a blade, or most of it for something else, or the leaves on a fruit for petals.
+fn kind_to_try(
+    (ink, classes): (&Ink, &[Classified]),
+    (reading, built): (&Reading, Kind),
+    scores: &[Scored],
+    free: bool,
+) -> Option<Scored> {
+    // Petals round a middle were no chance either.
+    let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
+    let better = if clear { MUCH_BETTER } else { BETTER };
+    let likelier = |s: &&Scored| {
+        let own = share_of(scores, s.kind);
+        !s.kind.is_like(built) && own > SURE && own > better * share_of(scores, built)
+    };
+    let is_half = || {
+        built.is_like(Kind::Tree)
+            && (bears_a_crown_as_blade(reading) || crown_share(ink, reading) < POOR_CROWN)
+            || built == Kind::Palm && bare_lines(reading) > 0
+            || built.is_like(Kind::Fruit) && !reading.flowers.is_empty()
+    };
+    let half = free && is_half();
+    let same = |s: &&Scored| half && s.kind.is_like(built) && share_of(scores, built) > SURE;
+    scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied()
 }
 
 /// A vegetable is one body, if no class was set by hand; and what is no wood is none.
@@ -654,7 +667,7 @@ fn by_readers(
     if !asked.is_free(ink, classes) || classes.iter().any(Classified::is_sure) {
         return None;
     }
-    let share = |kind: Kind| scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum::<f64>();
+    let share = |kind: Kind| share_of(scores, kind);
     let best_other =
         |kind: Kind| scores.iter().filter(|s| !s.kind.is_like(kind)).map(|s| s.score).fold(0.0, f64::max);
     let odds = |p: &structure::readers::Proposal| {

@@ -96,7 +96,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
 };
 
 /// A column of green wood as thick as `d` metres buckles at this times d^(2/3) metres: (7.837 E / 16 w)^(1/3) for a cylinder
-/// (Greenhill 1881), with a stiffness E of 10.3 GPa and the weight w of water, 9.81 kN in a cubic metre.
+/// (Greenhill 1881), with a stiffness E of 10.3 `GPa` and the weight w of water, 9.81 kN in a cubic metre.
 const BUCKLING: f64 = 80.1;
 
 /// The names of all checks, which are the codes of their warnings.
