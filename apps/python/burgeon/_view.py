@@ -48,7 +48,8 @@ class _Part(Protocol):
 class _Model(Protocol):
     """A model: ``burgeon.Model``."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     @property
     def parts(self) -> "Sequence[_Part]": ...

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from . import _burgeon
 from ._drawing import Drawing, draw
 from ._files import write_whole
-from ._given import axes as check_axes
 from ._given import STRUCTURES, asked_of, flag, number, whole, word, wrong
+from ._given import axes as check_axes
 from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
+
 
 class _Table:
     """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
