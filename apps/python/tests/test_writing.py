@@ -87,7 +87,7 @@ def test_a_leaf_of_chief_veins_is_borne_as_by_the_command_line(cli, shown, tmp_p
         ("x.glb", {"one_file": True}, "one_file is of coarser copies"),
         ("x.glb", {"sway": True, "pack": "meshopt"}, "sways"),
         ("x.glb", {"sway": True, "instances": True}, "do not move in the wind"),
-        ("x.obj", {"sway": True}, "sway is of .glb files"),
+        ("x.obj", {"sway": True}, "sway is of .glb or .gltf files"),
         ("x.stl", {"impostor": 128}, "of models with textures"),
         ("x.mtg", {"lods": 1}, "lods is of models, not of .mtg files"),
     ],

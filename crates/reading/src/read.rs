@@ -204,9 +204,8 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
     if asked.is_over() {
         return Reading::default();
     }
-    // Leaflets of one leaf and petals of one flower may stand apart.
-    let is_apart = |p: &structure::readers::Proposal| matches!(p.kind, Kind::Leaf | Kind::Flower);
-    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(is_apart) {
+    let leaflets = |p: &structure::readers::Proposal| p.kind == Kind::Leaf;
+    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(leaflets) {
         let first = First::of(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);

@@ -267,11 +267,14 @@ fn circles(uses: &Uses) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
 
     fn of(files: &[(&str, &str)]) -> Vec<String> {
-        let folder =
-            std::env::temp_dir().join(format!("burgeon-circles-{}-{}", std::process::id(), files.len()));
+        static MADE: AtomicUsize = AtomicUsize::new(0);
+        let number = MADE.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("burgeon-circles-{}-{number}", std::process::id()));
         for (name, text) in files {
             let path = folder.join(name);
             std::fs::create_dir_all(path.parent().expect("a folder")).expect("can be made");

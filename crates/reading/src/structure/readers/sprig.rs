@@ -27,7 +27,7 @@ struct SprigLimits {
 }
 
 const SPRIG: SprigLimits =
-    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, one_place: 0.2, likelihood: 1500.0 };
+    SprigLimits { whole: 0.9, alike: 0.12, stem: 0.4, below: 0.05, one_place: 0.3, likelihood: 1500.0 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let longest = scene.axes.iter().map(|a| polyline_length(&a.points)).fold(0.0, f64::max);
