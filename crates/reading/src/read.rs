@@ -527,7 +527,7 @@ fn sureness(ink: &Ink, classes: &[Classified]) -> f64 {
 /// explains the drawing no better than what was.
 fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     let total: f64 = scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE);
-    let group = |k: Kind| scores.iter().filter(|s| s.kind.is_like(k)).map(|s| s.score).sum::<f64>() / total;
+    let group = |k: Kind| share_of(scores, k) / total;
     // The model weighs no kind against another in a drawing of so many strokes.
     let is_weighed = scores.len() > 1;
     let own = if is_weighed { evidence.confidence() } else { evidence.share };

@@ -64,14 +64,13 @@ const CONIFER: ConiferLimits = ConiferLimits {
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
     // One outline, or tiers one over the other.
     let tiers: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > CONIFER.tier * largest).collect();
     let face = match tiers[..] {
         [one] => one.clone(),
         _ => scene.union(&tiers)?,
     };
-    if face.shape.area < CONIFER.whole * total || !is_crown(&face) {
+    if face.shape.area < CONIFER.whole * scene.enclosed() || !is_crown(&face) {
         return None;
     }
     let is_tier = |k: usize| tiers.iter().any(|t| core::ptr::eq(*t, &scene.faces[k]));

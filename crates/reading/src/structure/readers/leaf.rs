@@ -38,8 +38,7 @@ const LEAF: LeafLimits = LeafLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
-    let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > LEAF.whole * total)?;
+    let row = scene.main_face(LEAF.whole)?;
     let face = &scene.faces[row];
     let length = face.shape.length();
     if length_of(scene.lines.iter()) > LEAF.petiole * length {

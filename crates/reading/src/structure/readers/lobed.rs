@@ -40,8 +40,7 @@ const LOBED: LobedLimits = LobedLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
-    let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > LOBED.whole * total)?;
+    let row = scene.main_face(LOBED.whole)?;
     let face = &scene.faces[row];
     let shape = &face.shape;
     let ends = scene

@@ -148,6 +148,18 @@ impl Scene {
         ends.into_iter().filter(|&p| off(p) < LIMITS.touch).min_by(|a, b| off(*a).total_cmp(&off(*b)))
     }
 
+    /// The area of all faces together.
+    pub(crate) fn enclosed(&self) -> f64 {
+        self.faces.iter().map(|f| f.shape.area).sum()
+    }
+
+    /// The row of the face that covers more than a share of all that is enclosed. `share`: at least 0.5, so that there is one at
+    /// most.
+    pub(crate) fn main_face(&self, share: f64) -> Option<usize> {
+        let least = share * self.enclosed();
+        self.faces.iter().position(|f| f.shape.area > least)
+    }
+
     /// Several faces as one, if they hang together.
     pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
         self.picture.union(faces)
@@ -205,8 +217,7 @@ impl Scene {
                 None => other += face.shape.area,
             }
         }
-        let total: f64 = self.faces.iter().map(|f| f.shape.area).sum();
-        (other <= most_other * total).then_some(leaves)
+        (other <= most_other * self.enclosed()).then_some(leaves)
     }
 
     /// The highest face and all that hang together with it: their rows, and all of them as one.

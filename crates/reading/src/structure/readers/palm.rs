@@ -63,6 +63,13 @@ struct Trunk {
     sides: Vec<usize>,
 }
 
+impl Trunk {
+    /// Whether a frond of a length begins at its top, where it begins so far from the middle of that.
+    fn bears(&self, off: f64, length: f64) -> bool {
+        off - self.half_width < (PALM.near * length).max(LIMITS.touch)
+    }
+}
+
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let trunk = trunk_of_face(scene).or_else(|| trunk_of_sides(scene))?;
     let (mut parts, mut ways, mut other) = (Vec::new(), Vec::new(), 0.0);
@@ -81,9 +88,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
             parts.push(frond);
         }
     }
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
     if ways.len() < PALM.fronds
-        || other > PALM.other * total
+        || other > PALM.other * scene.enclosed()
         || widest_gap(ways.iter().copied()) > PALM.gap
         || !(ways.iter().any(|w| w.x > 0.0) && ways.iter().any(|w| w.x < 0.0))
     {
@@ -98,13 +104,11 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
 fn trunk_of_face(scene: &Scene) -> Option<Trunk> {
     let height = scene.high.y - scene.low.y;
     let stands = |face: &Face| {
-        let (low, high) = geom::bounds(&face.outline)?;
-        let is_trunk = face.shape.slenderness < PALM.slender
-            && high.y - low.y > PALM.high * height
-            && low.y < scene.low.y + PALM.foot * height;
-        is_trunk.then_some(())
+        geom::bounds(&face.outline).is_some_and(|(low, high)| {
+            high.y - low.y > PALM.high * height && low.y < scene.low.y + PALM.foot * height
+        })
     };
-    let face = (0..scene.faces.len()).find(|&k| stands(&scene.faces[k]).is_some())?;
+    let face = scene.faces.iter().position(|f| f.shape.slenderness < PALM.slender && stands(f))?;
     let shape = &scene.faces[face].shape;
     let top = if shape.ends[0].y > shape.ends[1].y { shape.ends[0] } else { shape.ends[1] };
     let half_width = 0.5 * shape.area / shape.length();
@@ -141,7 +145,7 @@ fn frond_root(face: &Face, trunk: &Trunk) -> Option<DVec2> {
     let far = face.outline.iter().map(|p| p.distance(root)).fold(0.0, f64::max);
     (face.shape.slenderness < PALM.narrow
         && face.shape.convexity > PALM.convex
-        && off - trunk.half_width < (PALM.near * length).max(LIMITS.touch)
+        && trunk.bears(off, length)
         && far > PALM.end_on * length)
         .then_some(root)
 }
@@ -158,7 +162,6 @@ fn frond_of_line(axis: &Axis, trunk: &Trunk) -> Option<Part> {
     if geom::perimeter(&geom::convex_hull(&line)) < PALM.one_way * (length + chord) {
         return None;
     }
-    let is_near = line[0].distance(trunk.top) - trunk.half_width < (PALM.near * length).max(LIMITS.touch);
-    let points = lens(&line, LENS * length).filter(|_| is_near)?;
+    let points = lens(&line, LENS * length).filter(|_| trunk.bears(line[0].distance(trunk.top), length))?;
     Some(Part { points, class: StrokeClass::Blade, root: Some(line[0]), strokes: vec![axis.stroke] })
 }

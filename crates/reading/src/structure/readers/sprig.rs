@@ -45,11 +45,10 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     // Slivers between leaf and stem are none.
     let large = leaves.iter().map(|(f, _)| area(f)).fold(0.0, f64::max);
     leaves.retain(|(f, _)| area(f) > SPRIG.alike * large);
-    let total: f64 = scene.faces.iter().map(area).sum();
     let own: f64 = leaves.iter().map(|(f, _)| area(f)).sum();
     let long = leaves.iter().map(|(f, _)| f.shape.length()).fold(0.0, f64::max);
     if leaves.len() < 2
-        || own < SPRIG.whole * total
+        || own < SPRIG.whole * scene.enclosed()
         || longest < SPRIG.stem * long
         || !leaves.iter().all(|(f, root)| is_leaf_from(f, *root))
     {

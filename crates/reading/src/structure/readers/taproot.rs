@@ -43,8 +43,7 @@ const TAPROOT: TaprootLimits = TaprootLimits {
 };
 
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
-    let total: f64 = scene.faces.iter().map(|f| f.shape.area).sum();
-    let row = (0..scene.faces.len()).find(|&k| scene.faces[k].shape.area > TAPROOT.whole * total)?;
+    let row = scene.main_face(TAPROOT.whole)?;
     let body = &scene.faces[row];
     if body.shape.convexity < TAPROOT.convex || body.shape.slenderness > TAPROOT.slender {
         return None;
