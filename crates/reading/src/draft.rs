@@ -38,6 +38,9 @@ pub(crate) const HALVES_GAPS: f64 = 0.2;
 /// Green is larger by more than this than red and blue, of 255: grey and what is nearly black differ by less.
 const GREEN: u8 = 15;
 
+/// Lines are wood where more than so many of those that branch off a branch come to one leaf or fruit.
+const TWIGS_PER_ORGAN: usize = 2;
+
 /// A thorn: root and tip, what bears it, its stroke.
 pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
 
@@ -525,7 +528,10 @@ impl<'a> Draft<'a> {
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
         let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
         let orders = self.forest.order.iter().copied().max().unwrap_or(0);
-        let lines = orders >= 2 && flowers.is_empty() && self.bodies.is_empty();
+        // The rachis of a compound leaf, and the stalks of a raceme, bear an organ each: they are no branches of wood.
+        let twigs = self.forest.order.iter().filter(|order| **order >= 2).count();
+        let is_bare = flowers.is_empty() && twigs > TWIGS_PER_ORGAN * (leaves.len() + fruits.len());
+        let lines = orders >= 2 && is_bare && self.bodies.is_empty();
         let bare = self.is_tree() && orders >= 1;
         let woody = crown || trunk || lines || bare;
         for axis in &mut self.forest.axes {

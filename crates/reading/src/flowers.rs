@@ -15,13 +15,14 @@ use ink::StrokeClass;
 
 use crate::blade::{Sheetlet, tip};
 use crate::body;
+use crate::coherence;
 use crate::contour::{neck, width_at};
 use crate::corolla::{Core, is_cup, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::Near;
 use crate::rings::Ring;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
-use crate::{BladeReading, DiscReading, Kind, OrganWord};
+use crate::{BladeReading, DiscReading, Kind, OrganWord, profile};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
@@ -325,6 +326,10 @@ pub(crate) fn gather(
     }
     rosettes(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     adopt(draft, usual, &mut flowers, &mut roots, &mut taken);
+    for i in coherence::dissolve(draft, &mut flowers, usual) {
+        roots[i] = draft.blades[i].root;
+    }
+    profile::gather(draft, &mut flowers, &mut roots, &mut taken);
     let roots: Vec<DVec2> =
         roots.iter().zip(&draft.blades).map(|(r, b)| r.unwrap_or_else(|| bearers.root_of(b))).collect();
     for f in &mut flowers {

@@ -4,8 +4,6 @@ use base::LiteMap;
 use glam::DVec2;
 use ink::{Classified, Source, StrokeClass};
 
-use crate::blade::nearest_on_ring;
-
 use super::LIMITS;
 use super::hidden::hidden_root;
 use super::readers::widest_gap;
@@ -94,11 +92,7 @@ impl Structure {
 /// second row touch those of the first.
 fn heads(sheet: &Sheet) -> Vec<Vec<usize>> {
     let outline = |k: usize| sheet.facts[k].outline.as_ref();
-    let touches = |a: usize, b: usize| {
-        let (Some(a), Some(b)) = (outline(a), outline(b)) else { return false };
-        let reach = 2.0 * LIMITS.junction;
-        a.points.iter().any(|&p| nearest_on_ring(&b.points, p).1 < reach)
-    };
+    let touches = |a: usize, b: usize| outline(a).zip(outline(b)).is_some_and(|(a, b)| a.touches(b));
     let mut found: Vec<Vec<usize>> = Vec::new();
     for disc in (0..sheet.facts.len()).filter(|&k| sheet.facts[k].form == Form::Ring) {
         let is_free = |k: usize| k != disc && sheet.facts[k].holder != Some(disc) && outline(k).is_some();
@@ -192,13 +186,54 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
     Some(if textured { StrokeClass::Fruit } else { StrokeClass::Blade })
 }
 
-/// What outlines alike are: small round ones are fruits or florets, others blades.
+/// Whether some outlines are seen whole, and most touch none that is unlike them: petals lie before and behind others.
+fn stand_alone(sheet: &Sheet, alike: &[usize]) -> bool {
+    let is_whole = |k: &&usize| sheet.facts[**k].form == Form::Ring;
+    let is_free = |k: &&usize| {
+        let Some(own) = &sheet.facts[**k].outline else { return false };
+        let others =
+            sheet.facts.iter().enumerate().filter(|(j, f)| !alike.contains(j) && f.holder != Some(**k));
+        !others.filter_map(|(_, f)| f.outline.as_ref()).any(|o| own.touches(o))
+    };
+    let (whole, free) = (alike.iter().filter(is_whole).count(), alike.iter().filter(is_free).count());
+    3 * whole >= alike.len() && 2 * free > alike.len()
+}
+
+/// Whether most outlines stand round an empty middle with those that they touch, as petals do; fruits of a bunch fill it.
+fn stand_in_rings(sheet: &Sheet, alike: &[usize]) -> bool {
+    let outlines: Vec<&Outline> = alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref()).collect();
+    let middles: Vec<DVec2> = outlines.iter().map(|o| geom::centroid(&o.points)).collect();
+    let mut group: Vec<usize> = (0..outlines.len()).collect();
+    for a in 0..outlines.len() {
+        for b in a + 1..outlines.len() {
+            if group[a] != group[b] && outlines[a].touches(outlines[b]) {
+                let (keep, give) = (group[a], group[b]);
+                group.iter_mut().filter(|g| **g == give).for_each(|g| *g = keep);
+            }
+        }
+    }
+    let in_ring = |k: &usize| {
+        let members: Vec<DVec2> =
+            (0..group.len()).filter(|&j| group[j] == group[*k]).map(|j| middles[j]).collect();
+        #[expect(clippy::cast_precision_loss, reason = "outlines")]
+        let count = members.len() as f64;
+        let centre = members.iter().sum::<DVec2>() / count;
+        let mean = members.iter().map(|m| m.distance(centre)).sum::<f64>() / count;
+        let nearest = members.iter().map(|m| m.distance(centre)).fold(f64::INFINITY, f64::min);
+        members.len() >= LIMITS.repeated && nearest > LIMITS.empty_middle * mean
+    };
+    2 * (0..group.len()).filter(in_ring).count() > group.len()
+}
+
+/// What outlines alike are: round ones that are small, or stand in no ring, are fruits or florets, others blades.
 fn class_of_repeated(sheet: &Sheet, alike: &[usize]) -> StrokeClass {
     let outlines = || alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref());
     let middle =
         |measure: fn(&Outline) -> f64| base::median(outlines().map(measure).collect()).unwrap_or(0.0);
-    let is_round = middle(|o| o.roundness) > LIMITS.round
-        && middle(|o| o.slenderness) > LIMITS.plump
-        && middle(|o| o.area) < LIMITS.small_area;
+    let (roundness, slenderness) = (middle(|o| o.roundness), middle(|o| o.slenderness));
+    let is_small =
+        roundness > LIMITS.round && slenderness > LIMITS.plump && middle(|o| o.area) < LIMITS.small_area;
+    let is_circle = roundness > LIMITS.circular && slenderness > LIMITS.as_wide_as_long;
+    let is_round = is_small || (is_circle && stand_alone(sheet, alike) && !stand_in_rings(sheet, alike));
     if is_round { StrokeClass::Fruit } else { StrokeClass::Blade }
 }

@@ -27,8 +27,9 @@ mod tubes;
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
 pub(crate) use compose::Composed;
 pub use readers::ARRANGEMENT;
+pub(crate) use readers::widest_gap;
 pub(crate) use score::score;
-pub(crate) use sheet::Sheet;
+pub(crate) use sheet::{Sheet, slenderness};
 pub(crate) use tubes::tubes;
 
 /// What separates the forms of strokes, and when structure decides. Lengths are in ink units (the drawing's diagonal is 1).
@@ -46,6 +47,8 @@ pub(crate) struct StructureLimits {
     pub(crate) closed: f64,
     /// An open stroke between two junctions encloses something if it leaves its chord by more than this share of the chord.
     pub(crate) bulge: f64,
+    /// It encloses nothing if so many outlines lie in it: it is a branch over what it bears.
+    pub(crate) spanned: usize,
     /// It bulges to one side: to the other side by less than this share of that.
     pub(crate) one_sided: f64,
     /// A stroke lies in an outline with more than this share of its points.
@@ -64,8 +67,14 @@ pub(crate) struct StructureLimits {
     pub(crate) round: f64,
     /// Repeated outlines are fruits only if they are plumper than this (slenderness).
     pub(crate) plump: f64,
-    /// Repeated round outlines larger than this share of the squared diagonal are petals or leaves.
+    /// Repeated round outlines smaller than this share of the squared diagonal are fruits or florets.
     pub(crate) small_area: f64,
+    /// Larger ones are fruits only if they are circles: rounder than this,
+    pub(crate) circular: f64,
+    /// as wide as long but for this share,
+    pub(crate) as_wide_as_long: f64,
+    /// and stand round no empty middle, as petals do: none is nearer to it than this share of their mean distance from it.
+    pub(crate) empty_middle: f64,
     /// A flower head has so many rays at least, and no wider angle than this between neighbours, radians.
     pub(crate) rays: usize,
     pub(crate) ray_gap: f64,
@@ -84,6 +93,7 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     junction: 0.0075,
     closed: 0.08,
     bulge: 0.3,
+    spanned: 3,
     one_sided: 0.35,
     inside: 0.85,
     smaller: 0.5,
@@ -94,6 +104,9 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     round: 0.85,
     plump: 0.72,
     small_area: 0.0015,
+    circular: 0.93,
+    as_wide_as_long: 0.86,
+    empty_middle: 0.6,
     rays: 7,
     ray_gap: 1.6,
     believed: 0.5,

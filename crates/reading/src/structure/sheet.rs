@@ -7,6 +7,7 @@ use ink::{Ink, InkStroke, StrokeMode};
 
 use super::LIMITS;
 use super::hidden::complete;
+use crate::blade::nearest_on_ring;
 use crate::near::Near;
 
 /// Points of a stroke that are looked at, where its share in an outline counts.
@@ -56,6 +57,14 @@ impl Outline {
             && (self.slenderness - other.slenderness).abs() < LIMITS.alike_slenderness
     }
 
+    /// Whether a point of it lies on the other one.
+    pub(crate) fn touches(&self, other: &Self) -> bool {
+        let reach = 2.0 * LIMITS.junction;
+        let is_near =
+            (self.low - reach).cmple(other.high).all() && (self.high + reach).cmpge(other.low).all();
+        is_near && self.points.iter().any(|&p| nearest_on_ring(&other.points, p).1 < reach)
+    }
+
     /// A line lies inside, or on the margin.
     fn holds(&self, line: &[DVec2]) -> bool {
         let (low, high) = (self.low - LIMITS.junction, self.high + LIMITS.junction);
@@ -100,7 +109,14 @@ impl Sheet {
         let mut near = Near::new(LIMITS.junction);
         ink.strokes.iter().enumerate().for_each(|(k, s)| near.add_line(k, &s.points));
         let mut facts: Vec<Facts> = ink.strokes.iter().enumerate().map(|(k, s)| alone(&near, k, s)).collect();
-        let holders: Vec<Option<usize>> = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
+        let mut holders: Vec<Option<usize>> = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
+        let spanning = spanning(&facts, &holders);
+        if !spanning.is_empty() {
+            for k in spanning {
+                (facts[k].form, facts[k].outline) = (Form::Line, None);
+            }
+            holders = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
+        }
         for (k, holder) in holders.into_iter().enumerate() {
             facts[k].holder = holder;
             if let Some(holder) = holder {
@@ -124,6 +140,13 @@ impl Sheet {
         let like = |f: &Facts| f.outline.as_ref().is_some_and(|o| own.is_like(o));
         (0..self.facts.len()).filter(|&j| like(&self.facts[j])).collect()
     }
+}
+
+/// Bays in which several outlines lie are no outlines: they are branches that span what hangs from them.
+fn spanning(facts: &[Facts], holders: &[Option<usize>]) -> Vec<usize> {
+    let held =
+        |k: usize| (0..facts.len()).filter(|&j| holders[j] == Some(k) && facts[j].form != Form::Line).count();
+    (0..facts.len()).filter(|&k| facts[k].form == Form::Bay && held(k) >= LIMITS.spanned).collect()
 }
 
 /// What a stroke is by itself and by what its ends lie on.

@@ -86,7 +86,12 @@ pub(crate) struct Plans {
     pub(crate) rows: Vec<Option<AxisPlan>>,
     /// For rows without length: what bears them instead.
     stand_in: Vec<Option<Attachment>>,
+    /// Rows that are the rachis of a compound leaf, or the petiole at whose end its leaflets stand.
+    rachis: Vec<bool>,
 }
+
+/// A compound leaf has so many leaflets at least.
+const FEWEST_LEAFLETS: usize = 3;
 
 impl Plans {
     /// Plans every axis of a reading. Never fails: lines without two different finite points are left out, and
@@ -97,6 +102,7 @@ impl Plans {
         let mut plans = Self {
             rows: vec![None; reading.axes.len()],
             stand_in: reading.axes.iter().map(|a| a.bearer).collect(),
+            rachis: rachises(reading),
         };
         for (row, slot) in plans.stand_in.iter_mut().enumerate() {
             *slot = slot.filter(|b| b.axis < row); // a bearer is always an earlier row
@@ -157,6 +163,20 @@ impl Plans {
         plans
     }
 
+    /// How the surface of the compound leaf rises towards the viewer where one of its leaflets stands, per unit of the drawing;
+    /// `None` where `bearer` is no part of a compound leaf.
+    ///
+    /// Leaflets lie in the plane of their rachis and of the direction across it, in which the drawing shows their full width.
+    pub(crate) fn leaflet_gradient(&self, bearer: Attachment) -> Option<DVec2> {
+        let (mut row, mut node) = self.locate(bearer)?;
+        if !self.rachis[row] {
+            let stalk = self.rows[row].as_ref().filter(|p| p.kind == AxisKind::Petiole)?;
+            (row, node) = stalk.bearer?;
+        }
+        let plan = self.rows[row].as_ref().filter(|_| self.rachis[row])?;
+        Some(plan.direction(node, LEAFLET_WINDOW) * plan.slope(node, LEAFLET_WINDOW))
+    }
+
     /// The row and node that bear something: the attachment's own, or what stands in for a line without length.
     pub(crate) fn locate(&self, bearer: Attachment) -> Option<(usize, usize)> {
         let a = self.resolve_in(bearer, |row| self.rows.get(row).is_some_and(Option::is_some))?;
@@ -171,6 +191,33 @@ impl Plans {
         }
         Some(Attachment { axis: a.axis, at: if a.at.is_finite() { a.at } else { 0.0 } })
     }
+}
+
+/// Over which length of a rachis the plane of its leaflets is taken, ink units.
+const LEAFLET_WINDOW: f64 = 0.05;
+
+/// Which axes bear the leaflets of one compound leaf: they are borne themselves, and bear nothing but leaves.
+fn rachises(reading: &Reading) -> Vec<bool> {
+    let count = reading.axes.len();
+    let mut leaves = vec![0_usize; count];
+    let mut others = vec![false; count];
+    // A petiolule leads from the rachis to a leaflet that does not touch it.
+    let is_stalk = |row: usize| reading.axes[row].kind == AxisKind::Petiole;
+    for leaf in &reading.leaves {
+        let Some(on) = leaf.bearer.map(|b| b.axis).filter(|&row| row < count) else { continue };
+        let stem = reading.axes[on].bearer.map(|b| b.axis).filter(|&row| is_stalk(on) && row < count);
+        leaves[on] += 1;
+        stem.into_iter().for_each(|row| leaves[row] += 1);
+    }
+    let axes = reading.axes.iter().enumerate().filter(|(row, _)| !is_stalk(*row)).map(|(_, a)| a.bearer);
+    let organs = reading.flowers.iter().map(|f| f.bearer);
+    let organs = organs.chain(reading.fruits.iter().map(|f| f.bearer));
+    for bearer in axes.chain(organs).flatten().filter(|b| b.axis < count) {
+        others[bearer.axis] = true;
+    }
+    (0..count)
+        .map(|row| reading.axes[row].bearer.is_some() && leaves[row] >= FEWEST_LEAFLETS && !others[row])
+        .collect()
 }
 
 /// What a key names, so that an axis and a leaf of one stroke differ.

@@ -20,6 +20,9 @@ const STEEPER: f64 = 0.78;
 const SIDEWAYS: f64 = 0.08;
 /// A petal that would become longer than this many times its drawn length is tilted instead.
 const STEEPEST: f64 = 1.7;
+/// A petal is longer than the longest that was drawn by no more than this factor; by so much of that it may rise in any case.
+const LONGER: f64 = 1.5;
+const LEAST_DEPTH: f64 = 0.8;
 /// Distance in depth of neighbouring petals, share of a petal's length: less would flicker.
 const APART: f64 = 0.015;
 
@@ -30,6 +33,8 @@ struct Corolla {
     fit: FlowerCone,
     /// Mean length of petals in the drawing.
     petal: f64,
+    /// Length of the longest petal in the drawing.
+    longest: f64,
     /// Mean distance of tips from the middle.
     reach: f64,
     /// Mean distance of roots from the middle.
@@ -113,6 +118,7 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     let n = outer.len().max(1) as f64;
     let reach = tips.iter().map(|t| t.distance(centre)).sum::<f64>() / n;
     let petal = outer.iter().map(|p| p.tip.distance(p.root) * s).sum::<f64>() / n;
+    let longest = outer.iter().map(|p| p.tip.distance(p.root) * s).fold(0.0, f64::max);
     let disc = flower.disc.map_or(0.0, |d| if d.radius.is_finite() { d.radius.abs() * s } else { 0.0 });
     let petal = if petal > 0.0 { petal } else { disc.max(0.02 * s) };
     let sound = |f: &FlowerCone| {
@@ -134,6 +140,7 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
         centre,
         fit,
         petal,
+        longest: longest.max(petal),
         reach: reach.max(1e-12),
         rim: 0.0,
         facing: if fit.cone.axis.z < 0.0 { -1.0 } else { 1.0 },
@@ -247,8 +254,9 @@ impl Organs<'_, '_> {
         let drawn = root.distance(tip).max(1e-12);
         let depth = |p: &DVec2| cone.depth(place(*p), sheet) - root3.z;
         let deepest = petal.outline.iter().map(|p| depth(p).abs()).fold(0.0, f64::max);
-        // A petal may point at the viewer, but not be much longer than its neighbours are.
-        let limit = (1.5 * STEEPEST * drawn).max(1.25 * corolla.slant().min(2.5 * corolla.petal));
+        // A petal may point at the viewer, but not be much longer than the longest that was drawn.
+        let longest = LONGER * corolla.longest;
+        let limit = (longest * longest - drawn * drawn).max(0.0).sqrt().max(LEAST_DEPTH * corolla.longest);
         let sound = root3.is_finite() && deepest.is_finite() && deepest <= limit;
         let origin_z = if root3.is_finite() { root3.z } else { cone.apex.z };
         let origin_z = origin_z.clamp(cone.apex.z - 3.0 * corolla.petal, cone.apex.z + 3.0 * corolla.petal);

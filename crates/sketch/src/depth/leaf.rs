@@ -16,6 +16,8 @@ const TILT_ALONG: f64 = 35.0 * (ops::PI / 180.0);
 const TILT_ACROSS: f64 = 25.0 * (ops::PI / 180.0);
 /// Least slope along it, 8 degrees: or the plant is a card when seen from the side.
 const TILT_LEAST: f64 = 8.0 * (ops::PI / 180.0);
+/// Leaflets leave the plane of their leaf by up to 6 degrees.
+const UNEVEN: f64 = 6.0 * (ops::PI / 180.0);
 /// The disturbance of He and Cheng (2021), section 5.3: uniform within 30 degrees.
 const DISTURBED: f64 = 30.0 * (ops::PI / 180.0);
 
@@ -96,7 +98,7 @@ pub(crate) fn leaf_shape(
     let relief = &scene.spec.relief;
     let mut curl = seed.stream(Draw::Curl);
     let drawn = scene.spec.leaf_depth == LeafDepth::Drawn;
-    let lift = if drawn { Lift::Tilt { slope: tilt(scene, leaf, key) } } else { Lift::Flat };
+    let lift = if drawn { Lift::Tilt { slope: tilt(scene, leaf, &local, key) } } else { Lift::Flat };
     let relief = Relief {
         bend_a: sane(relief.leaf_bend_a, 1.0) * around_one(curl.uniform(), 0.4),
         bend_b: sane(relief.leaf_bend_b, 1.0) * around_one(curl.uniform(), 0.4),
@@ -116,9 +118,13 @@ pub(crate) fn leaf_shape(
     Some((plant.add_shape(Shape::Blade(blade)), local))
 }
 
-/// Towards the viewer or away from him: as the drawing says, or by chance where it does not.
-fn tilt(scene: &Scene<'_>, leaf: &BladeReading, key: u64) -> DVec2 {
+/// Towards the viewer or away from him: with its compound leaf, as the drawing says, or by chance where it does not.
+fn tilt(scene: &Scene<'_>, leaf: &BladeReading, local: &LocalBlade, key: u64) -> DVec2 {
     let mut s = scene.seed.child(key).stream(Draw::LeafAngle);
+    if let Some(rise) = leaf.bearer.and_then(|b| scene.plans.leaflet_gradient(b)) {
+        let unevenness = s.range(-UNEVEN, UNEVEN);
+        return DVec2::new(rise.dot(local.right), rise.dot(local.along) + ops::tan(unevenness));
+    }
     let sign = if s.chance(0.5) { 1.0 } else { -1.0 };
     let by_chance = sign * s.range(TILT_LEAST, TILT_ALONG);
     let along = leaf.front.map_or(by_chance, |front| sane(front, 1.0).clamp(-1.0, 1.0) * TILT_ALONG);

@@ -1,0 +1,180 @@
+//! Flowers in profile: petals that overlap one another at the end of a stem.
+//!
+//! Their roots are hidden behind the petals in front, so that no cluster of roots shows (He and Cheng 2021, section 4.1). But
+//! leaves seldom cover one another at the tip of a stem, and petals of a cup always do.
+
+use glam::DVec2;
+
+use crate::blade::Sheetlet;
+use crate::coherence::stands_along;
+use crate::draft::Draft;
+use crate::flowers::FlowerDraft;
+use crate::structure::{slenderness, widest_gap};
+use crate::thresholds::FEWEST_PETALS;
+
+/// When blades at the end of a stem are a flower in profile.
+struct ProfileLimits {
+    /// Petals come this near to the end of their stem, as a share of their size,
+    at_tip: f64,
+    /// lie beyond it by more than this share,
+    beyond: f64,
+    /// and leave more than this angle free, radians, where the stem comes from:
+    behind: f64,
+    /// few of them more than this, as the leaflets of a leaf of three spread as far as the petals of a wide cup;
+    behind_few: f64,
+    few: usize,
+    /// They are wider than this share of their length: narrow leaves cover one another at the tips of grasses.
+    slenderness: f64,
+    /// The stem is longer than this share of the largest, and ends at nothing else within this distance.
+    stem: f64,
+    free: f64,
+    /// So many of them at least go on behind others.
+    fewest_hidden: usize,
+    /// Petals that are farther back touch one in front of them within this share of its size, and lie within so many times the
+    /// size of the largest of the end of the stem.
+    touching: f64,
+    reach: f64,
+    /// The way of a stem at its end is that of its last part of this length, ink units.
+    heading: f64,
+    /// Drawings of more blades or lines are no single flowers: nothing is looked for.
+    most_blades: usize,
+    most_lines: usize,
+    /// Points of an outline that are compared with another one.
+    places: usize,
+}
+
+const LIMITS: ProfileLimits = ProfileLimits {
+    at_tip: 0.3,
+    beyond: 0.15,
+    behind: 3.0,
+    behind_few: 4.5,
+    few: 4,
+    slenderness: 0.33,
+    stem: 0.5,
+    free: 0.02,
+    fewest_hidden: 2,
+    touching: 0.06,
+    reach: 1.1,
+    heading: 0.04,
+    most_blades: 400,
+    most_lines: 400,
+    places: 32,
+};
+
+/// The end of a stem and the way on which it ends.
+struct Tip {
+    at: DVec2,
+    way: DVec2,
+    /// The line of the draft, none of a stem that was drawn as an outline.
+    line: Option<usize>,
+    /// How long the stem is.
+    length: f64,
+}
+
+/// Gathers petals in profile that no flower has yet; gives each its root. Cost: ends of lines times blades, of at most some
+/// hundred.
+pub(crate) fn gather(
+    draft: &mut Draft<'_>,
+    flowers: &mut Vec<FlowerDraft>,
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    if draft.hidden.is_empty()
+        || draft.blades.len() > LIMITS.most_blades
+        || draft.lines.len() > LIMITS.most_lines
+    {
+        return;
+    }
+    for tip in tips(draft) {
+        let petals = petals_at(draft, &tip, taken);
+        if !is_flower(draft, &tip, &petals) {
+            continue;
+        }
+        for &i in &petals {
+            taken[i] = true;
+            let (root, away) = draft.blades[i].nearest(tip.at);
+            let is_apart = away > LIMITS.at_tip * draft.blades[i].size;
+            roots[i] = Some(if is_apart { draft.blades[i].claw(root, tip.at) } else { root });
+        }
+        flowers.push(FlowerDraft { centre: tip.at, petals, ..FlowerDraft::default() });
+    }
+}
+
+/// Whether blades at the end of a stem are a flower, not leaves.
+fn is_flower(draft: &Draft<'_>, tip: &Tip, petals: &[usize]) -> bool {
+    let blade = |i: &usize| &draft.blades[*i];
+    let hidden = petals.iter().filter(|i| draft.hidden.contains_key(&blade(i).stroke)).count();
+    if petals.len() < FEWEST_PETALS || hidden < LIMITS.fewest_hidden {
+        return false;
+    }
+    let gap = widest_gap(petals.iter().map(|i| blade(i).middle - tip.at));
+    let behind = if petals.len() > LIMITS.few { LIMITS.behind } else { LIMITS.behind_few };
+    let widths = petals.iter().map(|i| slenderness(&blade(i).outline)).collect();
+    let largest = petals.iter().map(|i| blade(i).size).fold(0.0, f64::max);
+    gap > behind
+        && base::median(widths).is_some_and(|s| s > LIMITS.slenderness)
+        && tip.length > LIMITS.stem * largest
+        && !stands_along(draft, tip.at, largest)
+        && is_free(draft, tip, largest)
+}
+
+/// Whether no other stem ends or passes at the end of this one.
+fn is_free(draft: &Draft<'_>, tip: &Tip, largest: f64) -> bool {
+    let others = draft.lines.iter().enumerate().filter(|(row, _)| Some(*row) != tip.line);
+    let mut stems = others.filter(|(_, l)| geom::polyline_length(&l.points) > LIMITS.stem * largest);
+    !stems.any(|(_, l)| geom::distance_to_polyline(&l.points, tip.at).is_some_and(|d| d < LIMITS.free))
+}
+
+/// Both ends of all lines, and the tops of outlined stems: which of them bears a flower shows by what lies beyond it.
+fn tips(draft: &Draft<'_>) -> Vec<Tip> {
+    let tip = |points: &[DVec2], line: Option<usize>, is_last: bool| {
+        let length = geom::polyline_length(points);
+        let (at, before) = if is_last {
+            (points[points.len() - 1], geom::point_at(points, (length - LIMITS.heading).max(0.0))?)
+        } else {
+            (points[0], geom::point_at(points, LIMITS.heading.min(length))?)
+        };
+        Some(Tip { at, way: (at - before).try_normalize()?, line, length })
+    };
+    let lines = draft.lines.iter().enumerate();
+    let of_lines = lines.flat_map(|(row, l)| [true, false].map(|is_last| tip(&l.points, Some(row), is_last)));
+    let of_bodies = draft.bodies.iter().map(|&row| tip(&draft.forest.axes[row].points, None, true));
+    of_lines.chain(of_bodies).flatten().collect()
+}
+
+/// Free blades at the end of a stem and beyond it, and those behind them.
+fn petals_at(draft: &Draft<'_>, tip: &Tip, taken: &[bool]) -> Vec<usize> {
+    let is_beyond = |b: &Sheetlet| (b.middle - tip.at).dot(tip.way) > LIMITS.beyond * b.size;
+    let mut petals: Vec<usize> = (0..draft.blades.len())
+        .filter(|&i| {
+            let blade = &draft.blades[i];
+            !taken[i] && is_beyond(blade) && blade.nearest(tip.at).1 < LIMITS.at_tip * blade.size
+        })
+        .collect();
+    let largest = petals.iter().map(|&i| draft.blades[i].size).fold(0.0, f64::max);
+    let mut k = 0;
+    while let Some(&front) = petals.get(k) {
+        k += 1;
+        for i in 0..draft.blades.len() {
+            let blade = &draft.blades[i];
+            let is_near = blade.middle.distance(tip.at) < LIMITS.reach * largest;
+            let is_hidden = draft.hidden.contains_key(&blade.stroke);
+            if !taken[i]
+                && is_hidden
+                && is_near
+                && is_beyond(blade)
+                && !petals.contains(&i)
+                && touches(blade, &draft.blades[front])
+            {
+                petals.push(i);
+            }
+        }
+    }
+    petals
+}
+
+fn touches(a: &Sheetlet, b: &Sheetlet) -> bool {
+    let reach = LIMITS.touching * b.size;
+    let stride = a.outline.len().div_ceil(LIMITS.places).max(1);
+    a.outline.iter().step_by(stride).any(|&p| b.nearest(p).1 < reach)
+}
