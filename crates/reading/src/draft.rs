@@ -24,6 +24,10 @@ use crate::{
 pub(crate) const MOST_REGIONS: usize = 200;
 /// A pot begins within this share of the height from the foot of the drawing.
 const FOOT: f64 = 0.25;
+/// Less than this share of what is no pot lies lower than the middle of a pot.
+const BESIDE_A_POT: f64 = 0.2;
+/// A pot is at most so many times as tall as wide.
+const TALLEST_POT: f64 = 2.0;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
 /// A thin outline is a petal seen from its edge where two others begin nearer than this share of their size.
@@ -228,6 +232,7 @@ impl<'a> Draft<'a> {
     }
 
     pub(crate) fn find_soil(&mut self) {
+        self.doubt_pots();
         for class in [StrokeClass::Pot, StrokeClass::Ground] {
             for k in self.of_class(class) {
                 self.soil.push(self.ink.strokes[k].points.clone());
@@ -570,7 +575,8 @@ impl<'a> Draft<'a> {
     }
 
     /// What it stands in: strokes of pots above one another are of one pot, and its foot is the foot of the drawing.
-    fn pots(&mut self) -> Vec<PotReading> {
+    /// Strokes of pots that stand at the foot of the drawing, those of each pot together: low and high corner, rows.
+    fn pot_groups(&self) -> Vec<(DVec2, DVec2, Vec<usize>)> {
         let heights = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
         let (floor, top) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
         let mut found: Vec<(DVec2, DVec2, Vec<usize>)> = Vec::new();
@@ -584,6 +590,34 @@ impl<'a> Draft<'a> {
             found.push(one);
         }
         found.retain(|(low, ..)| low.y < floor + FOOT * (top - floor));
+        found
+    }
+
+    /// Strokes that the classifier alone takes for pots are lines where no pot can be: much of the plant lies as low as they do,
+    /// or they are no pot's shape.
+    fn doubt_pots(&mut self) {
+        let said = self.of_class(StrokeClass::Pot);
+        if said.is_empty() || said.iter().any(|&k| self.settled[k] || self.said[k].source == Source::User) {
+            return;
+        }
+        let points: Vec<DVec2> = (0..self.class.len())
+            .filter(|&k| self.class[k] != StrokeClass::Ground && !said.contains(&k))
+            .flat_map(|k| self.ink.strokes[k].points.iter().copied())
+            .collect();
+        #[expect(clippy::cast_precision_loss, reason = "points")]
+        let is_pot = |(low, high, _): &(DVec2, DVec2, Vec<usize>)| {
+            let size = *high - *low;
+            let middle = low.y.midpoint(high.y);
+            let beside = points.iter().filter(|p| p.y < middle).count() as f64;
+            beside < BESIDE_A_POT * points.len() as f64 && size.y < TALLEST_POT * size.x
+        };
+        let pots: Vec<usize> =
+            self.pot_groups().into_iter().filter(is_pot).flat_map(|(.., rows)| rows).collect();
+        said.into_iter().filter(|k| !pots.contains(k)).for_each(|k| self.class[k] = StrokeClass::Axis);
+    }
+
+    fn pots(&mut self) -> Vec<PotReading> {
+        let found = self.pot_groups();
         found
             .into_iter()
             .filter_map(|(.., rows)| {
