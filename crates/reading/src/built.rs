@@ -37,7 +37,9 @@ impl Kind {
     /// assert_eq!(Kind::from_word("tree"), Some(Kind::Tree));
     /// ```
     pub fn of(reading: &Reading) -> Self {
-        let petals = |f: &crate::FlowerReading| f.petals.len() >= FEWEST_PETALS;
+        // A bell or tube is one outline.
+        let is_bell = |f: &crate::FlowerReading| f.petals.len() == 1 && f.disc.is_none();
+        let petals = |f: &crate::FlowerReading| f.petals.len() >= FEWEST_PETALS || is_bell(f);
         let flowers = reading.flowers.iter().filter(|f| petals(f)).count();
         let petal_area: f64 =
             reading.flowers.iter().flat_map(|f| &f.petals).map(|p| signed_area(&p.outline)).sum();

@@ -332,6 +332,7 @@ pub(crate) fn gather(
     profile::gather(draft, &mut flowers, &mut roots, &mut taken);
     let roots: Vec<DVec2> =
         roots.iter().zip(&draft.blades).map(|(r, b)| r.unwrap_or_else(|| bearers.root_of(b))).collect();
+    profile::bells(draft, &mut flowers, &roots, &taken);
     for f in &mut flowers {
         if f.disc.is_none() && !f.petals.is_empty() {
             f.centre = mean(f.petals.iter().map(|&i| roots[i]));

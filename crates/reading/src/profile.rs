@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use crate::blade::Sheetlet;
 use crate::coherence::stands_along;
+use crate::contour::width_at;
 use crate::draft::Draft;
 use crate::flowers::FlowerDraft;
 use crate::structure::{slenderness, widest_gap};
@@ -60,6 +61,25 @@ const LIMITS: ProfileLimits = ProfileLimits {
     most_lines: 400,
     places: 32,
 };
+
+/// When an outline is a bell or a tube: a corolla of petals that are grown together, from the side.
+struct BellLimits {
+    /// Where a leaf narrows to its tip a bell is open: at this share of its length it has at least that share of its greatest
+    /// width (an ellipse has 0.6 there),
+    mouth: [f64; 2],
+    /// and it narrows to its base less than a fan does.
+    base: [f64; 2],
+    /// It is at least so many times as long as wide.
+    long: f64,
+    /// So many that are alike are flowers, and this share of all that are alike has the form.
+    fewest: usize,
+    share: f64,
+    /// Outlines are alike if neither has more than this many times the length of the other.
+    alike: f64,
+}
+
+const BELLS: BellLimits =
+    BellLimits { mouth: [0.9, 0.75], base: [0.25, 0.4], long: 0.9, fewest: 3, share: 0.6, alike: 1.8 };
 
 /// The end of a stem and the way on which it ends.
 struct Tip {
@@ -177,4 +197,46 @@ fn touches(a: &Sheetlet, b: &Sheetlet) -> bool {
     let reach = LIMITS.touching * b.size;
     let stride = a.outline.len().div_ceil(LIMITS.places).max(1);
     a.outline.iter().step_by(stride).any(|&p| b.nearest(p).1 < reach)
+}
+
+/// Makes a flower of each outline that is a bell, where several are alike. `roots`: where blades are attached.
+pub(crate) fn bells(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, roots: &[DVec2], taken: &[bool]) {
+    if draft.blades.len() > LIMITS.most_blades {
+        return;
+    }
+    let is_petal = |i: usize| flowers.iter().any(|f| f.petals.contains(&i));
+    let free: Vec<usize> = (0..draft.blades.len()).filter(|&i| !taken[i] && !is_petal(i)).collect();
+    let is_bell: Vec<bool> = free.iter().map(|&i| is_bell(&draft.blades[i], roots[i])).collect();
+    let mut found = Vec::new();
+    for (k, &i) in free.iter().enumerate().filter(|(k, _)| is_bell[*k]) {
+        let size = draft.blades[i].size;
+        let is_alike = |j: &&usize| {
+            let ratio = draft.blades[**j].size / size;
+            (1.0 / BELLS.alike..BELLS.alike).contains(&ratio)
+        };
+        let alike = free.iter().filter(is_alike).count();
+        let bells = free.iter().zip(&is_bell).filter(|(j, bell)| **bell && is_alike(j)).count();
+        #[expect(clippy::cast_precision_loss, reason = "blades")]
+        let is_usual = bells as f64 >= BELLS.share * alike as f64;
+        if bells >= BELLS.fewest && is_usual {
+            found.push(free[k]);
+        }
+    }
+    for i in found {
+        flowers.push(FlowerDraft { centre: roots[i], petals: vec![i], ..FlowerDraft::default() });
+    }
+}
+
+/// Whether a blade is wide at the end that is far from its root, and not narrow at the other.
+fn is_bell(blade: &Sheetlet, root: DVec2) -> bool {
+    let Some(along) = (blade.middle - root).try_normalize() else { return false };
+    let across = along.perp();
+    let local: Vec<DVec2> =
+        blade.outline.iter().map(|&p| DVec2::new((p - root).dot(across), (p - root).dot(along))).collect();
+    let Some((low, high)) = geom::bounds(&local) else { return false };
+    let (long, wide) = (high.y - low.y, high.x - low.x);
+    let width = |share: f64| width_at(&local, low.y + share * long);
+    long > BELLS.long * wide
+        && width(BELLS.mouth[0]) > BELLS.mouth[1] * wide
+        && width(BELLS.base[0]) > BELLS.base[1] * wide
 }

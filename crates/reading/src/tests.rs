@@ -1,3 +1,4 @@
+mod coherence;
 mod flowers;
 mod marks;
 mod taken;

@@ -3,12 +3,13 @@
 //! `FlowerReading -> cone (nested ones for inner whorls) -> petals, disc, stamens`
 
 use base::{Draw, ops};
-use geom::{Cone, ConeSheet, FlowerCone, flower_cone};
+use geom::{Cone, ConeSheet, FlowerCone, flower_cone, pca2};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
 use reading::{BladeReading, FlowerReading};
 
 use super::axes::{Part, key_of};
+use super::fruit::{Profile, profile};
 use super::leaf::LocalBlade;
 use super::scene::{Bearing, Scene, around_one, sane, usable};
 
@@ -23,6 +24,9 @@ const STEEPEST: f64 = 1.7;
 /// A petal is longer than the longest that was drawn by no more than this factor; by so much of that it may rise in any case.
 const LONGER: f64 = 1.5;
 const LEAST_DEPTH: f64 = 0.8;
+/// Radius of the inside of a bell, a share of that of its outside; and the largest slope of its axis out of the drawing.
+const INSIDE: f64 = 0.93;
+const LEAN: f64 = 0.35;
 /// Distance in depth of neighbouring petals, share of a petal's length: less would flicker.
 const APART: f64 = 0.015;
 
@@ -99,10 +103,21 @@ pub(crate) fn place_flower(
     let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key, color: None };
     let id = FlowerId::new(part.plant.flowers.len() - 1);
     let mut part = Organs { flower: id, ..part };
+    if let Some(petal) = bell(flower) {
+        part.bell(petal, at);
+        return;
+    }
     for (ring, &whorl) in whorls.iter().enumerate() {
         part.whorl(flower, &corolla, whorl, u32::try_from(ring).unwrap_or(u32::MAX));
     }
     part.centre(flower, &corolla);
+}
+
+/// The corolla of a flower that was drawn from the side in one outline: petals that are grown together.
+fn bell(flower: &FlowerReading) -> Option<&BladeReading> {
+    let [petal] = &flower.petals[..] else { return None };
+    let is_alone = flower.disc.is_none() && flower.stamens.is_empty();
+    (is_alone && usable(petal.root)).then_some(petal)
 }
 
 /// The cone of a flower seated at `at`, metres.
@@ -230,6 +245,26 @@ impl Organs<'_, '_> {
             let key = key_of(Part::Petal, petal.source, rank as u64, self.key);
             self.petal(flower, petal, corolla, (cone, sheet), lift, key);
         }
+    }
+
+    /// A bell or tube: the outline turned about its middle, open at the far end, with a wall.
+    fn bell(&mut self, petal: &BladeReading, at: DVec3) {
+        let outline: Vec<DVec2> = petal.outline.iter().copied().filter(|&p| usable(p)).collect();
+        let Some(all) = pca2(&outline) else { return };
+        let Some(along) = (all.centre - petal.root).try_normalize() else { return };
+        let Some(Profile { rings, low, aside, .. }) = profile(&outline, all.centre, along) else { return };
+        let s = self.scene.map.metres_per_ink;
+        // Without its far pole the body is open there; the inside follows the outside.
+        let outer = &rings[..rings.len() - 1];
+        let inner = outer.iter().rev().map(|r| DVec2::new(INSIDE * r.x, r.y));
+        let profile: Vec<DVec2> = outer.iter().copied().chain(inner).map(|r| r * s).collect();
+        let root = all.centre + along * low + along.perp() * aside;
+        let shift = self.scene.map.plant_from_ink(root) - self.scene.map.plant_from_ink(petal.root);
+        let key = key_of(Part::Petal, petal.source, 0, self.key);
+        let lean = self.scene.seed.child(key).stream(Draw::Curl).range(-LEAN, LEAN);
+        let frame = Frame::looking(at + shift.extend(0.0), along.extend(lean).normalize(), DVec3::Z);
+        self.color = petal.color;
+        self.push(OrganKind::Petal, Shape::Revolution { profile }, frame, key, petal.source);
     }
 
     fn petal(

@@ -146,19 +146,19 @@ fn stalk(outline: &[DVec2], bearer: Option<DVec2>) -> Option<DVec2> {
 
 /// An outline about an axis.
 #[derive(Debug)]
-struct Profile {
+pub(super) struct Profile {
     /// `(radius, way from the root)`, from pole to pole.
-    rings: Vec<DVec2>,
+    pub(super) rings: Vec<DVec2>,
     /// Where the lower pole is along the axis.
-    low: f64,
+    pub(super) low: f64,
     /// How far its middle lies to the left of the axis.
-    aside: f64,
+    pub(super) aside: f64,
     /// How far the middles of its rings lie from that one, a share of its half width.
     lopsided: f64,
 }
 
 /// Mean half width across `along` at rings from pole to pole.
-fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<Profile> {
+pub(super) fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<Profile> {
     let across = along.perp();
     let local: Vec<DVec2> =
         outline.iter().map(|&p| DVec2::new((p - centre).dot(across), (p - centre).dot(along))).collect();

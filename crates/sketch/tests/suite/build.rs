@@ -351,6 +351,62 @@ fn drawn_leaves_fan_out_in_depth() {
 }
 
 #[test]
+fn leaflets_lie_in_the_plane_of_their_rachis() {
+    let stem = axis(vec![v(0.3, 0.0), v(0.3, 0.8)], None, 0);
+    let rachis = axis(vec![v(0.3, 0.3), v(0.6, 0.6)], Some((0, 0.3)), 1);
+    let along = v(1.0, 1.0).normalize();
+    let mut reading = Reading { axes: vec![stem, rachis], ..Reading::default() };
+    for i in 0..8_u32 {
+        let at = 0.08 + 0.08 * f64::from(i / 2);
+        let side = if i % 2 == 0 { along.perp() } else { -along.perp() };
+        let root = v(0.3, 0.3) + along * at;
+        let mut leaf = blade(root, root + (side + along * 0.4) * 0.08, 0.4, 2 + i);
+        leaf.bearer = Some(Attachment { axis: 1, at });
+        reading.leaves.push(leaf);
+    }
+    for seed in 1..=8 {
+        let built =
+            build(&reading, &SketchSpec::default(), Seed::new(seed), &Run::plain(), &mut Report::default());
+        let built = built.expect("not cancelled");
+        let rachis = built.plant.axis_points(AxisId::new(1));
+        let (foot, end) = (rachis[0], rachis[rachis.len() - 1]);
+        assert!((end.z - foot.z).abs() > 0.01, "seed {seed}: it leaves the plane of the drawing");
+        let way = (end - foot).normalize();
+        // The plane of the leaf: the rachis, and the direction across it in the drawing.
+        let normal = way.cross(along.perp().extend(0.0)).normalize();
+        for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {
+            let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+            let Lift::Tilt { slope } = b.lift else { panic!("tilted") };
+            let tip = *b.midrib.last().expect("tip");
+            let lifted = o.frame.place(tip.extend(slope.dot(tip)), 1.0) - o.frame.origin;
+            let off = lifted.normalize().dot(normal).abs();
+            assert!(off < 0.12, "seed {seed}: {off} out of the plane");
+        }
+    }
+}
+
+#[test]
+fn a_flower_of_one_petal_is_a_bell_with_a_wall_and_an_open_end() {
+    let mut bell = blade(v(0.3, 0.5), v(0.3, 0.4), 0.8, 1);
+    bell.outline = vec![v(0.3, 0.5), v(0.27, 0.48), v(0.25, 0.4), v(0.35, 0.4), v(0.33, 0.48)];
+    let stem = axis(vec![v(0.3, 0.0), v(0.31, 0.3), v(0.3, 0.5)], None, 0);
+    let bearer = Some(Attachment { axis: 0, at: 0.5 });
+    let flower = FlowerReading { centre: bell.root, petals: vec![bell], disc: None, stamens: vec![], bearer };
+    let reading = Reading { axes: vec![stem], flowers: vec![flower], ..Reading::default() };
+    let built = made(&reading, &SketchSpec::default());
+    let petals: Vec<_> = built.plant.organs.iter().filter(|o| o.kind == OrganKind::Petal).collect();
+    assert_eq!((petals.len(), built.plant.flowers.len()), (1, 1));
+    let Shape::Revolution { profile } = &built.plant.shapes[petals[0].shape.index()] else {
+        panic!("a bell")
+    };
+    let widest = profile.iter().map(|p| p.x).fold(0.0, f64::max);
+    let long = profile.iter().map(|p| p.y).fold(0.0, f64::max);
+    let rim: Vec<f64> = profile.iter().filter(|p| p.y > 0.99 * long).map(|p| p.x).collect();
+    assert!(rim.len() == 2 && rim.iter().all(|r| *r > 0.7 * widest), "{profile:?}");
+    assert!(petals[0].frame.along.y < -0.9, "it hangs");
+}
+
+#[test]
 fn coloured_pens_colour_organs_and_one_pen_does_not() {
     let tints = |leaf: [u8; 3], petal: [u8; 3]| {
         let mut reading = herb();
