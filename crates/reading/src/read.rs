@@ -264,6 +264,8 @@ const BETTER: f64 = 2.0;
 /// this many times as well.
 const CLEAR: f64 = 0.55;
 const MUCH_BETTER: f64 = 5.0;
+/// A kind with a larger share than this is likelier than all others together (*geometry*).
+const LIKELY: f64 = 0.5;
 /// The code of the warning that a drawing shows no plant.
 pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
 /// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
@@ -333,9 +335,13 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none()
         && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| share_of(&scores, k))
     {
-        kind = Kind::of(&found.reading);
-        (reading, said, taken) = (found.reading, found.said, None);
-        (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
+        if let Some((tried, again, likely)) = as_likely(asked, (ink, classes), &found.reading, &scores) {
+            (reading, said, kind, taken) = (tried, again, likely, Some(likely));
+        } else {
+            kind = Kind::of(&found.reading);
+            (reading, said, taken) = (found.reading, found.said, None);
+            (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
+        }
     }
     if asked.is_over() {
         return Reading::default();
@@ -645,12 +651,40 @@ fn by_structure(
     };
     let sides: Vec<usize> = tubes.iter().flat_map(|t| t.sides).collect();
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
-    let margin = if by_user { 0.0 } else { structure::LIMITS.clearly_better };
+    let margin = match by_user {
+        true => 0.0,
+        // A solid with so many strokes inside is a glance at a drawing of many organs.
+        false if count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit) => {
+            -structure::LIMITS.solid_of_many
+        }
+        false => structure::LIMITS.clearly_better,
+    };
     (score(&tried, &[]) >= score(reading, &sides) + margin).then_some(Structural {
         reading: tried,
         said: report,
         says,
     })
+}
+
+/// The reading as the kind that is likelier than all others together, where that explains as much as one by structure does.
+fn as_likely(
+    asked: &Asked<'_>,
+    (ink, classes): (&Ink, &[Classified]),
+    structural: &Reading,
+    scores: &[Scored],
+) -> Option<(Reading, Report, Kind)> {
+    let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
+    // One solid explains little of what lies in it, whatever it scores.
+    if likely.is_like(Kind::Fruit) || likely.is_like(Kind::of(structural)) || !asked.is_free(ink, classes) {
+        return None;
+    }
+    let (tried, said) = taken_for(asked, likely, ink, classes);
+    let sheet = Sheet::new(ink);
+    let score = |r: &Reading| structure::score(ink, &sheet, r, &[]);
+    // Crowns that became leaves explain as much, and less well.
+    let keeps_crowns = structural.regions.is_empty() || !tried.regions.is_empty();
+    let is_as_good = is_built(likely, &tried) && keeps_crowns && score(&tried) >= score(structural);
+    is_as_good.then_some((tried, said, likely))
 }
 
 /// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure that is; of the kind that was

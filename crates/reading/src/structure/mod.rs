@@ -82,6 +82,9 @@ pub(crate) struct StructureLimits {
     pub(crate) believed: f64,
     /// What the share of the kind of plant (0 to 1) adds to the score of a reading of that kind.
     pub(crate) weight_of_kind: f64,
+    /// A drawing of so many strokes is of many organs. Where it was read as one solid, a structural reading may explain this much less.
+    pub(crate) many_strokes: usize,
+    pub(crate) solid_of_many: f64,
     /// The structural reading replaces another one only if its score is better by more than this.
     pub(crate) clearly_better: f64,
 }
@@ -111,6 +114,8 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     ray_gap: 1.6,
     believed: 0.5,
     weight_of_kind: 0.02,
+    many_strokes: 15,
+    solid_of_many: 0.05,
     clearly_better: 0.02,
 };
 
