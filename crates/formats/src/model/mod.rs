@@ -37,6 +37,7 @@ pub(crate) use glb_write::write_container;
 pub use glb_write::{
     Level, Morph, write_glb, write_glb_morph, write_glb_rigged, write_glb_scene, write_glb_with,
 };
+pub(crate) use gltf_text::encoded;
 pub use named::decode_uri;
 pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};

@@ -8,7 +8,7 @@ use mesh::Bounds;
 use serde_json::{Value, json};
 
 use crate::error::WriteError;
-use crate::model::{BesideFile, ModelFiles};
+use crate::model::{BesideFile, ModelFiles, decode_uri, encoded};
 
 /// What sixteen bits count to: positions of packed meshes are normalised.
 const MOST: f64 = 65_535.0;
@@ -118,8 +118,8 @@ pub fn share_pictures(mut files: ModelFiles, stem: &str) -> Result<ModelFiles, W
         let ending = file.name.rsplit('.').next().unwrap_or("png").to_owned();
         let name = format!("{stem}-{hex}.{ending}");
         for image in root["images"].as_array_mut().into_iter().flatten() {
-            if image["uri"] == file.name.as_str() {
-                *image = json!({ "uri": name, "mimeType": image["mimeType"] });
+            if image["uri"].as_str().is_some_and(|uri| decode_uri(uri).as_ref() == Some(&file.name)) {
+                *image = json!({ "uri": encoded(&name), "mimeType": image["mimeType"] });
             }
         }
         if !beside.iter().any(|f| f.name == name) {
