@@ -112,14 +112,15 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     if let Some(id) = args.tile {
         let tile = plan.tiling.find(id).ok_or_else(|| no_such_tile(&plan, id))?;
         let models = machine.with_progress("models", |p| {
-            Models::make(&plan, Some(tile), args.usd, &mut folder, &machine, p)
+            Models::make(&plan, Some(tile), args.usd.then(|| one_level(args)), &mut folder, &machine, p)
         })?;
         let writer = Writer { plan: &plan, models: &models, machine: &machine };
         machine.with_progress("tiles", |p| writer.tiles(std::slice::from_ref(tile), &mut folder, p))?;
         tally.tiles = 1;
     } else {
-        let models = machine
-            .with_progress("models", |p| Models::make(&plan, None, args.usd, &mut folder, &machine, p))?;
+        let models = machine.with_progress("models", |p| {
+            Models::make(&plan, None, args.usd.then(|| one_level(args)), &mut folder, &machine, p)
+        })?;
         let writer = Writer { plan: &plan, models: &models, machine: &machine };
         machine.with_progress("tiles", |p| writer.tiles(plan.tiling.tiles(), &mut folder, p))?;
         last = machine.with_progress("tileset", |_| writer.whole(args, &folder, &mut outputs))?;
@@ -181,6 +182,13 @@ fn check_used(args: &ForestArgs) -> Outcome {
         )));
     }
     Ok(())
+}
+
+/// The level of the files that hold all trees, among those of the tileset.
+fn one_level(args: &ForestArgs) -> u32 {
+    let surface = &args.surface;
+    let level = args.level.unwrap_or((surface.finest + 1).min(surface.lods));
+    level.saturating_sub(surface.finest)
 }
 
 fn plan(args: &ForestArgs, stand: Stand, machine: &Machine, told: &mut Report) -> Outcome<Plan> {

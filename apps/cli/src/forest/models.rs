@@ -30,11 +30,11 @@ pub(super) struct Models {
 }
 
 impl Models {
-    /// Makes those that a tile needs, or all; what an earlier run wrote stays.
+    /// Makes those that a tile needs, or all; what an earlier run wrote stays. `usd`: the level that USD names, if it is wanted.
     pub(super) fn make(
         plan: &Plan,
         tile: Option<&StandTile>,
-        usd: bool,
+        usd: Option<u32>,
         folder: &mut Folder,
         machine: &Machine,
         progress: &Progress,
@@ -57,7 +57,7 @@ impl Models {
         for (done, &variant) in variants.iter().enumerate() {
             machine.cancel.check()?;
             progress.reached(done);
-            let mut documents = levels.iter().map(|&l| kept(plan, (variant, l), usd, folder));
+            let mut documents = levels.iter().map(|&l| kept(plan, (variant, l), usd == Some(l), folder));
             let documents: Option<Vec<Vec<u8>>> = documents.by_ref().collect();
             let documents = match documents {
                 Some(documents) => documents,
@@ -130,7 +130,7 @@ fn grown(
     plan: &Plan,
     variant: u32,
     levels: &[u32],
-    usd: bool,
+    usd: Option<u32>,
     folder: &mut Folder,
     machine: &Machine,
 ) -> Outcome<Vec<Vec<u8>>> {
@@ -148,7 +148,7 @@ fn grown(
             ))
         })?;
         documents.push(write_model(plan, (variant, level), model, folder)?);
-        if usd {
+        if usd == Some(level) {
             let name = stem(plan, variant, level);
             let files = usd_files(model, &name, &ExportSpec::default()).map_err(|e| failed_to_write(&e))?;
             for (name, bytes) in files.textures {

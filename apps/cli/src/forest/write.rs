@@ -100,9 +100,7 @@ impl Writer<'_> {
         if !args.glb && !args.usd {
             return Ok(last);
         }
-        let level = args
-            .level
-            .map_or(1.min(self.plan.look.lods - self.plan.look.finest), |l| l - self.plan.look.finest);
+        let level = super::one_level(args);
         let count = u32::try_from(self.plan.stand.trees.len()).unwrap_or(u32::MAX);
         let shown = self.shown(0..count, 1.0);
         if args.glb {

@@ -17,6 +17,10 @@ const STEM_M: f64 = 4.0;
 const STEM_STEPS: usize = 80;
 /// Breast height, metres.
 const BREAST_M: f64 = 1.3;
+/// Views along a side of an atlas, and the height in pixels for which the first coarser level is made; each further one is for half
+/// of it.
+const VIEWS: u32 = 8;
+const PIXELS: u32 = 192;
 /// How much thinner or thicker than it grew the stem of a variant may be made.
 const THINNEST: f64 = 0.4;
 const THICKEST: f64 = 2.5;
@@ -350,11 +354,19 @@ impl Nursery {
             models.push(model.map_err(|e| failed(e.into()))?);
         }
         if let Some(size) = look.impostor {
-            // Of the whole plant, whatever the finest level is.
-            let whole = (look.finest > 0).then(|| mesh_plant(&plant, (&spec, skin_seed), &options, 0, run));
-            let whole = whole.transpose().map_err(|e| failed(e.into()))?;
-            let of = whole.as_ref().or(models.first());
-            if let Some(far) = of.map(|m| render::impostor(m, size, run)).transpose()?.flatten() {
+            // Of the level that is made for pictures of the size of its views: finer ones look the same and take as much longer.
+            let level =
+                (1..=look.lods).rev().find(|l| PIXELS >> (l - 1) >= size / VIEWS).unwrap_or(look.lods.min(1));
+            let own = models.get(level.wrapping_sub(look.finest) as usize);
+            let made = if own.is_some() {
+                None
+            } else {
+                let made = mesh_plant(&plant, (&spec, skin_seed), &options, level, run);
+                Some(made.map_err(|e| failed(e.into()))?)
+            };
+            if let Some(of) = own.or(made.as_ref())
+                && let Some(far) = render::impostor(of, size, run)?
+            {
                 models.push(far);
             }
         }
