@@ -12,7 +12,7 @@ pub const BREAST_M: f64 = 1.3;
 /// Half the width of an interval that holds 95 % of a normal distribution, in its deviations.
 const DEVIATIONS_95: f64 = 1.96;
 /// The exponent of the growth curve of the diameter; a little above 1: growth is slow for the first years alone.
-const CURVE: f64 = 1.15;
+const CURVE: f64 = 1.3;
 /// The share of the height or diameter of the oldest trees that an inverse is taken up to: beyond, every age is as likely.
 const ALMOST: f64 = 0.98;
 /// Crowns in closed stands cover an area in proportion to this power of the diameter (Sitch et al. 2003, after Zeide 1993).
@@ -65,7 +65,7 @@ impl Group {
     /// Square metres of ground under the crown of a tree of one metre of diameter in a closed stand.
     const fn cover_m2(self) -> f64 {
         match self {
-            Self::Broadleaf => 190.0,
+            Self::Broadleaf => 230.0,
             Self::Conifer => 150.0,
             Self::Palm => 200.0,
             Self::Shrub | Self::Herb => 100.0,
@@ -156,7 +156,7 @@ pub struct Figures {
 /// |---|---|
 /// | height ~ diameter | `h = 1.3 + (top - 1.3) (1 - exp(-s d / (top - 1.3)))` (Meyer 1940) |
 /// | crown width ~ diameter | `ln w = b0 + b1 ln d` (Hasenauer 1997: open-grown trees) |
-/// | diameter ~ age | `d = thick (1 - exp(-k t))^1.15` (Richards 1959) |
+/// | diameter ~ age | `d = thick (1 - exp(-k t))^1.3` (Richards 1959) |
 /// | ground cover ~ diameter in stands | `a = c d^1.6` (Sitch et al. 2003) |
 ///
 /// Height, age and cover are general forms with figures of our own, from what floras say of old trees, and have wide
@@ -372,6 +372,20 @@ impl Allometry {
             return 0.0;
         }
         stem.thick_m * ops::powf(1.0 - ops::exp(-Self::rate(&stem) * years), CURVE)
+    }
+
+    /// Metres of diameter some years after one in metres, as free-standing trees grow.
+    pub(crate) fn dbh_after_m(&self, dbh_m: f64, years: f64) -> f64 {
+        let Some(stem) = self.stem else { return 0.0 };
+        let share = ops::powf((dbh_m / stem.thick_m).min(1.0), 1.0 / CURVE);
+        let left = (1.0 - share) * ops::exp(-Self::rate(&stem) * years);
+        // Rounding must not make a stem thinner.
+        (stem.thick_m * ops::powf(1.0 - left, CURVE)).max(dbh_m)
+    }
+
+    /// Metres of height for each metre of diameter of a young stem.
+    pub(crate) fn slope(&self, setting: Setting) -> f64 {
+        self.stem.map_or(0.0, |stem| stem.slope(setting))
     }
 
     /// Metres of height of a plant of an age in years and the diameter that goes with it.
