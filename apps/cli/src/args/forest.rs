@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use burgeon::TileId;
+use burgeon::forest::{BadRows, Crs, Setting};
 use burgeon::glam::DVec3;
 use burgeon::skin::SkinSpec;
 use clap::Args;
 
 use super::given::Given;
 use super::grow::FoliageWord;
-use super::shared::{CommonArgs, PackWord, of, seed, whole};
+use super::shared::{CommonArgs, PackWord, of, ranged, seed, whole};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -17,12 +18,14 @@ use super::shared::{CommonArgs, PackWord, of, seed, whole};
   burgeon forest trees.csv -o city --place 16.37,48.21,170         where the origin stands on the earth
   burgeon forest trees.csv -o street --variants 8 --glb --usd
   burgeon forest trees.csv -o big --finest 1 --tile-trees 1024     many trees in few bytes
+  burgeon forest trees.geojson --crs local -o park --ground hill.tif --lean 0.1
+  burgeon forest stand.toml -o wood --map wood.png                  a stand that grows (docs/forests.md)
   burgeon forest trees.csv -o one --tile 2,1,3,0                   a tile alone, the same bytes")]
 pub(crate) struct ForestArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The trees: an inventory.
+    /// The trees: an inventory (.csv, .geojson), or the spec of a stand that grows (.toml).
     #[arg(value_name = "INVENTORY")]
     pub(crate) input: PathBuf,
     /// The folder of the tileset: tileset.json, tiles, models, trees.csv, manifest.json. A run that was interrupted goes on
@@ -60,9 +63,78 @@ pub(crate) struct ForestArgs {
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
+    pub(crate) stand: InventoryArgs,
+    #[command(flatten)]
+    pub(crate) ground: GroundArgs,
+    #[command(flatten)]
     pub(crate) surface: ForestSurfaceArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// How an inventory is read.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Inventory")]
+pub(crate) struct InventoryArgs {
+    /// What coordinates are: metres, or degrees that become metres on a plane amid the trees (local) or of a zone (utm, utm32n)
+    /// [default: metres, unless the file says degrees].
+    #[arg(long, value_name = "metres|local|utm|utmNNn", value_parser = crs)]
+    pub(crate) crs: Option<Crs>,
+    /// Among what the trees grow, by which missing measures are filled: free or stand.
+    #[arg(long, value_name = "free|stand", default_value = "free", value_parser = setting)]
+    pub(crate) setting: Setting,
+    /// The species of rows that name none, or one that is not known [default: such rows are bad].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) species: Option<String>,
+    /// What becomes of bad rows: refuse or skip.
+    #[arg(long, value_name = "refuse|skip", default_value = "refuse", value_parser = bad_rows)]
+    pub(crate) bad_rows: BadRows,
+    /// The year of the inventory, for columns that say when a tree was planted.
+    #[arg(long, value_name = "YEAR", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    pub(crate) year: Option<u32>,
+}
+
+/// What the trees of an inventory stand on.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Ground")]
+pub(crate) struct GroundArgs {
+    /// Heights: a GeoTIFF in the projection of the inventory, a PNG of 16 bits with its middle at the origin, or a mesh in metres
+    /// with +Y up [default: heights of the inventory, or flat].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) ground: Option<PathBuf>,
+    /// Side of a pixel of a PNG, metres.
+    #[arg(long, value_name = "M", requires = "ground", value_parser = |s: &str| ranged(s, 0.001, 10_000.0))]
+    pub(crate) metres_per_cell: Option<f64>,
+    /// Heights of black and white of a PNG, metres.
+    #[arg(long, value_name = "LOW,HIGH", requires = "ground", allow_hyphen_values = true, value_parser = heights)]
+    pub(crate) heights: Option<[f64; 2]>,
+    /// How much trunks lean with the ground: 0 stands upright, 1 square to it [default: 0].
+    #[arg(long, value_name = "SHARE", requires = "ground", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) lean: Option<f64>,
+}
+
+fn crs(text: &str) -> Result<Crs, String> {
+    Crs::from_word(text).ok_or_else(|| "give metres, local, utm or a zone such as utm32n".into())
+}
+
+fn setting(text: &str) -> Result<Setting, String> {
+    Setting::from_word(text).ok_or_else(|| format!("give {}", Setting::words()))
+}
+
+fn bad_rows(text: &str) -> Result<BadRows, String> {
+    BadRows::from_word(text).ok_or_else(|| format!("give {}", BadRows::words()))
+}
+
+fn heights(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[low, high]
+            if text.split(',').count() == 2 && low.abs() <= 2e4 && high.abs() <= 2e4 && low < high =>
+        {
+            Ok([low, high])
+        }
+        _ => Err("give two heights in metres, the lower one first, such as 120,480".into()),
+    }
 }
 
 /// How the plants of a forest are meshed.

@@ -19,7 +19,7 @@ mod sketch;
 pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
-pub(crate) use forest::ForestArgs;
+pub(crate) use forest::{ForestArgs, GroundArgs};
 pub(crate) use given::{Given, Seen};
 pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
 pub(crate) use leaf::{

@@ -2,7 +2,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `input` | an inventory, and the specs of its species |
+//! | `input` | an inventory or a stand that grows, its ground, the specs of its species |
 //! | `folder` | files that come to be one after another; what an earlier run left |
 //! | `models` | the plants' own files, which tiles name |
 //! | `write` | tiles, tileset, table, one file of all |
@@ -59,6 +59,7 @@ struct ForestTally {
     written: u64,
     /// Triangles of all trees at each level of detail, finest first.
     triangles: Vec<u64>,
+    input: input::InputTally,
 }
 
 #[derive(Debug, Serialize)]
@@ -91,7 +92,7 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
         picture::check_name(map)?;
     }
     let mut told = Report::default();
-    let stand = machine.with_progress("reading", |_| input::read(args, &machine, &mut told))?;
+    let (stand, input) = machine.with_progress("reading", |_| input::read(args, &machine, &mut told))?;
     outputs.check()?;
     let plan = machine.with_progress("growing", |_| plan(args, stand, &machine, &mut told))?;
     let mut folder = Folder::open(&args.output, &key(&plan))?;
@@ -106,14 +107,14 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
         dbh_error_mean_m: plan.misfits.dbh_error_mean_m,
         crown_error_max_m: plan.misfits.crown_error_max_m,
         clipped: plan.misfits.clipped,
+        input,
         ..ForestTally::default()
     };
     let mut last = Vec::new();
     if let Some(id) = args.tile {
         let tile = plan.tiling.find(id).ok_or_else(|| no_such_tile(&plan, id))?;
-        let models = machine.with_progress("models", |p| {
-            Models::make(&plan, Some(tile), args.usd.then(|| one_level(args)), &mut folder, &machine, p)
-        })?;
+        let models = machine
+            .with_progress("models", |p| Models::make(&plan, Some(tile), None, &mut folder, &machine, p))?;
         let writer = Writer { plan: &plan, models: &models, machine: &machine };
         machine.with_progress("tiles", |p| writer.tiles(std::slice::from_ref(tile), &mut folder, p))?;
         tally.tiles = 1;
@@ -174,6 +175,14 @@ fn check_used(args: &ForestArgs) -> Outcome {
         )));
     }
     args.given.only_if(args.glb || args.usd, &["level"], "--glb and --usd", "none of them is given")?;
+    let is_png = args.ground.ground.as_deref().and_then(crate::files::extension);
+    let is_png = is_png.is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    args.given.only_if(
+        is_png,
+        &["metres_per_cell", "heights"],
+        "height maps as PNG",
+        "the ground says its metres itself",
+    )?;
     args.given.only_if(args.tile.is_none(), &["place"], "tilesets", "a tile alone has none")?;
     if let Some(level) = args.level.filter(|l| !(surface.finest..=surface.lods).contains(l)) {
         return Err(Failure::Bad(format!(
