@@ -115,7 +115,7 @@ fn kept(plan: &Plan, (variant, level): (u32, u32), usd: bool, folder: &mut Folde
     for list in ["buffers", "images"] {
         for row in root.get(list).and_then(Value::as_array).into_iter().flatten() {
             if let Some(uri) = row.get("uri").and_then(Value::as_str) {
-                folder.keep(&format!("models/{}", decode_uri(uri)?))?;
+                folder.keep(&format!("models/{}", decode_uri(uri).as_deref().unwrap_or(uri)))?;
             }
         }
     }

@@ -118,7 +118,10 @@ pub fn share_pictures(mut files: ModelFiles, stem: &str) -> Result<ModelFiles, W
         let ending = file.name.rsplit('.').next().unwrap_or("png").to_owned();
         let name = format!("{stem}-{hex}.{ending}");
         for image in root["images"].as_array_mut().into_iter().flatten() {
-            if image["uri"].as_str().is_some_and(|uri| decode_uri(uri).as_ref() == Some(&file.name)) {
+            if image["uri"]
+                .as_str()
+                .is_some_and(|uri| uri == file.name || decode_uri(uri).as_ref() == Some(&file.name))
+            {
                 *image = json!({ "uri": encoded(&name), "mimeType": image["mimeType"] });
             }
         }
