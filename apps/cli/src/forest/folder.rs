@@ -75,6 +75,8 @@ pub(super) struct Folder {
     waiting_bytes: usize,
     /// The journal lies there.
     is_open: bool,
+    /// The manifest of this forest lies there: what is missing is made again, and the bytes are those that it says.
+    is_whole: bool,
     /// Makes the folder go again if nothing comes to lie in it.
     _made: Outputs,
     /// Files that were there already.
@@ -98,6 +100,7 @@ impl Folder {
             waiting: Vec::new(),
             waiting_bytes: 0,
             is_open: false,
+            is_whole: false,
             _made: made,
             kept: 0,
             written: 0,
@@ -116,7 +119,8 @@ impl Folder {
                 .ok_or_else(|| {
                     Failure::at(&path.join(MANIFEST), "is not the manifest of a forest; name another folder")
                 })?;
-            folder.take(manifest.key == key, manifest.files);
+            folder.is_whole = manifest.key == key;
+            folder.take(folder.is_whole, manifest.files);
         }
         if let Some(journal) = journal {
             let text = String::from_utf8_lossy(&journal).into_owned();
@@ -205,7 +209,7 @@ impl Folder {
 
     /// From now on the folder says that it is not finished.
     fn begin(&mut self) -> Outcome {
-        if self.is_open {
+        if self.is_open || self.is_whole {
             return Ok(());
         }
         // First the journal with what may stay, then what readers open goes.
@@ -226,6 +230,9 @@ impl Folder {
     }
 
     fn note(&self, lines: &str) -> Outcome {
+        if self.is_whole {
+            return Ok(());
+        }
         let path = self.path.join(JOURNAL);
         let failed = |e: &std::io::Error| Failure::io(&path, "written", e);
         let mut journal = OpenOptions::new().append(true).create(true).open(&path).map_err(|e| failed(&e))?;
