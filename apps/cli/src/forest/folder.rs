@@ -87,6 +87,7 @@ pub(super) struct Folder {
 impl Folder {
     /// Looks at what is there.
     pub(super) fn open(path: &Path, key: &str) -> Outcome<Self> {
+        check(path)?;
         let mut made = Outputs::default();
         made.folder(path)?;
         let manifest = read(&path.join(MANIFEST))?;
@@ -105,13 +106,6 @@ impl Folder {
             kept: 0,
             written: 0,
         };
-        let is_new = manifest.is_none() && journal.is_none();
-        if is_new && has_files(path)? {
-            return Err(Failure::at(
-                path,
-                "is a folder with other files in it, and tiles of a forest want one of their own; name a new one",
-            ));
-        }
         if let Some(manifest) = manifest {
             let manifest: Manifest = serde_json::from_slice(&manifest)
                 .ok()
@@ -283,6 +277,21 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// Fails early for a folder that is not a forest's.
+pub(super) fn check(path: &Path) -> Outcome {
+    if path.exists() && !path.is_dir() {
+        return Err(Failure::at(path, "is a file, but a forest needs a folder; name another one"));
+    }
+    let is_ours = [MANIFEST, JOURNAL].iter().any(|file| path.join(file).exists());
+    if !is_ours && path.is_dir() && has_files(path)? {
+        return Err(Failure::at(
+            path,
+            "is a folder with other files in it, and tiles of a forest want one of their own; name a new one",
+        ));
+    }
+    Ok(())
 }
 
 /// A file of a manifest lies below the folder.

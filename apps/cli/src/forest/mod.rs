@@ -51,6 +51,8 @@ struct ForestTally {
     crown_error_max_m: f64,
     /// Trees that the limits of scales changed.
     clipped: u64,
+    /// Trees whose stems are more than a quarter off.
+    stems_off: u64,
     /// Files of the folder, and their bytes.
     files: u64,
     bytes: u64,
@@ -88,6 +90,7 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     let named = [("--map", args.map.as_ref()), ("--report", args.common.report.as_ref())];
     let mut outputs = Outputs::new(&named, &[&args.input])?;
     check_used(args)?;
+    folder::check(&args.output)?;
     if let Some(map) = &args.map {
         picture::check_name(map)?;
     }
@@ -107,6 +110,7 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
         dbh_error_mean_m: plan.misfits.dbh_error_mean_m,
         crown_error_max_m: plan.misfits.crown_error_max_m,
         clipped: plan.misfits.clipped,
+        stems_off: plan.misfits.stems_off,
         input,
         ..ForestTally::default()
     };

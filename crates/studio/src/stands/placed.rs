@@ -26,6 +26,8 @@ const CROWN: f64 = 3.0;
 const HEIGHT: f64 = 10.0;
 /// What chance counts among plants that fit as well.
 const CHANCE: f64 = 0.02;
+/// A stem that is further off than this share of its diameter is told of.
+const STEM_OFF: f64 = 0.25;
 /// Crowns that lie further from their foot than this share of their width have a side.
 const ONE_SIDED: f64 = 0.04;
 
@@ -119,6 +121,8 @@ pub struct Misfits {
     pub worst_row: u32,
     /// Trees whose plants the limits of scales changed.
     pub clipped: u64,
+    /// Trees whose stems are more than a quarter too thick or too thin.
+    pub stems_off: u64,
     sum_dbh: f64,
     worst: f64,
 }
@@ -133,6 +137,7 @@ impl Misfits {
         self.sum_dbh += placed.dbh_error_m.abs();
         self.dbh_error_mean_m = self.sum_dbh / self.trees as f64;
         self.clipped += u64::from(placed.is_clipped);
+        self.stems_off += u64::from(placed.dbh_error_m.abs() > STEM_OFF * tree.dbh_m);
         let worst = (placed.height_error_m / tree.height_m).abs();
         let worst = worst.max((placed.crown_error_m / tree.crown_width_m).abs());
         if placed.is_clipped && worst > self.worst {
@@ -142,6 +147,16 @@ impl Misfits {
 
     /// Says so where trees are not as they were asked for.
     pub fn tell(&self, report: &mut Report) {
+        if self.stems_off > 0 {
+            let (trees, all, most) = (self.stems_off, self.trees, self.dbh_error_max_m);
+            base::warn!(
+                report,
+                "forest-stems-off",
+                { trees = trees },
+                "the stems of {trees} of {all} trees are more than a quarter too thick or too thin, up to {most:.2} m, as one plant \
+                 stands for many trees: raise --variants"
+            );
+        }
         if self.clipped > 0 {
             let Self { clipped, worst_row, height_error_max_m, crown_error_max_m, .. } = *self;
             base::warn!(
