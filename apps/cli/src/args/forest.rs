@@ -19,7 +19,7 @@ use super::shared::{CommonArgs, PackWord, of, ranged, seed, whole};
   burgeon forest trees.csv -o street --variants 8 --glb --usd
   burgeon forest trees.csv -o big --finest 1 --tile-trees 1024     many trees in few bytes
   burgeon forest trees.geojson --crs local -o park --ground hill.tif --lean 0.1
-  burgeon forest stand.toml -o wood --map wood.png                  a stand that grows (docs/forests.md)
+  burgeon forest stand.toml -o wood --map wood.png                  a stand that grows (docs/tiles.md)
   burgeon forest trees.csv -o one --tile 2,1,3,0                   a tile alone, the same bytes")]
 pub(crate) struct ForestArgs {
     /// First: clap takes the values of the others away as it reads them.
