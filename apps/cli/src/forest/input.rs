@@ -123,7 +123,7 @@ fn in_options(error: &InventoryError) -> String {
 fn ground_file(path: &Path, args: &GroundArgs, origin: DVec2, machine: &Machine) -> Outcome<Ground> {
     let extension = files::extension(path).unwrap_or_default().to_ascii_lowercase();
     let run = machine.run();
-    let failed = |e: GroundError| ground_failure(path, e);
+    let failed = |e: GroundError| Failure::at(path, e);
     match extension.as_str() {
         "png" => {
             let (Some(metres_per_cell), Some([low_m, high_m])) = (args.metres_per_cell, args.heights) else {
@@ -145,15 +145,8 @@ fn ground_file(path: &Path, args: &GroundArgs, origin: DVec2, machine: &Machine)
 fn mesh_ground(path: &Path, run: &Run<'_>) -> Outcome<Ground> {
     let (model, ..) = files::read_model(path, &burgeon::formats::ExportSpec::default())?;
     let (vertices, triangles) = model.triangles();
-    let mesh = GroundMesh::new(&vertices, &triangles, run).map_err(|e| ground_failure(path, e))?;
+    let mesh = GroundMesh::new(&vertices, &triangles, run).map_err(|e| Failure::at(path, e))?;
     Ok(Ground::Mesh(mesh))
-}
-
-fn ground_failure(path: &Path, error: GroundError) -> Failure {
-    match error {
-        GroundError::Cancelled(_) => Failure::Cancelled,
-        e => Failure::at(path, e),
-    }
 }
 
 /// A stand that grows by its spec.
@@ -182,7 +175,7 @@ fn grown(args: &ForestArgs, machine: &Machine, told: &mut Report) -> Outcome<(St
 }
 
 fn spec_ground(ground: &GroundSpec, spec: &Path, run: &Run<'_>) -> Outcome<Ground> {
-    let failed = |e: GroundError| ground_failure(spec, e);
+    let failed = |e: GroundError| Failure::at(spec, e);
     match ground {
         GroundSpec::Flat => Ok(Ground::Flat),
         GroundSpec::Png { file, metres_per_cell, low_m, high_m, no_data } => {
