@@ -8,7 +8,6 @@ mod bloom;
 mod clouds;
 mod command;
 mod files;
-mod forest;
 mod generated;
 mod grow;
 mod hostile;

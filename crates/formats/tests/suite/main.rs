@@ -13,5 +13,4 @@ mod opf;
 mod opf_reader;
 mod scans;
 mod structure;
-mod tiles;
 mod types;
