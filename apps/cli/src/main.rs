@@ -13,6 +13,7 @@ mod edits;
 mod failure;
 mod files;
 mod fit;
+mod forest;
 mod grow;
 mod info;
 mod inputs;
@@ -74,6 +75,7 @@ fn main() -> ExitCode {
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
         Command::Scan(args) => scan::scan(&args),
+        Command::Forest(args) => forest::forest(&args),
         Command::Shape(args) => shape::shape(&args),
         Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),

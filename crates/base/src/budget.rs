@@ -37,11 +37,15 @@ pub enum Counted {
     EditedPieces,
     /// Measured sizes, each time that a growth law is compared with them: what laws take time for.
     Comparisons,
+    /// Trees of a stand: rows of an inventory, trees that grow.
+    Trees,
+    /// Cells of a height map or a mask.
+    Cells,
 }
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
@@ -57,6 +61,8 @@ impl Counted {
         Self::Pieces,
         Self::EditedPieces,
         Self::Comparisons,
+        Self::Trees,
+        Self::Cells,
     ];
 
     /// In messages.
@@ -77,6 +83,8 @@ impl Counted {
             Self::Pieces => "nodes, leaves and flowers",
             Self::EditedPieces => "nodes, leaves and flowers that edits go through",
             Self::Comparisons => "comparisons of sizes with growth laws",
+            Self::Trees => "trees of a stand",
+            Self::Cells => "cells of a map",
         }
     }
 
@@ -94,6 +102,10 @@ impl Counted {
             // Some 50,000 sizes.
             Self::Comparisons => 500_000_000,
             Self::Triangles => 16_000_000,
+            // Some 220 bytes each while they grow.
+            Self::Trees => 10_000_000,
+            // Four bytes each: ten kilometres at one metre.
+            Self::Cells => 100_000_000,
             Self::Strokes => 20_000,
             Self::Edits => 1_000,
             // The most edits of an oak.

@@ -46,6 +46,8 @@ pub enum Draw {
     Habit = 17,
     /// When a leaf turns and falls in autumn.
     Season = 18,
+    /// Where the trees of a stand and their seedlings come up, how vigorous they are and which die.
+    Stand = 19,
 }
 
 /// A 64-bit seed from which independent streams and child seeds are derived.

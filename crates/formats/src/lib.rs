@@ -18,6 +18,7 @@ mod model;
 mod plant;
 mod summary;
 mod table;
+mod tiles;
 
 pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
@@ -40,4 +41,8 @@ pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};
 pub use table::{
     Access, Beside, CloudFormat, DrawingFormat, FormatRow, ModelFormat, Room, StructureFormat,
     list_of_endings,
+};
+pub use tiles::{
+    Group, Instance, Linking, Prototype, SharedModel, TileNode, Tileset, TreeRow, TreeTable, earth_frame,
+    share_pictures, stand_usda, tileset_json, write_tile,
 };

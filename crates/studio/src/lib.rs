@@ -38,6 +38,7 @@ mod seedling;
 mod shaping;
 mod shoot;
 mod split;
+mod stands;
 mod structure;
 mod survey;
 mod template;
@@ -78,6 +79,10 @@ pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surf
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
+pub use stands::{
+    LIMITS, Misfits, Nursery, NurseryError, NurseryLook, NurserySpec, Placed, SPECIES_COLOURS, ScaleLimits,
+    StandTile, TileId, Tiling, TilingError, TilingSpec, Variant, stand_map,
+};
 pub use structure::write_structure;
 pub use survey::{
     NOTHING, PARTS, Stood, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey,
@@ -98,8 +103,8 @@ pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, scan, shape,
-    sketch, skin, spec,
+    bloom, document, forest, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, scan,
+    shape, sketch, skin, spec,
 };
 
 /// The version that is written into reports and files.

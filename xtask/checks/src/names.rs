@@ -12,8 +12,8 @@ use xtask::shell::{Outcome, repository, say};
 const ALLOWED: &[(&str, &[&str], &str)] = &[
     (
         "Ground",
-        &["scan", "workspace"],
-        "the terrain of a scan; that of a scene, as a page scatters plants on it",
+        &["forest", "scan", "workspace"],
+        "what a stand grows on; the terrain of a scan; that of a scene, as a page scatters plants on it",
     ),
     ("Grown", &["growth", "workspace"], "a tree; what a page is told of a shoot that grows in a headset"),
     ("Kind", &["reading", "spec"], "of the plant that a drawing shows; of a node of a text"),

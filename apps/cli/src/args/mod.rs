@@ -3,6 +3,7 @@
 mod bloom;
 mod compare;
 mod files;
+mod forest;
 mod given;
 mod grow;
 mod leaf;
@@ -18,6 +19,7 @@ mod sketch;
 pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
+pub(crate) use forest::{ForestArgs, GroundArgs};
 pub(crate) use given::{Given, Seen};
 pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
 pub(crate) use leaf::{
@@ -75,6 +77,11 @@ pub(crate) enum Command {
     /// Ground, noise and other things go; ways from the foot make the skeleton, circles and the pipe model its radii. The
     /// result is a plant as all others are: meshes, structure, cylinders, measures.
     Scan(Box<ScanArgs>),
+    /// Turn an inventory of trees into a forest: 3D Tiles of grown plants, one file with instances, USD, a table
+    ///
+    /// Each tree stands in its place with its height, crown and diameter. A few plants of each species and age are grown and
+    /// stand for many trees, turned and scaled as far as looks right; coarser levels and pictures stand for them far away.
+    Forest(Box<ForestArgs>),
     /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
     ///
     /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays

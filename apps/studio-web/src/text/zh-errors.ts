@@ -220,6 +220,8 @@ export const zhWords: Record<string, string> = {
   'nodes, leaves and flowers': '个节点、叶和花',
   'nodes, leaves and flowers that edits go through': '个节点、叶和花（手工修改经过的）',
   'comparisons of sizes with growth laws': '次尺寸与生长规律的比较',
+  'trees of a stand': '棵林分的树',
+  'cells of a map': '个地图格',
   'true or false': '真或假（true、false）',
   'a number': '数',
   'a whole number': '整数',

@@ -240,6 +240,35 @@ pub(super) fn row(n: usize) -> Result<u32, WriteError> {
     u32::try_from(n).ok().ok_or(WriteError::TooLarge { what: "the number of parts", format: "glTF" })
 }
 
+/// A document and its bytes as a GLB.
+pub(crate) fn write_container(
+    mut text: Vec<u8>,
+    bytes: &[u8],
+    mut out: impl Write,
+) -> Result<(), WriteError> {
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let bin = if bytes.is_empty() { 0 } else { 8 + bytes.len() };
+    let total = 12 + 8 + text.len() + bin;
+    let word = |n: usize| {
+        u32::try_from(n)
+            .map(u32::to_le_bytes)
+            .ok()
+            .ok_or(WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
+    };
+    out.write_all(b"glTF")?;
+    out.write_all(&2_u32.to_le_bytes())?;
+    out.write_all(&word(total)?)?;
+    out.write_all(&word(text.len())?)?;
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    if !bytes.is_empty() {
+        out.write_all(&word(bytes.len())?)?;
+        out.write_all(b"BIN\0")?;
+        out.write_all(bytes)?;
+    }
+    Ok(())
+}
+
 /// The accessors of instances.
 pub(super) struct InstanceColumns {
     pub(super) translation: u32,
@@ -279,7 +308,7 @@ impl Writer {
         }
     }
 
-    pub(super) fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
+    pub(super) fn finish(mut self, out: impl Write) -> Result<(), WriteError> {
         if !self.bin.is_empty() && self.root.buffers.is_empty() {
             self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, ..Buffer::default() });
         }
@@ -287,28 +316,8 @@ impl Writer {
             let sampler = Sampler { mag_filter: Some(LINEAR), min_filter: Some(LINEAR_MIPMAP_LINEAR) };
             self.root.samplers.push(sampler);
         }
-        let mut text = serde_json::to_vec(&self.root).map_err(|e| WriteError::Io(e.into()))?;
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let bin = if self.bin.is_empty() { 0 } else { 8 + self.bin.len() };
-        let total = 12 + 8 + text.len() + bin;
-        let word = |n: usize| {
-            u32::try_from(n)
-                .map(u32::to_le_bytes)
-                .ok()
-                .ok_or(WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
-        };
-        out.write_all(b"glTF")?;
-        out.write_all(&2_u32.to_le_bytes())?;
-        out.write_all(&word(total)?)?;
-        out.write_all(&word(text.len())?)?;
-        out.write_all(b"JSON")?;
-        out.write_all(&text)?;
-        if !self.bin.is_empty() {
-            out.write_all(&word(self.bin.len())?)?;
-            out.write_all(b"BIN\0")?;
-            out.write_all(&self.bin)?;
-        }
-        Ok(())
+        let text = serde_json::to_vec(&self.root).map_err(|e| WriteError::Io(e.into()))?;
+        write_container(text, &self.bin, out)
     }
 
     /// Makes a buffer view of what `fill` appends.

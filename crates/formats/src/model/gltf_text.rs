@@ -146,7 +146,7 @@ impl Pictures {
 }
 
 /// A file's name as a URI: what is beyond ASCII as `%e8%8a%b1`.
-fn encoded(name: &str) -> String {
+pub(crate) fn encoded(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     for byte in name.bytes() {
         match byte {

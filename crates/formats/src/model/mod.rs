@@ -1,6 +1,7 @@
 //! bytes <-> [`mesh::Model`].
 
 mod axes;
+mod columns;
 mod glb_levels;
 mod glb_pack;
 mod glb_read;
@@ -29,11 +30,14 @@ use glam::DVec3;
 use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
+pub(crate) use columns::{CompressedColumn, compressed_floats, compressed_turns};
 pub use glb_levels::write_glb_levels;
 pub use glb_pack::{Packing, write_glb_packed};
+pub(crate) use glb_write::write_container;
 pub use glb_write::{
     Level, Morph, write_glb, write_glb_morph, write_glb_rigged, write_glb_scene, write_glb_with,
 };
+pub(crate) use gltf_text::encoded;
 pub use named::decode_uri;
 pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};

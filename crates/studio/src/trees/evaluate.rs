@@ -359,6 +359,30 @@ impl TreeEvaluator {
     }
 }
 
+/// A tree without meshes, as [`TreeEvaluator::update`] makes it.
+pub(crate) fn grow_plant(spec: &TreeSpec, seed: Seed, run: &Run<'_>) -> Result<Plant, TreeError> {
+    let mut evaluator = TreeEvaluator::default();
+    evaluator.shaped(spec, seed, &TreeOptions::default(), run)?;
+    Ok(evaluator.dressed.map(|d| d.grown.plant).unwrap_or_default())
+}
+
+/// The meshes of a plant of a spec at a level, 0 for the plant itself, as [`TreeEvaluator::at_level`] makes them; textures
+/// follow from the seed.
+pub(crate) fn mesh_plant(
+    plant: &Plant,
+    (spec, seed): (&TreeSpec, Seed),
+    options: &TreeOptions,
+    level: u32,
+    run: &Run<'_>,
+) -> Result<Model, Stopped> {
+    let fine = skin_spec(spec, seed, options);
+    if level == 0 {
+        return Ok(skinned(plant, &(fine, spec.look.clone(), options.leaf.clone()), run)?.0);
+    }
+    let (copy, skin) = coarser(plant, &fine, level);
+    Ok(skinned(&copy, &(skin, spec.look.clone(), options.leaf.clone()), run)?.0)
+}
+
 fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     // A leaf of one's own has veins of its own, or those of most leaves.
     let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());

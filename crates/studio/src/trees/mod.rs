@@ -40,6 +40,7 @@ pub use compare::{
     GUIDED_METHODS, OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, guided_methods, scale_to_height, tree_size,
 };
 pub use evaluate::TreeEvaluator;
+pub(crate) use evaluate::{grow_plant, mesh_plant};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 use lod::keep_out;

@@ -1,0 +1,607 @@
+//! Height, stem, crown and age of a species: each from each, with the interval in which nineteen of twenty trees lie.
+//!
+//! `name -> Allometry; measured figures -> all figures with intervals`
+
+use base::ops;
+use core::fmt;
+
+use crate::species::SPECIES;
+
+/// Height above the foot at which stems are measured, metres.
+pub const BREAST_M: f64 = 1.3;
+/// Half the width of an interval that holds 95 % of a normal distribution, in its deviations.
+const DEVIATIONS_95: f64 = 1.96;
+/// The exponent of the growth curve of the diameter; a little above 1: growth is slow for the first years alone.
+const CURVE: f64 = 1.3;
+/// The share of the height or diameter of the oldest trees that an inverse is taken up to: beyond, every age is as likely.
+const ALMOST: f64 = 0.98;
+/// Crowns in closed stands cover an area in proportion to this power of the diameter (Sitch et al. 2003, after Zeide 1993).
+const COVER_POWER: f64 = 1.6;
+
+/// What the forms of growth of species have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Trees with broad leaves.
+    Broadleaf,
+    /// Trees with needles or scales.
+    Conifer,
+    /// Palms and tree ferns, whose stems hardly thicken.
+    Palm,
+    /// Shrubs, climbers, succulents and bamboos: no one trunk to measure.
+    Shrub,
+    /// Herbs and grasses.
+    Herb,
+}
+
+impl Group {
+    /// Deviation of the logarithm of height about the curve. By stands and free-standing trees, which differ by a factor of
+    /// two at one diameter.
+    const fn height_deviation(self) -> f64 {
+        match self {
+            Self::Broadleaf | Self::Conifer => 0.2,
+            Self::Palm => 0.5,
+            Self::Shrub | Self::Herb => 0.35,
+        }
+    }
+
+    /// Deviation of the logarithm of age about the curve: sites differ more than species.
+    const fn age_deviation(self) -> f64 {
+        match self {
+            Self::Broadleaf | Self::Conifer => 0.4,
+            _ => 0.6,
+        }
+    }
+
+    /// Years that a plant takes to the height at which stems are measured.
+    const fn years_to_breast(self) -> f64 {
+        match self {
+            Self::Broadleaf => 4.0,
+            Self::Conifer => 6.0,
+            Self::Palm => 5.0,
+            Self::Shrub | Self::Herb => 0.0,
+        }
+    }
+
+    /// Square metres of ground under the crown of a tree of one metre of diameter in a closed stand.
+    const fn cover_m2(self) -> f64 {
+        match self {
+            Self::Broadleaf => 230.0,
+            Self::Conifer => 150.0,
+            Self::Palm => 200.0,
+            Self::Shrub | Self::Herb => 100.0,
+        }
+    }
+}
+
+/// Crown of a free-standing tree: `ln(width / m) = b0 + b1 ln(dbh / cm)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crown {
+    pub(crate) b0: f64,
+    pub(crate) b1: f64,
+    /// Of the residuals of the logarithm.
+    pub(crate) variance: f64,
+    /// Hasenauer (1997); otherwise the same form with figures chosen by us.
+    pub(crate) is_published: bool,
+}
+
+/// What has a trunk to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stem {
+    pub(crate) thick_m: f64,
+    pub(crate) free: f64,
+    pub(crate) stand: f64,
+    pub(crate) dbh_50_m: f64,
+    pub(crate) crown: Crown,
+}
+
+/// Among what a tree grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Setting {
+    /// Streets, parks, orchards: crowns to the sides, stout stems.
+    #[default]
+    Free,
+    /// A closed stand: high and slender.
+    Stand,
+}
+
+base::words!(Setting { Free = "free", Stand = "stand" });
+
+/// A value with the interval in which nineteen of twenty trees lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Predicted {
+    /// The middle of the distribution, by its logarithm.
+    pub value: f64,
+    /// The low end of the interval.
+    pub low: f64,
+    /// The high end.
+    pub high: f64,
+}
+
+impl Predicted {
+    fn spread(value: f64, deviation: f64) -> Self {
+        let factor = ops::exp(DEVIATIONS_95 * deviation);
+        Self { value, low: value / factor, high: value * factor }
+    }
+}
+
+/// Measures of one tree; none where it was not measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Metres, above 0.
+    pub height_m: Option<f64>,
+    /// Metres, above 0.
+    pub dbh_m: Option<f64>,
+    /// Metres, above 0.
+    pub crown_width_m: Option<f64>,
+    /// Years, 0 and more.
+    pub age_years: Option<f64>,
+}
+
+/// All figures of one tree: those that were measured as they were, with an interval of no width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Metres.
+    pub height_m: Predicted,
+    /// Metres; 0 for trees below 1.3 m and plants without a trunk.
+    pub dbh_m: Predicted,
+    /// Metres.
+    pub crown_width_m: Predicted,
+    /// Years.
+    pub age_years: Predicted,
+}
+
+/// The relations of one species.
+///
+/// | relation | form |
+/// |---|---|
+/// | height ~ diameter | `h = 1.3 + (top - 1.3) (1 - exp(-s d / (top - 1.3)))` (Meyer 1940) |
+/// | crown width ~ diameter | `ln w = b0 + b1 ln d` (Hasenauer 1997: open-grown trees) |
+/// | diameter ~ age | `d = thick (1 - exp(-k t))^1.3` (Richards 1959) |
+/// | ground cover ~ diameter in stands | `a = c d^1.6` (Sitch et al. 2003) |
+///
+/// Height, age and cover are general forms with figures of our own, from what floras say of old trees, and have wide
+/// intervals. Crowns are published for spruce, larch, pine, beech, oak, ash, maple and other broadleaves of Central Europe.
+///
+/// ```
+/// use forest::{Allometry, Measured, Setting};
+/// let oak = Allometry::find("Quercus robur")?.allometry;
+/// let tree = oak.fill(&Measured { dbh_m: Some(0.5), ..Measured::default() }, Setting::Free);
+/// assert!((14.0..20.0).contains(&tree.height_m.value) && (10.0..14.0).contains(&tree.crown_width_m.value));
+/// assert_eq!(Allometry::find("Quercus rubor").unwrap_err().nearest, Some("Quercus robur"));
+/// # Ok::<(), forest::UnknownSpecies>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Allometry {
+    /// The word of the preset.
+    pub preset: &'static str,
+    /// Scientific name.
+    pub latin: &'static str,
+    /// Other names, in lower case.
+    pub names: &'static [&'static str],
+    /// Its form of growth.
+    pub group: Group,
+    /// Height of old plants, metres.
+    pub top_m: f64,
+    pub(crate) stem: Option<Stem>,
+    pub(crate) width_of_height: f64,
+    /// Light demand: 0 grows in deep shade, 1 in full light alone.
+    pub light: f64,
+    /// Years that one plant in a hundred lives.
+    pub life_years: f64,
+    /// Mean distance from a plant to its seedlings, metres.
+    pub spread_m: f64,
+}
+
+/// A species by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Its relations.
+    pub allometry: &'static Allometry,
+    /// Only the genus is known: it is another species of it.
+    pub by_genus: bool,
+}
+
+/// A name that no species has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownSpecies {
+    /// The name.
+    pub name: String,
+    /// The known name that is nearest, if one is near.
+    pub nearest: Option<&'static str>,
+}
+
+impl core::error::Error for UnknownSpecies {}
+
+impl fmt::Display for UnknownSpecies {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "there is no species `{}`", base::quoted(&self.name))?;
+        match self.nearest {
+            Some(nearest) => write!(f, "; is `{nearest}` meant?"),
+            None => write!(f, "; write the word of a preset, such as oak, or a scientific name"),
+        }
+    }
+}
+
+base::coded!(UnknownSpecies {
+    Self { name, nearest } => "species-unknown" { name, nearest = nearest.unwrap_or_default() },
+});
+
+/// A name in lower case, without cultivar, authors' brackets and marks of hybrids, with single spaces.
+fn plain(name: &str) -> String {
+    let mut out = String::with_capacity(name.len());
+    let (mut quoted, mut depth) = (false, 0_u32);
+    for c in name.chars() {
+        match c {
+            '\'' | '"' | '\u{2018}' | '\u{2019}' => quoted = !quoted,
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ if quoted || depth > 0 => {}
+            '\u{d7}' => out.push('x'),
+            '_' | '-' => out.push(' '),
+            c => out.extend(c.to_lowercase()),
+        }
+    }
+    out.split_whitespace().filter(|word| *word != "x").collect::<Vec<_>>().join(" ")
+}
+
+/// Most characters of a name that are looked at.
+const LONGEST_NAME: usize = 200;
+
+impl Allometry {
+    /// All species, in order of their presets' words.
+    pub const fn all() -> &'static [Self] {
+        SPECIES
+    }
+
+    /// The species of a preset's word, a scientific or a common name. Upper case, cultivars, authors, hyphens and the marks
+    /// of hybrids make no difference. A scientific name of which only the genus is known stands for the first species of it,
+    /// and says so.
+    ///
+    /// Cost: linear in the species; some microseconds.
+    ///
+    /// # Errors
+    /// [`UnknownSpecies`] with the nearest known name.
+    pub fn find(name: &str) -> Result<Found, UnknownSpecies> {
+        let short: String = name.chars().take(LONGEST_NAME).collect();
+        let exact = short.trim().to_lowercase();
+        if let Some(allometry) = SPECIES.iter().find(|s| s.preset == exact) {
+            return Ok(Found { allometry, by_genus: false });
+        }
+        let wanted = plain(&short);
+        // The oak comes before the oaks by other methods, and before the dead one.
+        let rank = |s: &&Self| u8::from(s.preset.contains("oak") && s.preset != "oak");
+        let named = |s: &&Self| plain(s.latin) == wanted || s.names.iter().any(|n| plain(n) == wanted);
+        if let Some(allometry) = SPECIES.iter().filter(named).min_by_key(rank) {
+            return Ok(Found { allometry, by_genus: false });
+        }
+        let mut words = wanted.split(' ');
+        let (genus, epithet) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+        let by_two = |s: &&Self| {
+            let latin = plain(s.latin);
+            !epithet.is_empty() && latin.split(' ').take(2).eq([genus, epithet])
+        };
+        if let Some(allometry) = SPECIES.iter().filter(by_two).min_by_key(rank) {
+            return Ok(Found { allometry, by_genus: false });
+        }
+        let nearest = base::nearest(&wanted, SPECIES.iter().map(|s| s.preset))
+            .or_else(|| nearest_latin(&wanted))
+            .or_else(|| base::nearest(&wanted, SPECIES.iter().flat_map(|s| s.names.iter().copied())));
+        let is_slip = nearest.is_some_and(|n| plain(n).split(' ').next() == Some(genus));
+        let of_genus = |s: &&Self| plain(s.latin).split(' ').next() == Some(genus);
+        match SPECIES.iter().filter(of_genus).min_by_key(rank) {
+            // A slip of the hand in the second word is no other species.
+            Some(allometry) if !is_slip || epithet == "sp." || epithet == "spp." => {
+                Ok(Found { allometry, by_genus: true })
+            }
+            _ => Err(UnknownSpecies { name: short, nearest }),
+        }
+    }
+
+    /// Whether the crown's relation is a published one for this species or its kind.
+    pub fn has_published_crown(&self) -> bool {
+        self.stem.is_some_and(|stem| stem.crown.is_published)
+    }
+
+    /// Whether it has a trunk to measure.
+    pub const fn has_trunk(&self) -> bool {
+        self.stem.is_some()
+    }
+
+    /// Metres of height at a diameter in metres.
+    pub fn height_m(&self, dbh_m: f64, setting: Setting) -> f64 {
+        let Some(stem) = self.stem else { return self.top_m };
+        let room = self.top_m - BREAST_M;
+        BREAST_M + room * (1.0 - ops::exp(-stem.slope(setting) * dbh_m.max(0.0) / room))
+    }
+
+    /// Metres of diameter at a height in metres: the inverse of [`height_m`](Self::height_m), up to almost the height of old
+    /// trees; 0 below 1.3 m.
+    pub fn dbh_m(&self, height_m: f64, setting: Setting) -> f64 {
+        let Some(stem) = self.stem else { return 0.0 };
+        let room = self.top_m - BREAST_M;
+        let share = ((height_m - BREAST_M) / room).clamp(0.0, ALMOST);
+        -room / stem.slope(setting) * ops::ln(1.0 - share)
+    }
+
+    /// Metres across the crown of a free-standing tree of a diameter in metres and a height in metres.
+    pub fn crown_width_m(&self, dbh_m: f64, height_m: f64) -> f64 {
+        let Some(stem) = self.stem else { return self.width_of_height * height_m };
+        // A sapling is not as wide as it is high.
+        let least = SAPLING * height_m;
+        if dbh_m <= 0.0 {
+            return least;
+        }
+        ops::exp(stem.crown.b0 + stem.crown.b1 * ops::ln(100.0 * dbh_m)).max(least)
+    }
+
+    /// Metres across the crown of a tree in a closed stand: never wider than a free-standing one.
+    pub fn stand_crown_width_m(&self, dbh_m: f64, height_m: f64) -> f64 {
+        let free = self.crown_width_m(dbh_m, height_m);
+        if self.stem.is_none() || dbh_m <= 0.0 {
+            return free;
+        }
+        // The diameter to half the power is the width of a disc of that area.
+        let width = 2.0 * (self.group.cover_m2() / ops::PI).sqrt() * ops::powf(dbh_m, 0.5 * COVER_POWER);
+        width.min(free)
+    }
+
+    /// The rate of the growth curve of the diameter, one a year.
+    fn rate(stem: &Stem) -> f64 {
+        let share = (stem.dbh_50_m / stem.thick_m).min(ALMOST);
+        -ops::ln(1.0 - ops::powf(share, 1.0 / CURVE)) / 50.0
+    }
+
+    /// Years at a diameter in metres of a free-standing tree, from its germination on.
+    pub fn age_years(&self, dbh_m: f64, height_m: f64) -> f64 {
+        let Some(stem) = self.stem else {
+            return -ops::ln(1.0 - (height_m / self.top_m).clamp(0.0, ALMOST)) * self.life_years / 4.0;
+        };
+        let to_breast = self.group.years_to_breast();
+        if dbh_m <= 0.0 {
+            return to_breast * (height_m / BREAST_M).clamp(0.0, 1.0);
+        }
+        let share = ops::powf((dbh_m / stem.thick_m).clamp(0.0, ALMOST), 1.0 / CURVE);
+        to_breast - ops::ln(1.0 - share) / Self::rate(&stem)
+    }
+
+    /// Metres of diameter of a free-standing tree of an age in years: the inverse of [`age_years`](Self::age_years).
+    pub fn dbh_at_age_m(&self, age_years: f64) -> f64 {
+        let Some(stem) = self.stem else { return 0.0 };
+        let years = age_years - self.group.years_to_breast();
+        if years <= 0.0 {
+            return 0.0;
+        }
+        stem.thick_m * ops::powf(1.0 - ops::exp(-Self::rate(&stem) * years), CURVE)
+    }
+
+    /// Metres of diameter some years after one in metres, as free-standing trees grow.
+    pub(crate) fn dbh_after_m(&self, dbh_m: f64, years: f64) -> f64 {
+        let Some(stem) = self.stem else { return 0.0 };
+        let share = ops::powf((dbh_m / stem.thick_m).min(1.0), 1.0 / CURVE);
+        let left = (1.0 - share) * ops::exp(-Self::rate(&stem) * years);
+        // Rounding must not make a stem thinner.
+        (stem.thick_m * ops::powf(1.0 - left, CURVE)).max(dbh_m)
+    }
+
+    /// Metres of height for each metre of diameter of a young stem.
+    pub(crate) fn slope(&self, setting: Setting) -> f64 {
+        self.stem.map_or(0.0, |stem| stem.slope(setting))
+    }
+
+    /// Metres of height of a plant of an age in years and the diameter that goes with it.
+    fn height_at_age_m(&self, age_years: f64, dbh_m: f64, setting: Setting) -> f64 {
+        if self.stem.is_none() {
+            return (self.top_m * (1.0 - ops::exp(-4.0 * age_years / self.life_years))).max(LOWEST_M);
+        }
+        let to_breast = self.group.years_to_breast();
+        if dbh_m <= 0.0 {
+            return (BREAST_M * (age_years / to_breast).min(1.0)).max(LOWEST_M);
+        }
+        self.height_m(dbh_m, setting)
+    }
+
+    /// All figures of a tree from those that were measured, which stay as they are. Of a tree without any, those of a
+    /// third of its life, at most 40 years.
+    ///
+    /// The diameter follows from the height, else from the crown, else from the age; the others follow from the diameter.
+    /// Intervals hold 95 % of the trees of the species about the relation, and widen where one is inverted.
+    pub fn fill(&self, measured: &Measured, setting: Setting) -> Figures {
+        let exact = |value| Predicted { value, low: value, high: value };
+        let group = self.group;
+        let (dbh, unsure) = self.stem_of(measured, setting);
+        let rough_age = measured.age_years.unwrap_or_else(|| self.typical_age_years());
+        let height = measured.height_m.map(exact).unwrap_or_else(|| {
+            let value = match (self.stem, measured.crown_width_m) {
+                (None, Some(width)) => width / self.width_of_height,
+                _ if dbh > 0.0 => self.height_m(dbh, setting),
+                _ => self.height_at_age_m(rough_age, dbh, setting),
+            };
+            let with_age = if self.stem.is_none() { group.age_deviation() } else { 0.0 };
+            Predicted::spread(value, group.height_deviation().max(with_age) + 0.6 * unsure)
+        });
+        let crown = measured.crown_width_m.map(exact).unwrap_or_else(|| {
+            let value = match setting {
+                Setting::Free => self.crown_width_m(dbh, height.value),
+                Setting::Stand => self.stand_crown_width_m(dbh, height.value),
+            };
+            let own = self.stem.map_or(WIDTH_DEVIATION, |stem| stem.crown.variance.sqrt());
+            Predicted::spread(value, own + 0.6 * unsure)
+        });
+        let age = measured.age_years.map(exact).unwrap_or_else(|| {
+            Predicted::spread(self.age_years(dbh, height.value), group.age_deviation() + 0.6 * unsure)
+        });
+        let dbh = measured.dbh_m.map_or_else(|| Predicted::spread(dbh, unsure), exact);
+        Figures { height_m: height, dbh_m: dbh, crown_width_m: crown, age_years: age }
+    }
+
+    /// The diameter that follows from what was measured, and the deviation of its logarithm.
+    fn stem_of(&self, measured: &Measured, setting: Setting) -> (f64, f64) {
+        let Some(stem) = self.stem else { return (0.0, 0.0) };
+        let group = self.group;
+        // An inverse widens: the height levels off while the diameter goes on.
+        const INVERSE: f64 = 1.5;
+        match *measured {
+            Measured { dbh_m: Some(dbh), .. } => (dbh, 0.0),
+            Measured { height_m: Some(height), .. } => {
+                (self.dbh_m(height, setting), INVERSE * group.height_deviation())
+            }
+            Measured { crown_width_m: Some(width), .. } => {
+                let cm = ops::exp((ops::ln(width) - stem.crown.b0) / stem.crown.b1);
+                ((0.01 * cm).min(stem.thick_m), stem.crown.variance.sqrt() / stem.crown.b1)
+            }
+            Measured { age_years: Some(age), .. } => (self.dbh_at_age_m(age), group.age_deviation()),
+            _ => (self.dbh_at_age_m(self.typical_age_years()), 2.0 * group.age_deviation()),
+        }
+    }
+
+    /// The age that a tree without any figure is given.
+    fn typical_age_years(&self) -> f64 {
+        (self.life_years / 3.0).min(40.0)
+    }
+}
+
+/// Crown widths of saplings, of their heights.
+const SAPLING: f64 = 0.3;
+/// The least height that a plant is given, metres.
+const LOWEST_M: f64 = 0.05;
+/// Deviation of the logarithm of the width of what has no trunk.
+const WIDTH_DEVIATION: f64 = 0.4;
+
+impl Stem {
+    const fn slope(&self, setting: Setting) -> f64 {
+        match setting {
+            Setting::Free => self.free,
+            Setting::Stand => self.stand,
+        }
+    }
+}
+
+fn nearest_latin(wanted: &str) -> Option<&'static str> {
+    let plain_names: Vec<String> = SPECIES.iter().map(|s| plain(s.latin)).collect();
+    let near = base::nearest(wanted, plain_names.iter().map(String::as_str))?;
+    let row = plain_names.iter().position(|n| n == near)?;
+    SPECIES.get(row).map(|s| s.latin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn species(name: &str) -> &'static Allometry {
+        Allometry::find(name).expect("it is known").allometry
+    }
+
+    #[test]
+    fn every_name_finds_its_species() {
+        for s in Allometry::all() {
+            assert_eq!(species(s.preset).preset, s.preset);
+            assert_eq!(plain(species(s.latin).latin), plain(s.latin), "{}", s.preset);
+            for name in s.names {
+                assert_eq!(species(&name.to_uppercase()).preset, s.preset, "{name}");
+            }
+        }
+        assert!(SPECIES.windows(2).all(|w| w[0].preset < w[1].preset), "in order");
+    }
+
+    #[test]
+    fn every_tree_preset_has_a_row() {
+        let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../studio/presets");
+        // A package by itself has no presets beside it.
+        let Ok(entries) = std::fs::read_dir(folder) else { return };
+        for entry in entries.filter_map(Result::ok) {
+            let word = entry.file_name().to_string_lossy().trim_end_matches(".toml").to_owned();
+            let text = std::fs::read_to_string(entry.path()).expect("a preset can be read");
+            let row = SPECIES.iter().find(|s| s.preset == word);
+            let latin = text.lines().find_map(|l| l.strip_prefix("species = "));
+            assert_eq!(
+                row.map(|s| format!("\"{}\"", s.latin)),
+                latin.map(str::to_owned),
+                "the row of {word}"
+            );
+        }
+    }
+
+    #[test]
+    fn names_as_people_write_them() {
+        for (name, preset) in [
+            ("Platanus \u{d7} hispanica", "plane-tree"),
+            ("Platanus x acerifolia 'Bloodgood'", "plane-tree"),
+            ("Quercus robur L.", "oak"),
+            ("QUERCUS ROBUR", "oak"),
+            ("Populus nigra 'Italica'", "poplar"),
+            ("Picea abies (L.) H.Karst.", "spruce"),
+            ("London Plane", "plane-tree"),
+        ] {
+            let found = Allometry::find(name).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!((found.allometry.preset, found.by_genus), (preset, false), "{name}");
+        }
+        for (name, preset) in
+            [("Quercus petraea", "oak"), ("Acer sp.", "maple"), ("Tilia", "lime"), ("Quercus spp.", "oak")]
+        {
+            let found = Allometry::find(name).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!((found.allometry.preset, found.by_genus), (preset, true), "{name}");
+        }
+        for (name, nearest) in
+            [("oka", Some("oak")), ("Betula pendla", Some("Betula pendula")), ("xyzzy", None)]
+        {
+            let unknown = Allometry::find(name).expect_err("a slip");
+            assert_eq!(unknown.nearest, nearest, "{name}");
+        }
+        assert!(Allometry::find("").is_err() && Allometry::find(&"a".repeat(1 << 20)).is_err());
+    }
+
+    #[test]
+    fn inverses_lead_back() {
+        for s in Allometry::all().iter().filter(|s| s.has_trunk()) {
+            let thick = s.stem.expect("a trunk").thick_m;
+            for setting in Setting::ALL {
+                for share in [0.02, 0.1, 0.3] {
+                    let dbh = share * thick;
+                    let height = s.height_m(dbh, setting);
+                    if height < 0.95 * s.top_m {
+                        let back = s.dbh_m(height, setting);
+                        assert!((back / dbh - 1.0).abs() < 1e-9, "{} {dbh} {back}", s.preset);
+                    }
+                    let age = s.age_years(dbh, height);
+                    assert!((s.dbh_at_age_m(age) / dbh - 1.0).abs() < 1e-9, "{} {age}", s.preset);
+                }
+            }
+            assert!(
+                (s.dbh_at_age_m(50.0 + s.group.years_to_breast()) / s.stem.unwrap().dbh_50_m - 1.0).abs()
+                    < 1e-9
+            );
+        }
+    }
+
+    #[test]
+    fn hasenauers_crowns_are_as_published() {
+        // exp(-0.3232 + 0.6441 ln 30), and so on, by hand.
+        for (name, dbh_m, width_m) in [("spruce", 0.3, 6.471), ("beech", 0.4, 12.258), ("oak", 0.5, 11.815)] {
+            let width = species(name).crown_width_m(dbh_m, 10.0);
+            assert!((width - width_m).abs() < 0.01, "{name} {width}");
+        }
+    }
+
+    #[test]
+    fn what_was_measured_stays_and_the_rest_has_intervals() {
+        let measured = Measured { height_m: Some(17.25), crown_width_m: Some(9.5), ..Measured::default() };
+        for s in Allometry::all() {
+            for setting in Setting::ALL {
+                let f = s.fill(&measured, setting);
+                assert_eq!((f.height_m.value, f.crown_width_m.value), (17.25, 9.5), "{}", s.preset);
+                assert_eq!((f.height_m.low, f.height_m.high), (17.25, 17.25));
+                assert_eq!(f.dbh_m.value > 0.0, s.has_trunk(), "{}", s.preset);
+                for p in [f.dbh_m, f.age_years] {
+                    assert!(
+                        p.low <= p.value && p.value <= p.high && p.high.is_finite(),
+                        "{} {p:?}",
+                        s.preset
+                    );
+                }
+                let empty = s.fill(&Measured::default(), setting);
+                assert!(empty.height_m.value > 0.0 && empty.crown_width_m.value > 0.0, "{}", s.preset);
+                assert!(empty.height_m.value <= s.top_m && empty.height_m.high > empty.height_m.low);
+            }
+        }
+    }
+}

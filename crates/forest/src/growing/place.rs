@@ -1,0 +1,195 @@
+//! Where the first trees stand.
+
+use base::{Counted, Draw, Run, Seed, map_until_cancelled, ops};
+use glam::DVec2;
+
+use super::{Area, ForestError, Kind, Member, Placed};
+use crate::spec::Pattern;
+
+/// Side of the cells that have random numbers of their own, metres: a larger area keeps its trees.
+const CELL_M: f64 = 10.0;
+/// Groups of one species are this many times as wide as its seeds fly.
+const GROUP_PER_SPREAD: f64 = 2.0;
+
+/// Keys of what is drawn for a cell.
+const PLACES: u64 = 1;
+const GROUPS: u64 = 2;
+
+/// Smooth noise of one species, 0 to 1, of which hills are `wide` metres apart.
+fn noise(seed: Seed, p: DVec2, wide: f64) -> f64 {
+    let at = p / wide;
+    let (cell, t) = (at.floor(), at - at.floor());
+    let value = |x: f64, y: f64| {
+        let key = (x as i64 as u64) ^ (y as i64 as u64).rotate_left(32);
+        seed.child(key).stream(Draw::Stand).uniform()
+    };
+    let smooth = |v: f64| ops::smoothstep(0.0, 1.0, v);
+    let row = |y: f64| ops::lerp(value(cell.x, y), value(cell.x + 1.0, y), smooth(t.x));
+    ops::lerp(row(cell.y), row(cell.y + 1.0), smooth(t.y))
+}
+
+/// What draws the species of a place.
+struct Chooser<'a> {
+    area: &'a Area<'a>,
+    seed: Seed,
+    shares: f64,
+    /// One species is in no groups.
+    has_groups: bool,
+}
+
+impl Chooser<'_> {
+    /// How likely each species is at a place, of what it is at best; added up.
+    fn weights(&self, p: DVec2, weights: &mut [f64]) -> f64 {
+        let mut sum = 0.0;
+        let conditions = self.area.conditions(p);
+        for (k, (kind, weight)) in self.area.kinds.iter().zip(weights).enumerate() {
+            let groups = if self.has_groups {
+                let seed = self.seed.child(GROUPS).child(k as u64);
+                let hill = noise(seed, p, GROUP_PER_SPREAD * kind.spread_m);
+                // Steep, so that groups are clear; its mean is about a fifth.
+                5.0 * hill * hill * hill * hill
+            } else {
+                1.0
+            };
+            *weight = kind.share / self.shares
+                * groups
+                * conditions.as_ref().map_or(0.0, |c| self.area.suits(k, c, p));
+            sum += *weight;
+        }
+        sum
+    }
+
+    /// A tree at a place, if one comes up there.
+    fn tree(&self, p: DVec2, key: Seed, density: f64) -> Option<Member> {
+        if !self.area.is_within(p) || !self.area.shapes.is_open(p) {
+            return None;
+        }
+        let mut weights = [0.0; super::MOST_SPECIES];
+        let weights = &mut weights[..self.area.kinds.len()];
+        let sum = self.weights(p, weights);
+        let mut stream = key.stream(Draw::Stand);
+        if !stream.chance((sum * density).min(1.0)) {
+            return None;
+        }
+        let mut left = stream.uniform() * sum;
+        let species = weights.iter().position(|w| {
+            left -= w;
+            left < 0.0
+        });
+        let species = species.unwrap_or(weights.len() - 1);
+        let kind: &Kind = &self.area.kinds[species];
+        let age = stream.range(kind.age_years[0], kind.age_years[1]);
+        Some(Member::planted(p, species, age, kind))
+    }
+}
+
+/// Places the first trees.
+pub(super) fn place(area: &Area<'_>, seed: Seed, run: &Run<'_>) -> Result<Placed, ForestError> {
+    let shares: f64 = area.kinds.iter().map(|k| k.share).sum();
+    let seed = seed.child(PLACES);
+    let chooser = Chooser { area, seed, shares, has_groups: area.kinds.len() > 1 };
+    let proposed = match area.spec.pattern {
+        Pattern::Natural => by_chance(&chooser, run)?,
+        Pattern::Rows { .. } => in_rows(&chooser, run)?,
+    };
+    let all = proposed.len();
+    let members = keep_apart(area, proposed)?;
+    Ok(Placed { dropped: all - members.len(), members })
+}
+
+fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestError> {
+    let area = chooser.area;
+    let size = area.high - area.low;
+    let density = area.spec.density_ha / 10_000.0;
+    run.budget.check_estimate(Counted::Trees, density * size.x * size.y, "lower density_ha or area_m")?;
+    // Cells are those of the whole plane.
+    let first = (area.low / CELL_M).floor();
+    let last = (area.high / CELL_M).ceil();
+    let (columns, rows) = (ops::whole(last.x - first.x), ops::whole(last.y - first.y));
+    let row = |r: usize| {
+        let mut found = Vec::new();
+        for c in 0..columns {
+            let corner = (first + DVec2::new(f64::from(c), r as f64)) * CELL_M;
+            let key =
+                ((corner.x / CELL_M) as i64 as u64) ^ ((corner.y / CELL_M) as i64 as u64).rotate_left(32);
+            let cell = chooser.seed.child(key);
+            let mut stream = cell.stream(Draw::Scatter);
+            let wanted = density * CELL_M * CELL_M;
+            let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
+            for k in 0..u64::from(count) {
+                let p = corner + DVec2::new(stream.uniform(), stream.uniform()) * CELL_M;
+                found.extend(chooser.tree(p, cell.child(k), 1.0));
+            }
+        }
+        found
+    };
+    let found = map_until_cancelled(run, rows as usize, row)?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestError> {
+    let area = chooser.area;
+    let Pattern::Rows { spacing_m, row_m, angle_deg, jitter_m } = area.spec.pattern else {
+        return Ok(Vec::new());
+    };
+    let along = base::turn::direction(angle_deg * (ops::PI / 180.0));
+    let across = DVec2::new(-along.y, along.x);
+    let half = 0.5 * (area.high - area.low).length();
+    let steps = |distance: f64| (half / distance).floor();
+    let (per_row, rows) = (steps(spacing_m), steps(row_m));
+    run.budget.check_estimate(
+        Counted::Trees,
+        (2.0 * per_row + 1.0) * (2.0 * rows + 1.0),
+        "lower area_m, or plant wider apart",
+    )?;
+    let count = 2 * ops::whole(per_row) as usize + 1;
+    let row = |r: usize| {
+        let middle = across * ((r as f64 - rows) * row_m);
+        let seed = chooser.seed.child(r as u64);
+        let tree = |k: usize| {
+            let key = seed.child(k as u64);
+            let mut stream = key.stream(Draw::Scatter);
+            let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
+            chooser.tree(middle + along * ((k as f64 - per_row) * spacing_m) + off, key, 1.0)
+        };
+        (0..count).filter_map(tree).collect::<Vec<_>>()
+    };
+    let found = map_until_cancelled(run, 2 * ops::whole(rows) as usize + 1, row)?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Leaves out each tree that stands nearer to one before it than its species wants.
+fn keep_apart(area: &Area<'_>, proposed: Vec<Member>) -> Result<Vec<Member>, ForestError> {
+    let spacing = |m: &Member| area.kinds[usize::from(m.species)].spacing_m;
+    let widest = proposed.iter().map(spacing).fold(0.0, f64::max);
+    let size = area.high - area.low;
+    let side = widest.max((size.x * size.y / proposed.len().max(1) as f64).sqrt()).max(0.05);
+    let columns = ops::whole((size.x / side).ceil()).max(1) as usize;
+    let rows = ops::whole((size.y / side).ceil()).max(1) as usize;
+    const END: u32 = u32::MAX;
+    let mut heads = vec![END; columns * rows];
+    let mut kept: Vec<Member> = Vec::with_capacity(proposed.len());
+    let mut next: Vec<u32> = Vec::with_capacity(proposed.len());
+    for member in proposed {
+        let p = member.place();
+        let index = |v: f64, count: usize| (ops::whole(v / side) as usize).min(count - 1);
+        let (x, y) = (index(p.x - area.low.x, columns), index(p.y - area.low.y, rows));
+        let (least, mut is_free) = (spacing(&member), true);
+        for row in y.saturating_sub(1)..=(y + 1).min(rows - 1) {
+            for column in x.saturating_sub(1)..=(x + 1).min(columns - 1) {
+                let mut k = heads[row * columns + column];
+                while k != END && is_free {
+                    is_free = kept[k as usize].place().distance_squared(p) >= least * least;
+                    k = next[k as usize];
+                }
+            }
+        }
+        if is_free {
+            let head = &mut heads[y * columns + x];
+            next.push(*head);
+            *head = u32::try_from(kept.len()).unwrap_or(END);
+            kept.push(member);
+        }
+    }
+    Ok(kept)
+}

@@ -1,0 +1,250 @@
+//! One step of growth: light, growth, death, seedlings.
+
+use base::{Draw, Run, Seed, map_until_cancelled, ops};
+use glam::DVec2;
+
+use super::grid::Grid;
+use super::{Area, ForestError, Kind, Member};
+use crate::BREAST_M;
+
+/// Trees of one job.
+const JOB: usize = 4096;
+/// A neighbour that is lower than this share of a tree's height takes no light from it, and one that is higher by as much
+/// takes all that its crown takes.
+const HEIGHT_BAND: f64 = 0.9;
+/// Of growth in full light, the share below which trees begin to die of shade, and by how much less until all do that will.
+const STRESS_FROM: f64 = 0.13;
+const STRESS_OVER: f64 = 0.1;
+/// Yearly chance to die of a tree that does not grow (Botkin et al. 1972: 1 in 100 lives ten such years).
+const STARVED: f64 = 0.368;
+/// One tree in a hundred lives as long as its species does: `-ln 0.01`.
+const ONE_IN_A_HUNDRED: f64 = 4.605;
+/// Growth of forest trees in full light, of that of trees in gardens and streets, on a good site: top heights at 50 years are
+/// then those of yield tables (pine 20 m, spruce 25 m).
+const STAND_RATE: f64 = 0.7;
+/// Light from which on a tree stands free, and below which its stem is as slender as in a closed stand.
+const FREE_LIGHT: [f64; 2] = [0.5, 0.95];
+/// Deviation of the logarithm of the vigour of single trees.
+const VIGOUR: f64 = 0.18;
+/// The share of its life from which on a tree has seeds, and the least and greatest age, years.
+const SEED_SHARE: f64 = 0.1;
+const SEED_AGE: [f64; 2] = [8.0, 40.0];
+/// Diameter of a seedling that has come to breast height, metres.
+pub(super) const SEEDLING_DBH_M: f64 = 0.008;
+/// How far a crown may be pushed, of its radius.
+const MOST_PUSH: f64 = 0.5;
+
+/// What stands around one tree.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Around {
+    /// Light that comes to its crown, 0 to 1.
+    pub(super) light: f64,
+    /// Where its neighbours push its crown: the sum of unit vectors away from them, each by how much it shades.
+    pub(super) push: DVec2,
+    /// How much they shade, added up.
+    pub(super) crowding: f64,
+    /// Its trunk touches that of a thicker tree.
+    pub(super) is_touched: bool,
+}
+
+/// Looks at the neighbours of a tree.
+///
+/// Light falls off with the crowns above by Beer's law. A crown above counts by its share of the tree's own crown, by its
+/// shade, and by how much higher its tree is. The share of two discs is by the smooth step of how far one reaches into the
+/// other, which is within 3 % of the disc's area of the exact one.
+pub(super) fn look(members: &[Member], grid: &Grid, kinds: &[Kind], i: usize) -> Around {
+    let me = members[i];
+    let (mut depth, mut crowding, mut push, mut is_touched) = (0.0, 0.0, DVec2::ZERO, false);
+    for run in grid.near(me.place()) {
+        for (j, other) in members[run.clone()].iter().enumerate() {
+            let (dx, dz) = (me.x - other.x, me.z - other.z);
+            let (gap2, reach) = (dx * dx + dz * dz, me.radius + other.radius);
+            if gap2 >= reach * reach {
+                continue;
+            }
+            let j = run.start + j;
+            if j == i {
+                continue;
+            }
+            let gap = gap2.sqrt();
+            let is_thinner = (me.dbh, other.id) < (other.dbh, me.id);
+            is_touched |= is_thinner && gap < 0.5 * (me.dbh + other.dbh);
+            let over = 0.5 + 0.5 * (other.height - me.height) / (HEIGHT_BAND * me.height);
+            if over <= 0.0 {
+                continue;
+            }
+            let least = me.radius.min(other.radius);
+            let t = (0.5 * (reach - gap) / least).min(1.0);
+            let share = t * t * (3.0 - 2.0 * t) * (least * least) / (me.radius * me.radius);
+            let weight = over.min(1.0) * share;
+            depth += weight * kinds[usize::from(other.species)].shade;
+            crowding += weight;
+            if gap > 0.0 {
+                push += DVec2::new(dx, dz) * (weight / gap);
+            }
+        }
+    }
+    Around { light: ops::exp(-depth), push, crowding, is_touched }
+}
+
+/// Growth in a light, of that in full light: between the curves of trees that bear and that need light (Botkin et al. 1972).
+pub(super) fn response(light: f64, demand: f64) -> f64 {
+    let bears = 1.0 - ops::exp(-4.64 * (light - 0.05));
+    let needs = 2.24 * (1.0 - ops::exp(-1.136 * (light - 0.08)));
+    ops::lerp(bears, needs, demand).clamp(0.0, 1.0)
+}
+
+/// How free a tree stands, 0 to 1.
+pub(super) fn freedom(light: f64) -> f64 {
+    ops::smoothstep(FREE_LIGHT[0], FREE_LIGHT[1], light)
+}
+
+/// How a tree is some years later; none if it died.
+fn grown(me: Member, around: &Around, kind: &Kind, site: f64, years: f64, seed: Seed) -> Option<Member> {
+    let mut stream = seed.stream(Draw::Stand);
+    let growth = response(around.light, kind.light);
+    let stress = ((STRESS_FROM - growth) / STRESS_OVER).clamp(0.0, 1.0);
+    let yearly = (ONE_IN_A_HUNDRED / kind.allometry.life_years + STARVED * stress).min(1.0);
+    let lives = ops::exp(years * ops::ln((1.0 - yearly).max(1e-12)));
+    // Two trunks in one place: the thinner one dies.
+    if around.is_touched || !stream.chance(lives) {
+        return None;
+    }
+    let mut me = Member { age: me.age + years, ..me };
+    let free_years = STAND_RATE * growth * site * me.vigour * years;
+    kind.grow(&mut me, free_years, freedom(around.light));
+    Some(me)
+}
+
+/// What one job gives back.
+struct Part {
+    lived: Vec<Member>,
+    seedlings: Vec<Member>,
+}
+
+/// Counts of one step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Turnover {
+    pub(super) died: usize,
+    pub(super) came: usize,
+}
+
+/// Lets a stand grow for some years. `next_id`: the number of the next tree, if seedlings may come up.
+pub(super) fn step(
+    members: &mut Vec<Member>,
+    area: &Area<'_>,
+    years: f64,
+    next_id: Option<&mut u32>,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<Turnover, ForestError> {
+    let grid = sorted(members, area);
+    let (all, has_seedlings): (&[Member], _) = (members, next_id.is_some());
+    let job = |k: usize| {
+        let range = k * JOB..((k + 1) * JOB).min(all.len());
+        let mut part = Part { lived: Vec::with_capacity(range.len()), seedlings: Vec::new() };
+        for i in range {
+            let (me, around) = (all[i], look(all, &grid, &area.kinds, i));
+            let kind = &area.kinds[usize::from(me.species)];
+            let own = seed.child(u64::from(me.id));
+            let Some(later) = grown(me, &around, kind, area.spec.site, years, own) else { continue };
+            if has_seedlings {
+                sow(&later, &around, kind, area, years, own, &mut part.seedlings);
+            }
+            part.lived.push(later);
+        }
+        part
+    };
+    let parts = map_until_cancelled(run, all.len().div_ceil(JOB), job)?;
+    let before = members.len();
+    members.clear();
+    parts.iter().for_each(|part| members.extend_from_slice(&part.lived));
+    let died = before - members.len();
+    let mut came = 0;
+    if let Some(id) = next_id {
+        for mut seedling in parts.into_iter().flat_map(|part| part.seedlings) {
+            seedling.id = *id;
+            *id = id.checked_add(1).ok_or(ForestError::TooMany)?;
+            came += 1;
+            members.push(seedling);
+        }
+    }
+    run.budget.check(base::Counted::Trees, members.len() as u64, "lower seedlings, years or area_m")?;
+    Ok(Turnover { died, came })
+}
+
+/// Sorts trees into cells as wide as the widest crown.
+pub(super) fn sorted(members: &mut Vec<Member>, area: &Area<'_>) -> Grid {
+    let widest = members.iter().map(|m| m.radius.max(m.dbh)).fold(0.1, f64::max);
+    Grid::sort(members, area.low, area.high - area.low, 2.0 * widest)
+}
+
+/// Seedlings of a tree that come to breast height.
+fn sow(
+    parent: &Member,
+    around: &Around,
+    kind: &Kind,
+    area: &Area<'_>,
+    years: f64,
+    seed: Seed,
+    into: &mut Vec<Member>,
+) {
+    let seed_age = (SEED_SHARE * kind.allometry.life_years).clamp(SEED_AGE[0], SEED_AGE[1]);
+    if parent.age < seed_age || kind.seedlings <= 0.0 {
+        return;
+    }
+    let mut stream = seed.stream(Draw::Scatter);
+    let wanted = kind.seedlings * years * around.light;
+    let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
+    for _ in 0..count {
+        // Exponential distances in the plane: as far as the species spreads, in the mean.
+        let far = -kind.spread_m * ops::ln(1.0 - stream.uniform());
+        let p = parent.place() + base::turn::direction(stream.range(0.0, ops::TAU)) * far;
+        let luck = stream.uniform();
+        if !area.is_within(p) || !area.shapes.is_open(p) {
+            continue;
+        }
+        let suits = area.conditions(p).map_or(0.0, |c| area.suits(usize::from(parent.species), &c, p));
+        if luck < suits {
+            into.push(Member::seedling(p, parent.species, kind, stream.normal()));
+        }
+    }
+}
+
+/// What the last look says of the crowns of a stand that has grown.
+pub(super) fn last_look(
+    members: &[Member],
+    grid: &Grid,
+    area: &Area<'_>,
+    run: &Run<'_>,
+) -> Result<Vec<Around>, ForestError> {
+    let job = |k: usize| {
+        let range = k * JOB..((k + 1) * JOB).min(members.len());
+        range.map(|i| look(members, grid, &area.kinds, i)).collect::<Vec<_>>()
+    };
+    Ok(map_until_cancelled(run, members.len().div_ceil(JOB), job)?.into_iter().flatten().collect())
+}
+
+/// How far a crown of a radius is pushed, metres: the farther, the more its neighbours stand on one side and the more they
+/// shade it.
+pub(super) fn pushed(around: &Around, radius: f64) -> DVec2 {
+    if around.crowding <= 0.0 {
+        return DVec2::ZERO;
+    }
+    around.push * (MOST_PUSH * radius * ops::tanh(around.crowding) / around.crowding)
+}
+
+impl Member {
+    /// A seedling; `normal`: a random number for its vigour.
+    fn seedling(p: DVec2, species: u16, kind: &Kind, normal: f64) -> Self {
+        let mut seedling = Self { x: p.x, z: p.y, species, vigour: vigour(normal), ..Self::default() };
+        seedling.age = kind.allometry.age_years(SEEDLING_DBH_M, BREAST_M);
+        (seedling.dbh, seedling.height) = kind.young();
+        seedling.radius = kind.radius(&seedling);
+        seedling
+    }
+}
+
+pub(super) fn vigour(normal: f64) -> f64 {
+    ops::exp(VIGOUR * normal.clamp(-2.5, 2.5))
+}

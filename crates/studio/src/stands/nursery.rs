@@ -1,0 +1,427 @@
+//! Which plants are grown for a stand, how thick they are, and their meshes.
+
+use base::{Report, Run, Seed, Stopped, map_until_cancelled, ops};
+use forest::{Stand, Tree};
+use glam::DVec3;
+use growth::TreeSpec;
+use mesh::Model;
+use plant::{OrganKind, Plant};
+
+use super::placed::{Placed, place};
+use crate::trees::{TreeError, TreeOptions, grow_plant, mesh_plant};
+
+/// Ages at which a species is grown, as shares of the years of its spec: a tree gets the one whose height is nearest to its own.
+const AGES: [f64; 4] = [1.0, 0.5, 0.25, 0.12];
+/// Stems are measured up to this height, metres, in so many steps: 1.3 m of the smallest scale that a plant may have.
+const STEM_M: f64 = 4.0;
+const STEM_STEPS: usize = 80;
+/// Breast height, metres.
+const BREAST_M: f64 = 1.3;
+/// Views along a side of an atlas, and the height in pixels for which the first coarser level is made; each further one is for half
+/// of it.
+const VIEWS: u32 = 8;
+const PIXELS: u32 = 192;
+/// How much thinner or thicker than it grew the stem of a variant may be made.
+const THINNEST: f64 = 0.4;
+const THICKEST: f64 = 2.5;
+/// A stem that is less often as thick as the thinnest twig has no taper that could change.
+const TAPERED: f64 = 1.5;
+
+/// Which plants are grown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NurserySpec {
+    /// Plants of each species and age that the stand has, 1 to 64; fewer where it has fewer trees. Default 4.
+    pub variants: u32,
+    /// What they are grown from.
+    pub seed: Seed,
+}
+
+impl Default for NurserySpec {
+    fn default() -> Self {
+        Self { variants: 4, seed: Seed::new(1) }
+    }
+}
+
+/// How plants of a nursery are meshed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NurseryLook {
+    /// Fineness, textures, foliage.
+    pub skin: skin::SkinSpec,
+    /// The finest level, 0 to `lods`: 0 is the whole plant.
+    pub finest: u32,
+    /// The coarsest level of meshes, 0 to 6.
+    pub lods: u32,
+    /// One more level of views from all sides, in an atlas of so many pixels a side.
+    pub impostor: Option<u32>,
+}
+
+impl NurseryLook {
+    /// Levels that plants are meshed at, at least one.
+    pub fn levels(&self) -> u32 {
+        self.lods.saturating_sub(self.finest) + 1 + u32::from(self.impostor.is_some())
+    }
+}
+
+/// A plant that stands for trees of a species.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// Row of [`Stand::species`].
+    pub species: u16,
+    /// Row of the ages at which the species is grown, 0 for the oldest.
+    pub age: u8,
+    /// Among those of its species and age, from 0.
+    pub number: u32,
+    /// Metres.
+    pub height_m: f64,
+    /// Mean diameter of the crown, metres.
+    pub crown_width_m: f64,
+    /// How far the middle of the leaves lies from the foot, metres, horizontally.
+    pub lean_m: DVec3,
+    /// The exponent by which radii are changed: `r' = r_min (r / r_min)^n`.
+    pub thicker: f64,
+    /// Radii of each stem at even heights from 0 to [`STEM_M`], metres, as they grew; 0 above its tip.
+    stems: Vec<Vec<f64>>,
+    /// The thinnest shoot, metres.
+    thinnest_m: f64,
+}
+
+impl Variant {
+    /// The diameter of its stems at a height, metres: of several the quadratic sum. 0 above their tips.
+    pub fn diameter_m(&self, height_m: f64) -> f64 {
+        let at = (height_m / STEM_M).clamp(0.0, 1.0) * (STEM_STEPS - 1) as f64;
+        let row = ops::whole(at) as usize;
+        let share = at - row as f64;
+        let radius = |stem: &Vec<f64>| {
+            let (a, b) = (stem.get(row).copied(), stem.get(row + 1).copied());
+            let (a, b) = (a.unwrap_or(0.0), b.or(a).unwrap_or(0.0));
+            if a > 0.0 && b > 0.0 {
+                thickened(ops::lerp(a, b, share), self.thinnest_m, self.thicker)
+            } else {
+                0.0
+            }
+        };
+        let squares = self.stems.iter().map(|s| 4.0 * radius(s) * radius(s)).sum::<f64>();
+        squares.sqrt()
+    }
+
+    fn of(plant: &Plant, (species, age, number): (u16, u8, u32)) -> Self {
+        let measures = plant.measure();
+        let (low, high) = plant.extent().unwrap_or_default();
+        let across = 0.5 * (high.x - low.x + high.z - low.z);
+        let hull = 2.0 * (measures.crown_projection_m2 / core::f64::consts::PI).sqrt();
+        let shoot = plant.shoot();
+        let standing = plant.axes.iter().zip(&shoot).filter(|(a, s)| **s && a.bearer.is_none());
+        let stems = standing.map(|(axis, _)| {
+            let rows = axis.nodes.start as usize..axis.nodes.end as usize;
+            stem_radii(&plant.nodes.position[rows.clone()], &plant.nodes.radius_m[rows])
+        });
+        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+        let (sum, n) = leaves.fold((DVec3::ZERO, 0_u32), |(sum, n), o| (sum + o.frame.origin, n + 1));
+        Self {
+            species,
+            age,
+            number,
+            height_m: measures.height_m.max(0.01),
+            crown_width_m: if hull > 0.0 { hull } else { across.max(0.01) },
+            lean_m: (sum / f64::from(n.max(1))).with_y(0.0),
+            thicker: 1.0,
+            stems: stems.collect(),
+            thinnest_m: thinnest(plant, &shoot),
+        }
+    }
+
+    /// Lets the stem become so many times as thick at breast height.
+    fn thicken(&mut self, times: f64) {
+        let breast = self.diameter_m(BREAST_M) / 2.0;
+        if breast > TAPERED * self.thinnest_m && self.thinnest_m > 0.0 {
+            let times = times.clamp(THINNEST, THICKEST);
+            self.thicker = (1.0 + ops::ln(times) / ops::ln(breast / self.thinnest_m)).max(0.0);
+        }
+    }
+}
+
+fn thickened(radius: f64, thinnest: f64, exponent: f64) -> f64 {
+    if radius > thinnest && thinnest > 0.0 {
+        thinnest * ops::powf(radius / thinnest, exponent)
+    } else {
+        radius
+    }
+}
+
+fn thinnest(plant: &Plant, shoot: &[bool]) -> f64 {
+    let own = plant.nodes.radius_m.iter().zip(&plant.nodes.axis);
+    let own = own.filter(|(r, a)| **r > 0.0 && shoot.get(a.index()).copied().unwrap_or(false));
+    own.map(|(r, _)| *r).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// The radius where a stem first passes each height above its foot.
+fn stem_radii(points: &[DVec3], radii: &[f64]) -> Vec<f64> {
+    let foot = points.first().map_or(0.0, |p| p.y);
+    let mut out = Vec::with_capacity(STEM_STEPS);
+    for step in 0..STEM_STEPS {
+        let level = foot + STEM_M * step as f64 / (STEM_STEPS - 1) as f64;
+        let passing =
+            points.windows(2).zip(radii.windows(2)).find(|(p, _)| p[0].y <= level && p[1].y >= level);
+        out.push(passing.map_or(0.0, |(p, r)| {
+            let rise = p[1].y - p[0].y;
+            if rise > 0.0 { ops::lerp(r[0], r[1], (level - p[0].y) / rise) } else { r[0] }
+        }));
+    }
+    out
+}
+
+/// Why a plant of a stand was not made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NurseryError {
+    /// One of the species cannot be grown.
+    #[error("species {species}: {error}")]
+    Species {
+        /// Its name in the stand.
+        species: String,
+        /// Why.
+        error: TreeError,
+    },
+    /// The stand names more species than there are specs.
+    #[error("the stand has {species} species, and {specs} specs were given")]
+    Specs {
+        /// Of the stand.
+        species: usize,
+        /// Given.
+        specs: usize,
+    },
+    /// The user asked to stop, or it would have been too much.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<base::Cancelled> for NurseryError {
+    fn from(cancelled: base::Cancelled) -> Self {
+        Self::Stopped(Stopped::Cancelled(cancelled))
+    }
+}
+
+impl NurseryError {
+    fn of(species: &str, error: TreeError) -> Self {
+        match error {
+            TreeError::Cancelled(c) => Self::Stopped(Stopped::Cancelled(c)),
+            error => Self::Species { species: species.to_owned(), error },
+        }
+    }
+}
+
+/// The plants of a stand: grown, measured and thrown away again; they are grown anew when they are meshed.
+///
+/// Each species is grown at up to four ages of the life that its spec tells, each age in `variants` individuals, as the trees of
+/// the stand need them. Stems are made thicker or thinner (the exponent of their pipe model changes, twigs stay) so that the k-th
+/// of n individuals has the slenderness of the k-th n-th of its trees.
+#[derive(Clone, Debug)]
+pub struct Nursery {
+    names: Vec<String>,
+    specs: Vec<TreeSpec>,
+    seed: Seed,
+    /// Heights of the first individual of each species at its ages.
+    heights: Vec<Vec<f64>>,
+    /// Sorted by species, age and number.
+    variants: Vec<Variant>,
+    /// First row and number of variants, by species and age.
+    rows: Vec<Vec<(u32, u32)>>,
+}
+
+impl Nursery {
+    /// Grows what a stand needs; `specs`: of its species, in their order. The same bits for any executor.
+    ///
+    /// Cost: one growth for each species and age, and one for each variant; no meshes.
+    ///
+    /// # Errors
+    /// [`NurseryError`] with the name of the species.
+    pub fn plan(
+        stand: &Stand,
+        specs: &[TreeSpec],
+        spec: &NurserySpec,
+        run: &Run<'_>,
+    ) -> Result<Self, NurseryError> {
+        if specs.len() < stand.species.len() {
+            return Err(NurseryError::Specs { species: stand.species.len(), specs: specs.len() });
+        }
+        let mut nursery = Self {
+            names: stand.species.clone(),
+            specs: specs.to_vec(),
+            seed: spec.seed,
+            heights: Vec::new(),
+            variants: Vec::new(),
+            rows: vec![Vec::new(); stand.species.len()],
+        };
+        let ages: Vec<(u16, u8)> = (0_u16..)
+            .zip(&specs[..stand.species.len()])
+            .flat_map(|(s, spec)| {
+                (0_u8..).take(if spec.years.is_some() { AGES.len() } else { 1 }).map(move |a| (s, a))
+            })
+            .collect();
+        let firsts = nursery.grow_all(&ages.iter().map(|&(s, a)| (s, a, 0)).collect::<Vec<_>>(), run)?;
+        nursery.heights = vec![Vec::new(); stand.species.len()];
+        for first in &firsts {
+            nursery.heights[usize::from(first.species)].push(first.height_m);
+        }
+        // Trees of each species and age.
+        let mut groups: Vec<Vec<Vec<u32>>> =
+            nursery.heights.iter().map(|h| vec![Vec::new(); h.len()]).collect();
+        for (row, tree) in (0..).zip(&stand.trees) {
+            groups[usize::from(tree.species)][nursery.age_of(tree)].push(row);
+        }
+        let mut wanted = Vec::new();
+        for (s, of) in (0_u16..).zip(&groups) {
+            for (a, trees) in (0_u8..).zip(of) {
+                let count = spec.variants.max(1).min(u32::try_from(trees.len()).unwrap_or(u32::MAX));
+                let first = u32::try_from(wanted.len()).unwrap_or(u32::MAX);
+                nursery.rows[usize::from(s)].push((first, count));
+                wanted.extend((0..count).map(|n| (s, a, n)));
+            }
+        }
+        nursery.variants = nursery.grow_all(&wanted, run)?;
+        for variant in &mut nursery.variants {
+            let trees = &groups[usize::from(variant.species)][usize::from(variant.age)];
+            let count = nursery.rows[usize::from(variant.species)][usize::from(variant.age)].1;
+            let mut times: Vec<f64> =
+                trees.iter().filter_map(|&t| wanted_thickness(variant, &stand.trees[t as usize])).collect();
+            times.sort_unstable_by(f64::total_cmp);
+            // The middle of the k-th n-th.
+            let place = (2 * variant.number as usize + 1) * times.len() / (2 * count.max(1) as usize);
+            if let Some(times) = times.get(place) {
+                variant.thicken(*times);
+            }
+        }
+        Ok(nursery)
+    }
+
+    /// All plants.
+    pub fn variants(&self) -> &[Variant] {
+        &self.variants
+    }
+
+    /// The name of a variant's files: `oak-0-2`.
+    pub fn name(&self, variant: u32) -> String {
+        let v = &self.variants[variant as usize];
+        let species = &self.names[usize::from(v.species)];
+        let stem = species.rsplit(['/', '\\']).next().unwrap_or_default();
+        let stem = formats::file_name(stem.strip_suffix(".toml").unwrap_or(stem), "tree");
+        // Two paths may end alike.
+        let same = |other: &String| {
+            let other = other.rsplit(['/', '\\']).next().unwrap_or_default();
+            let other = other.strip_suffix(".toml").unwrap_or(other);
+            formats::file_name(other, "tree").to_lowercase() == stem.to_lowercase()
+        };
+        let twin = self.names[..usize::from(v.species)].iter().filter(|n| same(n)).count();
+        let twin = if twin > 0 { format!("-{}", twin + 1) } else { String::new() };
+        format!("{stem}{twin}-{}-{}", v.age, v.number)
+    }
+
+    /// Which plant stands for a tree, and how. None for a tree of a species that the stand did not have.
+    pub fn place(&self, tree: &Tree) -> Option<Placed> {
+        let heights = self.heights.get(usize::from(tree.species)).filter(|h| !h.is_empty())?;
+        debug_assert!(heights.iter().all(|h| *h > 0.0), "plants are above the ground");
+        let &(first, count) = self.rows.get(usize::from(tree.species))?.get(self.age_of(tree))?;
+        let own = self.variants.get(first as usize..(first + count) as usize)?;
+        place(own, tree, self.seed).map(|p| Placed { variant: p.variant + first, ..p })
+    }
+
+    /// The meshes of a variant, finest first: grown again, meshed at each level.
+    ///
+    /// # Errors
+    /// [`NurseryError`].
+    pub fn models(
+        &self,
+        variant: u32,
+        look: &NurseryLook,
+        run: &Run<'_>,
+    ) -> Result<Vec<Model>, NurseryError> {
+        let v = &self.variants[variant as usize];
+        let species = &self.names[usize::from(v.species)];
+        let failed = |e: TreeError| NurseryError::of(species, e);
+        let (spec, seed) = self.individual(v.species, v.age, v.number);
+        let mut plant = grow_plant(&spec, seed, run).map_err(failed)?;
+        let shoot = plant.shoot();
+        for (radius, axis) in plant.nodes.radius_m.iter_mut().zip(&plant.nodes.axis) {
+            if shoot.get(axis.index()).copied().unwrap_or(false) {
+                *radius = thickened(*radius, v.thinnest_m, v.thicker);
+            }
+        }
+        let options = TreeOptions { skin: look.skin.clone(), ..TreeOptions::default() };
+        // Textures follow from the species, so that its individuals share them.
+        let skin_seed = self.species_seed(v.species);
+        let mut models = Vec::new();
+        for level in look.finest.min(look.lods)..=look.lods.min(6) {
+            let model = mesh_plant(&plant, (&spec, skin_seed), &options, level, run);
+            models.push(model.map_err(|e| failed(e.into()))?);
+        }
+        if let Some(size) = look.impostor {
+            // Of the level that is made for pictures of the size of its views: finer ones look the same and take as much longer.
+            let level =
+                (1..=look.lods).rev().find(|l| PIXELS >> (l - 1) >= size / VIEWS).unwrap_or(look.lods.min(1));
+            let own = models.get(level.wrapping_sub(look.finest) as usize);
+            let made = if own.is_some() {
+                None
+            } else {
+                let made = mesh_plant(&plant, (&spec, skin_seed), &options, level, run);
+                Some(made.map_err(|e| failed(e.into()))?)
+            };
+            if let Some(of) = own.or(made.as_ref())
+                && let Some(far) = render::impostor(of, size, run)?
+            {
+                models.push(far);
+            }
+        }
+        let name = self.name(variant);
+        models.iter_mut().for_each(|m| m.name.clone_from(&name));
+        Ok(models)
+    }
+
+    /// What a stand's plants cannot do: told once, with the numbers.
+    pub fn tell(&self, misfits: &super::Misfits, report: &mut Report) {
+        misfits.tell(report);
+    }
+
+    /// The age whose height is nearest to a tree's.
+    fn age_of(&self, tree: &Tree) -> usize {
+        let heights = &self.heights[usize::from(tree.species)];
+        let off = |h: f64| ops::ln(h / tree.height_m.max(0.01)).abs();
+        let nearest = (0..heights.len()).min_by(|&a, &b| off(heights[a]).total_cmp(&off(heights[b])));
+        nearest.unwrap_or(0)
+    }
+
+    fn species_seed(&self, species: u16) -> Seed {
+        let name = self.names[usize::from(species)].bytes();
+        name.fold(self.seed, |seed, byte| seed.child(u64::from(byte)))
+    }
+
+    /// What an individual is grown from: of the same number it is the same life at each age.
+    fn individual(&self, species: u16, age: u8, number: u32) -> (TreeSpec, Seed) {
+        let mut spec = self.specs[usize::from(species)].clone();
+        if let Some(years) = spec.years {
+            let share = AGES.get(usize::from(age)).copied().unwrap_or(1.0);
+            let whole = spec.age.unwrap_or(years).min(years);
+            spec.age = Some(ops::whole((f64::from(whole) * share).round()).max(1));
+        }
+        (spec, self.species_seed(species).child(u64::from(number)))
+    }
+
+    fn grow_all(&self, wanted: &[(u16, u8, u32)], run: &Run<'_>) -> Result<Vec<Variant>, NurseryError> {
+        let grown = map_until_cancelled(run, wanted.len(), |k| {
+            let (species, age, number) = wanted[k];
+            let (spec, seed) = self.individual(species, age, number);
+            let alone = Run { executor: &base::Serial, ..*run };
+            let plant = grow_plant(&spec, seed, &alone);
+            plant
+                .map(|p| Variant::of(&p, wanted[k]))
+                .map_err(|e| NurseryError::of(&self.names[usize::from(species)], e))
+        })?;
+        grown.into_iter().collect()
+    }
+}
+
+/// How much thicker a variant would have to be to have a tree's diameter; none of a tree without one.
+fn wanted_thickness(variant: &Variant, tree: &Tree) -> Option<f64> {
+    let (wide, tall) = (tree.crown_width_m / variant.crown_width_m, tree.height_m / variant.height_m);
+    let grown = variant.diameter_m(BREAST_M / tall) * wide;
+    let times = tree.dbh_m / grown;
+    (tree.dbh_m > 0.0 && times.is_finite() && times > 0.0).then_some(times)
+}
