@@ -7,6 +7,7 @@
 //! | `ground` | [`Ground`], [`Mask`]: what stands stand on, and where |
 //! | `spec`, `growing` | [`ForestSpec`] → [`grow_stand`] → [`Stand`] |
 //! | `cells` | points on the ground by cells, for neighbours |
+//! | `stand_csv` | [`write_stand_csv`] |
 //! | `species`, `allometry` | [`Allometry`]: height, stem, crown and age of a species, each from each |
 
 mod allometry;
@@ -18,6 +19,7 @@ mod projection;
 mod spec;
 mod species;
 mod stand;
+mod stand_csv;
 
 pub use allometry::{
     Allometry, BREAST_M, Figures, Found, Group, Measured, Predicted, Setting, UnknownSpecies,
@@ -29,3 +31,4 @@ pub use inventory::{
 };
 pub use spec::{ForestSpec, GroundSpec, MaskSpec, Pattern, SpeciesSpec, Water};
 pub use stand::{Figure, Given, Stand, StandFault, Tree};
+pub use stand_csv::write_stand_csv;

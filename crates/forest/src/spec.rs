@@ -41,7 +41,7 @@ pub struct SpeciesSpec {
     /// Least and greatest age of the trees that are placed, years, 0 to 5000, default 3 to 8.
     #[schemars(inner(range(min = 0.0, max = 5000.0)), extend("x-unit" = "a"))]
     pub age_years: [f64; 2],
-    /// Least distance from a placed tree to another, metres, 0 to 100, default 0.5.
+    /// Least distance from a placed tree to another, metres, 0 to 100, default 0.3.
     #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
     /// Light demand, 0 (grows in deep shade) to 1 (in full light alone). Default that of the species.
@@ -70,7 +70,7 @@ impl Default for SpeciesSpec {
             name: "oak".into(),
             share: 1.0,
             age_years: [3.0, 8.0],
-            spacing_m: 0.5,
+            spacing_m: 0.3,
             light: None,
             seed_spread_m: None,
             seedlings: 0.02,

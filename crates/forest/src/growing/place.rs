@@ -10,6 +10,8 @@ use crate::spec::Pattern;
 const CELL_M: f64 = 10.0;
 /// Groups of one species are this many times as wide as its seeds fly.
 const GROUP_PER_SPREAD: f64 = 2.0;
+/// Outside of its groups a species is still this frequent, of what it is amid them.
+const LEAST_OUTSIDE: f64 = 0.005;
 
 /// Keys of what is drawn for a cell.
 const PLACES: u64 = 1;
@@ -38,45 +40,44 @@ struct Chooser<'a> {
 }
 
 impl Chooser<'_> {
-    /// How likely each species is at a place, of what it is at best; added up.
-    fn weights(&self, p: DVec2, weights: &mut [f64]) -> f64 {
-        let mut sum = 0.0;
-        let conditions = self.area.conditions(p);
+    /// How likely each species is at a place, beside the others; returns the share of trees that come up at all. Groups say
+    /// which species a tree is, not how many there are.
+    fn weigh(&self, p: DVec2, weights: &mut [f64]) -> f64 {
+        let Some(conditions) = self.area.conditions(p) else { return 0.0 };
+        let mut share = 0.0;
         for (k, (kind, weight)) in self.area.kinds.iter().zip(weights).enumerate() {
-            let groups = if self.has_groups {
-                let seed = self.seed.child(GROUPS).child(k as u64);
-                let hill = noise(seed, p, GROUP_PER_SPREAD * kind.spread_m);
-                // Steep, so that groups are clear; its mean is about a fifth.
-                5.0 * hill * hill * hill * hill
-            } else {
-                1.0
-            };
-            *weight = kind.share / self.shares
-                * groups
-                * conditions.as_ref().map_or(0.0, |c| self.area.suits(k, c, p));
-            sum += *weight;
+            let own = kind.share / self.shares * self.area.suits(k, &conditions, p);
+            share += own;
+            *weight = own * if self.has_groups { self.group(k, kind, p) } else { 1.0 };
         }
-        sum
+        share
+    }
+
+    /// Whether a place lies in a group of a species: 1 amid it, next to nothing outside.
+    fn group(&self, species: usize, kind: &Kind, p: DVec2) -> f64 {
+        let hill = noise(self.seed.child(GROUPS).child(species as u64), p, GROUP_PER_SPREAD * kind.spread_m);
+        // Steep, so that groups are clear.
+        LEAST_OUTSIDE + hill * hill * hill * hill
     }
 
     /// A tree at a place, if one comes up there.
-    fn tree(&self, p: DVec2, key: Seed, density: f64) -> Option<Member> {
+    fn tree(&self, p: DVec2, key: Seed) -> Option<Member> {
         if !self.area.is_within(p) || !self.area.shapes.is_open(p) {
             return None;
         }
         let mut weights = [0.0; super::MOST_SPECIES];
         let weights = &mut weights[..self.area.kinds.len()];
-        let sum = self.weights(p, weights);
+        let share = self.weigh(p, weights);
         let mut stream = key.stream(Draw::Stand);
-        if !stream.chance((sum * density).min(1.0)) {
+        if !stream.chance(share) {
             return None;
         }
-        let mut left = stream.uniform() * sum;
+        let mut left = stream.uniform() * weights.iter().sum::<f64>();
         let species = weights.iter().position(|w| {
             left -= w;
             left < 0.0
         });
-        let species = species.unwrap_or(weights.len() - 1);
+        let species = species.or_else(|| weights.iter().rposition(|w| *w > 0.0))?;
         let kind: &Kind = &self.area.kinds[species];
         let age = stream.range(kind.age_years[0], kind.age_years[1]);
         Some(Member::planted(p, species, age, kind))
@@ -118,7 +119,7 @@ fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, Forest
             let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
             for k in 0..u64::from(count) {
                 let p = corner + DVec2::new(stream.uniform(), stream.uniform()) * CELL_M;
-                found.extend(chooser.tree(p, cell.child(k), 1.0));
+                found.extend(chooser.tree(p, cell.child(k)));
             }
         }
         found
@@ -150,7 +151,7 @@ fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestEr
             let key = seed.child(k as u64);
             let mut stream = key.stream(Draw::Scatter);
             let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
-            chooser.tree(middle + along * ((k as f64 - per_row) * spacing_m) + off, key, 1.0)
+            chooser.tree(middle + along * ((k as f64 - per_row) * spacing_m) + off, key)
         };
         (0..count).filter_map(tree).collect::<Vec<_>>()
     };
