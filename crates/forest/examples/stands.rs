@@ -82,18 +82,24 @@ fn speed() -> Result<(), Box<dyn std::error::Error>> {
         (1_826.0, 3000.0),
     ] {
         let spec = mixed(side_m, density_ha);
-        let (before, clock) = (used().0, Instant::now());
         let site = Site { ground: &Ground::Flat, masks: &[] };
+        let (before, clock) = (used().0, Instant::now());
         let GrownStand { stand, history, .. } = grow_stand_on(&spec, &site, Seed::new(1), &run)?;
+        // The system counts in hundredths of a second: small forests grow several times.
+        let rounds = (300_000 / history[0].trees.max(1)).clamp(1, 40);
+        for _ in 1..rounds {
+            grow_stand_on(&spec, &site, Seed::new(1), &run)?;
+        }
         let (after, peak) = used();
+        let rounds = rounds as f64;
         println!(
-            "| {:.2} x {:.2} km | {} | {} | {:.2} s | {:.2} s | {peak} MiB |",
+            "| {:.2} x {:.2} km | {} | {} | {:.3} s | {:.2} s | {peak} MiB |",
             side_m / 1000.0,
             side_m / 1000.0,
             base::grouped(history[0].trees as u64),
             base::grouped(stand.trees.len() as u64),
-            after - before,
-            clock.elapsed().as_secs_f64()
+            (after - before) / rounds,
+            clock.elapsed().as_secs_f64() / rounds
         );
     }
     Ok(())

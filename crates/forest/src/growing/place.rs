@@ -17,14 +17,22 @@ const LEAST_OUTSIDE: f64 = 0.005;
 const PLACES: u64 = 1;
 const GROUPS: u64 = 2;
 
+/// A number of its own for each cell of the plane, whose coordinates are whole.
+fn cell_key(cell: DVec2) -> u64 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole and small; the bits are a key"
+    )]
+    let bits = |v: f64| v as i64 as u64;
+    bits(cell.x) ^ bits(cell.y).rotate_left(32)
+}
+
 /// Smooth noise of one species, 0 to 1, of which hills are `wide` metres apart.
 fn noise(seed: Seed, p: DVec2, wide: f64) -> f64 {
     let at = p / wide;
     let (cell, t) = (at.floor(), at - at.floor());
-    let value = |x: f64, y: f64| {
-        let key = (x as i64 as u64) ^ (y as i64 as u64).rotate_left(32);
-        seed.child(key).stream(Draw::Stand).uniform()
-    };
+    let value = |x: f64, y: f64| seed.child(cell_key(DVec2::new(x, y))).stream(Draw::Stand).uniform();
     let smooth = |v: f64| ops::smoothstep(0.0, 1.0, v);
     let row = |y: f64| ops::lerp(value(cell.x, y), value(cell.x + 1.0, y), smooth(t.x));
     ops::lerp(row(cell.y), row(cell.y + 1.0), smooth(t.y))
@@ -110,10 +118,8 @@ fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, Forest
     let row = |r: usize| {
         let mut found = Vec::new();
         for c in 0..columns {
-            let corner = (first + DVec2::new(f64::from(c), r as f64)) * CELL_M;
-            let key =
-                ((corner.x / CELL_M) as i64 as u64) ^ ((corner.y / CELL_M) as i64 as u64).rotate_left(32);
-            let cell = chooser.seed.child(key);
+            let index = first + DVec2::new(f64::from(c), r as f64);
+            let (corner, cell) = (index * CELL_M, chooser.seed.child(cell_key(index)));
             let mut stream = cell.stream(Draw::Scatter);
             let wanted = density * CELL_M * CELL_M;
             let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
