@@ -92,6 +92,25 @@ impl Chooser<'_> {
     }
 }
 
+impl Chooser<'_> {
+    /// Trees by chance in a row of cells, of which the first has these whole coordinates.
+    fn row_of_cells(&self, first: DVec2, columns: u32, density: f64) -> Vec<Member> {
+        let mut found = Vec::new();
+        for column in 0..columns {
+            let index = first + DVec2::new(f64::from(column), 0.0);
+            let cell = self.seed.child(cell_key(index));
+            let mut stream = cell.stream(Draw::Scatter);
+            let wanted = density * CELL_M * CELL_M;
+            let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
+            for k in 0..u64::from(count) {
+                let p = (index + DVec2::new(stream.uniform(), stream.uniform())) * CELL_M;
+                found.extend(self.tree(p, cell.child(k)));
+            }
+        }
+        found
+    }
+}
+
 /// Places the first trees.
 pub(super) fn place(area: &Area<'_>, seed: Seed, run: &Run<'_>) -> Result<Placed, ForestError> {
     let shares: f64 = area.kinds.iter().map(|k| k.share).sum();
@@ -115,21 +134,7 @@ fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, Forest
     let first = (area.low / CELL_M).floor();
     let last = (area.high / CELL_M).ceil();
     let (columns, rows) = (ops::whole(last.x - first.x), ops::whole(last.y - first.y));
-    let row = |r: usize| {
-        let mut found = Vec::new();
-        for c in 0..columns {
-            let index = first + DVec2::new(f64::from(c), r as f64);
-            let (corner, cell) = (index * CELL_M, chooser.seed.child(cell_key(index)));
-            let mut stream = cell.stream(Draw::Scatter);
-            let wanted = density * CELL_M * CELL_M;
-            let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
-            for k in 0..u64::from(count) {
-                let p = corner + DVec2::new(stream.uniform(), stream.uniform()) * CELL_M;
-                found.extend(chooser.tree(p, cell.child(k)));
-            }
-        }
-        found
-    };
+    let row = |r: usize| chooser.row_of_cells(first + DVec2::new(0.0, r as f64), columns, density);
     let found = map_until_cancelled(run, rows as usize, row)?;
     Ok(found.into_iter().flatten().collect())
 }
@@ -150,16 +155,15 @@ fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestEr
         "lower area_m, or plant wider apart",
     )?;
     let count = 2 * ops::whole(per_row) as usize + 1;
-    let row = |r: usize| {
-        let middle = across * ((r as f64 - rows) * row_m);
-        let seed = chooser.seed.child(r as u64);
-        let tree = |k: usize| {
-            let key = seed.child(k as u64);
-            let mut stream = key.stream(Draw::Scatter);
-            let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
-            chooser.tree(middle + along * ((k as f64 - per_row) * spacing_m) + off, key)
-        };
-        (0..count).filter_map(tree).collect::<Vec<_>>()
+    // Rows and trees have the numbers that they have from the origin: a larger area keeps its trees.
+    let tree = |row: f64, place: f64| {
+        let key = chooser.seed.child(cell_key(DVec2::new(place, row)));
+        let mut stream = key.stream(Draw::Scatter);
+        let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
+        chooser.tree(across * (row * row_m) + along * (place * spacing_m) + off, key)
+    };
+    let row = |r: usize| -> Vec<Member> {
+        (0..count).filter_map(|k| tree(r as f64 - rows, k as f64 - per_row)).collect()
     };
     let found = map_until_cancelled(run, 2 * ops::whole(rows) as usize + 1, row)?;
     Ok(found.into_iter().flatten().collect())
