@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// How trees are placed at first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Pattern {
+pub enum PlantingPattern {
     /// By chance, kinds with short seed spread in groups.
     #[default]
     Natural,
@@ -178,7 +178,7 @@ pub struct ForestSpec {
     #[schemars(range(min = 0.01, max = 200_000.0), extend("x-unit" = "1/ha"))]
     pub density_ha: f64,
     /// How they are placed. Default by chance.
-    pub pattern: Pattern,
+    pub pattern: PlantingPattern,
     /// Growth relative to a good site, 0.1 to 3, default 1.
     #[schemars(range(min = 0.1, max = 3.0))]
     pub site: f64,
@@ -210,7 +210,7 @@ impl Default for ForestSpec {
             years: 50,
             step_years: 5,
             density_ha: 1500.0,
-            pattern: Pattern::default(),
+            pattern: PlantingPattern::default(),
             site: 1.0,
             lean: 0.1,
             species: Vec::new(),

@@ -4,7 +4,7 @@ use base::{Counted, Draw, Run, Seed, map_until_cancelled, ops};
 use glam::DVec2;
 
 use super::{Area, ForestError, Kind, Member, Placed};
-use crate::spec::Pattern;
+use crate::spec::PlantingPattern;
 
 /// Side of the cells that have random numbers of their own, metres: a larger area keeps its trees.
 const CELL_M: f64 = 10.0;
@@ -117,8 +117,8 @@ pub(super) fn place(area: &Area<'_>, seed: Seed, run: &Run<'_>) -> Result<Placed
     let seed = seed.child(PLACES);
     let chooser = Chooser { area, seed, shares, has_groups: area.kinds.len() > 1 };
     let proposed = match area.spec.pattern {
-        Pattern::Natural => by_chance(&chooser, run)?,
-        Pattern::Rows { .. } => in_rows(&chooser, run)?,
+        PlantingPattern::Natural => by_chance(&chooser, run)?,
+        PlantingPattern::Rows { .. } => in_rows(&chooser, run)?,
     };
     let all = proposed.len();
     let members = keep_apart(area, proposed)?;
@@ -141,7 +141,7 @@ fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, Forest
 
 fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestError> {
     let area = chooser.area;
-    let Pattern::Rows { spacing_m, row_m, angle_deg, jitter_m } = area.spec.pattern else {
+    let PlantingPattern::Rows { spacing_m, row_m, angle_deg, jitter_m } = area.spec.pattern else {
         return Ok(Vec::new());
     };
     let along = base::turn::direction(angle_deg * (ops::PI / 180.0));
