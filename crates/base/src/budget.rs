@@ -41,11 +41,13 @@ pub enum Counted {
     Trees,
     /// Cells of a height map or a mask.
     Cells,
+    /// Neighbours that trees of a stand look at in one step of growth: what competition takes time for.
+    Looks,
 }
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
@@ -63,6 +65,7 @@ impl Counted {
         Self::Comparisons,
         Self::Trees,
         Self::Cells,
+        Self::Looks,
     ];
 
     /// In messages.
@@ -85,6 +88,7 @@ impl Counted {
             Self::Comparisons => "comparisons of sizes with growth laws",
             Self::Trees => "trees of a stand",
             Self::Cells => "cells of a map",
+            Self::Looks => "looks of trees at neighbours",
         }
     }
 
@@ -106,6 +110,8 @@ impl Counted {
             Self::Trees => 10_000_000,
             // Four bytes each: ten kilometres at one metre.
             Self::Cells => 100_000_000,
+            // Some minutes for each step; a million trees of one size look 100 million times.
+            Self::Looks => 50_000_000_000,
             Self::Strokes => 20_000,
             Self::Edits => 1_000,
             // The most edits of an oak.

@@ -7,25 +7,28 @@
 //! | `ground` | [`Ground`], [`Mask`]: what stands stand on, and where |
 //! | `spec`, `growing` | [`ForestSpec`] → [`grow_stand`] → [`Stand`] |
 //! | `cells` | points on the ground by cells, for neighbours |
-//! | `species`, `allometry` | [`Allometry`]: height, stem, crown and age of a species, each from each |
+//! | `stand_csv` | [`write_stand_csv`] |
+//! | `species`, `allometry`, `names` | [`Allometry`]: height, stem, crown and age of a species, each from each |
 
 mod allometry;
 mod cells;
 mod ground;
 mod growing;
 mod inventory;
+mod names;
 mod projection;
 mod spec;
 mod species;
 mod stand;
+mod stand_csv;
 
-pub use allometry::{
-    Allometry, BREAST_M, Figures, Found, Group, Measured, Predicted, Setting, UnknownSpecies,
-};
+pub use allometry::{Allometry, BREAST_M, Figures, Group, Measured, Predicted, Setting};
 pub use ground::{Ground, GroundError, GroundMesh, HeightMap, MapScale, Mask};
 pub use growing::{ForestError, GrownStand, Site, StandYear, grow_stand, grow_stand_on};
 pub use inventory::{
     BadRows, Crs, FigureCount, InventoryError, InventoryReport, InventorySpec, read_inventory,
 };
-pub use spec::{ForestSpec, GroundSpec, MaskSpec, Pattern, SpeciesSpec, Water};
+pub use names::{FoundSpecies, UnknownSpecies};
+pub use spec::{ForestSpec, GroundSpec, MaskSpec, PlantingPattern, SpeciesSpec, Water};
 pub use stand::{Figure, Given, Stand, StandFault, Tree};
+pub use stand_csv::write_stand_csv;

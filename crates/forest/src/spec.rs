@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// How trees are placed at first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Pattern {
+pub enum PlantingPattern {
     /// By chance, kinds with short seed spread in groups.
     #[default]
     Natural,
@@ -41,7 +41,7 @@ pub struct SpeciesSpec {
     /// Least and greatest age of the trees that are placed, years, 0 to 5000, default 3 to 8.
     #[schemars(inner(range(min = 0.0, max = 5000.0)), extend("x-unit" = "a"))]
     pub age_years: [f64; 2],
-    /// Least distance from a placed tree to another, metres, 0 to 100, default 0.5.
+    /// Least distance from a placed tree to another, metres, 0 to 100, default 0.3.
     #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
     /// Light demand, 0 (grows in deep shade) to 1 (in full light alone). Default that of the species.
@@ -70,7 +70,7 @@ impl Default for SpeciesSpec {
             name: "oak".into(),
             share: 1.0,
             age_years: [3.0, 8.0],
-            spacing_m: 0.5,
+            spacing_m: 0.3,
             light: None,
             seed_spread_m: None,
             seedlings: 0.02,
@@ -178,7 +178,7 @@ pub struct ForestSpec {
     #[schemars(range(min = 0.01, max = 200_000.0), extend("x-unit" = "1/ha"))]
     pub density_ha: f64,
     /// How they are placed. Default by chance.
-    pub pattern: Pattern,
+    pub pattern: PlantingPattern,
     /// Growth relative to a good site, 0.1 to 3, default 1.
     #[schemars(range(min = 0.1, max = 3.0))]
     pub site: f64,
@@ -210,7 +210,7 @@ impl Default for ForestSpec {
             years: 50,
             step_years: 5,
             density_ha: 1500.0,
-            pattern: Pattern::default(),
+            pattern: PlantingPattern::default(),
             site: 1.0,
             lean: 0.1,
             species: Vec::new(),

@@ -10,6 +10,7 @@ use xtask::shell::{Outcome, repository, say};
 
 /// Names that several crates may have, which crates these are, and why.
 const ALLOWED: &[(&str, &[&str], &str)] = &[
+    ("Figure", &["forest", "ink"], "a measure of a tree; one painted element of a file"),
     (
         "Ground",
         &["forest", "scan", "workspace"],

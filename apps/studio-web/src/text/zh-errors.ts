@@ -222,6 +222,7 @@ export const zhWords: Record<string, string> = {
   'comparisons of sizes with growth laws': '次尺寸与生长规律的比较',
   'trees of a stand': '棵林分的树',
   'cells of a map': '个地图格',
+  'looks of trees at neighbours': '次树木邻域查询',
   'true or false': '真或假（true、false）',
   'a number': '数',
   'a whole number': '整数',

@@ -246,7 +246,7 @@ mod tests {
     fn png(width: u32, depth: png::BitDepth, bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         let bytes_a_cell = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
-        let height = bytes.len() as u32 / bytes_a_cell / width;
+        let height = u32::try_from(bytes.len()).unwrap() / bytes_a_cell / width;
         let mut encoder = png::Encoder::new(&mut out, width, height);
         encoder.set_color(png::ColorType::Grayscale);
         encoder.set_depth(depth);
@@ -260,7 +260,7 @@ mod tests {
     #[test]
     fn a_plane_is_a_plane() {
         // y = 3 + 0.5 x - 0.25 z.
-        let at = |c: usize, r: usize| (3.0 + 0.5 * (c as f64) - 0.25 * (r as f64)) as f32;
+        let at = |c: u8, r: u8| 3.0 + 0.5 * f32::from(c) - 0.25 * f32::from(r);
         let heights = (0..12).map(|k| at(k % 4, k / 4)).collect();
         let ground = Ground::Map(HeightMap::new(4, heights, DVec2::ONE, DVec2::ZERO).unwrap());
         for (x, z) in [(0.0, 0.0), (1.25, 0.75), (3.0, 2.0), (2.9, 0.1)] {

@@ -44,8 +44,10 @@ pub(super) fn read(bytes: &[u8], is_deep: bool, run: &Run<'_>) -> Result<Gray, G
     let samples = if is_deep { 1 } else { info.color_type.samples() };
     if samples > 1 {
         // Alpha is no grey: what is transparent is as its colour says.
-        let colors = if samples >= 3 { 3 } else { 1 };
-        let grey = |p: &[u8]| p[..colors].iter().map(|&v| u32::from(v)).sum::<u32>() / colors as u32;
+        let colors: u8 = if samples >= 3 { 3 } else { 1 };
+        let grey = |p: &[u8]| {
+            p[..usize::from(colors)].iter().map(|&v| u32::from(v)).sum::<u32>() / u32::from(colors)
+        };
         read = read.chunks_exact(samples).map(|p| u8::try_from(grey(p)).unwrap_or(u8::MAX)).collect();
     }
     Ok(Gray { width: width as usize, height: height as usize, bytes: read, is_deep })

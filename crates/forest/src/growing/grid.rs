@@ -39,6 +39,12 @@ impl Grid {
         grid
     }
 
+    /// How many trees the cells around one hold, in the mean.
+    pub(super) fn neighbours(&self, members: usize) -> f64 {
+        let cells = (self.columns * self.rows) as f64;
+        members as f64 / cells * cells.min(9.0)
+    }
+
     fn split(&self, p: DVec2) -> (usize, usize) {
         let at = (p - self.low) / self.side;
         let index = |v: f64, count: usize| (base::ops::whole(v) as usize).min(count - 1);

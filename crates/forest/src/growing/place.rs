@@ -4,25 +4,35 @@ use base::{Counted, Draw, Run, Seed, map_until_cancelled, ops};
 use glam::DVec2;
 
 use super::{Area, ForestError, Kind, Member, Placed};
-use crate::spec::Pattern;
+use crate::spec::PlantingPattern;
 
 /// Side of the cells that have random numbers of their own, metres: a larger area keeps its trees.
 const CELL_M: f64 = 10.0;
 /// Groups of one species are this many times as wide as its seeds fly.
 const GROUP_PER_SPREAD: f64 = 2.0;
+/// Outside of its groups a species is still this frequent, of what it is amid them.
+const LEAST_OUTSIDE: f64 = 0.005;
 
 /// Keys of what is drawn for a cell.
 const PLACES: u64 = 1;
 const GROUPS: u64 = 2;
 
+/// A number of its own for each cell of the plane, whose coordinates are whole.
+fn cell_key(cell: DVec2) -> u64 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole and small; the bits are a key"
+    )]
+    let bits = |v: f64| v as i64 as u64;
+    bits(cell.x) ^ bits(cell.y).rotate_left(32)
+}
+
 /// Smooth noise of one species, 0 to 1, of which hills are `wide` metres apart.
 fn noise(seed: Seed, p: DVec2, wide: f64) -> f64 {
     let at = p / wide;
     let (cell, t) = (at.floor(), at - at.floor());
-    let value = |x: f64, y: f64| {
-        let key = (x as i64 as u64) ^ (y as i64 as u64).rotate_left(32);
-        seed.child(key).stream(Draw::Stand).uniform()
-    };
+    let value = |x: f64, y: f64| seed.child(cell_key(DVec2::new(x, y))).stream(Draw::Stand).uniform();
     let smooth = |v: f64| ops::smoothstep(0.0, 1.0, v);
     let row = |y: f64| ops::lerp(value(cell.x, y), value(cell.x + 1.0, y), smooth(t.x));
     ops::lerp(row(cell.y), row(cell.y + 1.0), smooth(t.y))
@@ -38,48 +48,66 @@ struct Chooser<'a> {
 }
 
 impl Chooser<'_> {
-    /// How likely each species is at a place, of what it is at best; added up.
-    fn weights(&self, p: DVec2, weights: &mut [f64]) -> f64 {
-        let mut sum = 0.0;
-        let conditions = self.area.conditions(p);
+    /// How likely each species is at a place, beside the others; returns the share of trees that come up at all. Groups say
+    /// which species a tree is, not how many there are.
+    fn weigh(&self, p: DVec2, weights: &mut [f64]) -> f64 {
+        let Some(conditions) = self.area.conditions(p) else { return 0.0 };
+        let mut share = 0.0;
         for (k, (kind, weight)) in self.area.kinds.iter().zip(weights).enumerate() {
-            let groups = if self.has_groups {
-                let seed = self.seed.child(GROUPS).child(k as u64);
-                let hill = noise(seed, p, GROUP_PER_SPREAD * kind.spread_m);
-                // Steep, so that groups are clear; its mean is about a fifth.
-                5.0 * hill * hill * hill * hill
-            } else {
-                1.0
-            };
-            *weight = kind.share / self.shares
-                * groups
-                * conditions.as_ref().map_or(0.0, |c| self.area.suits(k, c, p));
-            sum += *weight;
+            let own = kind.share / self.shares * self.area.suits(k, &conditions, p);
+            share += own;
+            *weight = own * if self.has_groups { self.group(k, kind, p) } else { 1.0 };
         }
-        sum
+        share
+    }
+
+    /// Whether a place lies in a group of a species: 1 amid it, next to nothing outside.
+    fn group(&self, species: usize, kind: &Kind, p: DVec2) -> f64 {
+        let hill = noise(self.seed.child(GROUPS).child(species as u64), p, GROUP_PER_SPREAD * kind.spread_m);
+        // Steep, so that groups are clear.
+        LEAST_OUTSIDE + hill * hill * hill * hill
     }
 
     /// A tree at a place, if one comes up there.
-    fn tree(&self, p: DVec2, key: Seed, density: f64) -> Option<Member> {
+    fn tree(&self, p: DVec2, key: Seed) -> Option<Member> {
         if !self.area.is_within(p) || !self.area.shapes.is_open(p) {
             return None;
         }
         let mut weights = [0.0; super::MOST_SPECIES];
         let weights = &mut weights[..self.area.kinds.len()];
-        let sum = self.weights(p, weights);
+        let share = self.weigh(p, weights);
         let mut stream = key.stream(Draw::Stand);
-        if !stream.chance((sum * density).min(1.0)) {
+        if !stream.chance(share) {
             return None;
         }
-        let mut left = stream.uniform() * sum;
+        let mut left = stream.uniform() * weights.iter().sum::<f64>();
         let species = weights.iter().position(|w| {
             left -= w;
             left < 0.0
         });
-        let species = species.unwrap_or(weights.len() - 1);
+        let species = species.or_else(|| weights.iter().rposition(|w| *w > 0.0))?;
         let kind: &Kind = &self.area.kinds[species];
         let age = stream.range(kind.age_years[0], kind.age_years[1]);
         Some(Member::planted(p, species, age, kind))
+    }
+}
+
+impl Chooser<'_> {
+    /// Trees by chance in a row of cells, of which the first has these whole coordinates.
+    fn row_of_cells(&self, first: DVec2, columns: u32, density: f64) -> Vec<Member> {
+        let mut found = Vec::new();
+        for column in 0..columns {
+            let index = first + DVec2::new(f64::from(column), 0.0);
+            let cell = self.seed.child(cell_key(index));
+            let mut stream = cell.stream(Draw::Scatter);
+            let wanted = density * CELL_M * CELL_M;
+            let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
+            for k in 0..u64::from(count) {
+                let p = (index + DVec2::new(stream.uniform(), stream.uniform())) * CELL_M;
+                found.extend(self.tree(p, cell.child(k)));
+            }
+        }
+        found
     }
 }
 
@@ -89,8 +117,8 @@ pub(super) fn place(area: &Area<'_>, seed: Seed, run: &Run<'_>) -> Result<Placed
     let seed = seed.child(PLACES);
     let chooser = Chooser { area, seed, shares, has_groups: area.kinds.len() > 1 };
     let proposed = match area.spec.pattern {
-        Pattern::Natural => by_chance(&chooser, run)?,
-        Pattern::Rows { .. } => in_rows(&chooser, run)?,
+        PlantingPattern::Natural => by_chance(&chooser, run)?,
+        PlantingPattern::Rows { .. } => in_rows(&chooser, run)?,
     };
     let all = proposed.len();
     let members = keep_apart(area, proposed)?;
@@ -106,30 +134,14 @@ fn by_chance(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, Forest
     let first = (area.low / CELL_M).floor();
     let last = (area.high / CELL_M).ceil();
     let (columns, rows) = (ops::whole(last.x - first.x), ops::whole(last.y - first.y));
-    let row = |r: usize| {
-        let mut found = Vec::new();
-        for c in 0..columns {
-            let corner = (first + DVec2::new(f64::from(c), r as f64)) * CELL_M;
-            let key =
-                ((corner.x / CELL_M) as i64 as u64) ^ ((corner.y / CELL_M) as i64 as u64).rotate_left(32);
-            let cell = chooser.seed.child(key);
-            let mut stream = cell.stream(Draw::Scatter);
-            let wanted = density * CELL_M * CELL_M;
-            let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
-            for k in 0..u64::from(count) {
-                let p = corner + DVec2::new(stream.uniform(), stream.uniform()) * CELL_M;
-                found.extend(chooser.tree(p, cell.child(k), 1.0));
-            }
-        }
-        found
-    };
+    let row = |r: usize| chooser.row_of_cells(first + DVec2::new(0.0, r as f64), columns, density);
     let found = map_until_cancelled(run, rows as usize, row)?;
     Ok(found.into_iter().flatten().collect())
 }
 
 fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestError> {
     let area = chooser.area;
-    let Pattern::Rows { spacing_m, row_m, angle_deg, jitter_m } = area.spec.pattern else {
+    let PlantingPattern::Rows { spacing_m, row_m, angle_deg, jitter_m } = area.spec.pattern else {
         return Ok(Vec::new());
     };
     let along = base::turn::direction(angle_deg * (ops::PI / 180.0));
@@ -143,16 +155,15 @@ fn in_rows(chooser: &Chooser<'_>, run: &Run<'_>) -> Result<Vec<Member>, ForestEr
         "lower area_m, or plant wider apart",
     )?;
     let count = 2 * ops::whole(per_row) as usize + 1;
-    let row = |r: usize| {
-        let middle = across * ((r as f64 - rows) * row_m);
-        let seed = chooser.seed.child(r as u64);
-        let tree = |k: usize| {
-            let key = seed.child(k as u64);
-            let mut stream = key.stream(Draw::Scatter);
-            let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
-            chooser.tree(middle + along * ((k as f64 - per_row) * spacing_m) + off, key, 1.0)
-        };
-        (0..count).filter_map(tree).collect::<Vec<_>>()
+    // Rows and trees have the numbers that they have from the origin: a larger area keeps its trees.
+    let tree = |row: f64, place: f64| {
+        let key = chooser.seed.child(cell_key(DVec2::new(place, row)));
+        let mut stream = key.stream(Draw::Scatter);
+        let off = DVec2::new(stream.range(-jitter_m, jitter_m), stream.range(-jitter_m, jitter_m));
+        chooser.tree(across * (row * row_m) + along * (place * spacing_m) + off, key)
+    };
+    let row = |r: usize| -> Vec<Member> {
+        (0..count).filter_map(|k| tree(r as f64 - rows, k as f64 - per_row)).collect()
     };
     let found = map_until_cancelled(run, 2 * ops::whole(rows) as usize + 1, row)?;
     Ok(found.into_iter().flatten().collect())

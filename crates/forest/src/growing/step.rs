@@ -1,14 +1,17 @@
 //! One step of growth: light, growth, death, seedlings.
 
-use base::{Draw, Run, Seed, map_until_cancelled, ops};
+use core::ops::Range;
+
+use base::{Counted, Draw, Run, Seed, map_until_cancelled, ops};
 use glam::DVec2;
 
 use super::grid::Grid;
 use super::{Area, ForestError, Kind, Member};
 use crate::BREAST_M;
 
-/// Trees of one job.
-const JOB: usize = 4096;
+/// Neighbours that one job looks at, some milliseconds, and the most trees of one.
+const JOB_LOOKS: f64 = 400_000.0;
+const MOST_OF_A_JOB: usize = 4096;
 /// A neighbour that is lower than this share of a tree's height takes no light from it, and one that is higher by as much
 /// takes all that its crown takes.
 const HEIGHT_BAND: f64 = 0.9;
@@ -117,9 +120,59 @@ fn grown(me: Member, around: &Around, kind: &Kind, site: f64, years: f64, seed: 
 }
 
 /// What one job gives back.
+#[derive(Default)]
 struct Part {
     lived: Vec<Member>,
     seedlings: Vec<Member>,
+}
+
+/// A stand that looks at itself.
+struct Stride<'a> {
+    area: &'a Area<'a>,
+    members: &'a [Member],
+    grid: Grid,
+    years: f64,
+    has_seedlings: bool,
+    seed: Seed,
+}
+
+impl Stride<'_> {
+    /// Lets some of the trees grow.
+    fn part(&self, range: Range<usize>) -> Part {
+        let mut part = Part { lived: Vec::with_capacity(range.len()), seedlings: Vec::new() };
+        for i in range {
+            let me = self.members[i];
+            let kind = &self.area.kinds[usize::from(me.species)];
+            let around = look(self.members, &self.grid, &self.area.kinds, i);
+            let own = self.seed.child(u64::from(me.id));
+            let Some(later) = grown(me, &around, kind, self.area.spec.site, self.years, own) else {
+                continue;
+            };
+            if self.has_seedlings {
+                self.sow(&later, &around, kind, own, &mut part.seedlings);
+            }
+            part.lived.push(later);
+        }
+        part
+    }
+}
+
+/// Shares all trees among jobs of some milliseconds.
+///
+/// # Errors
+/// More looks at neighbours than the budget allows, or the user asked to stop.
+fn in_jobs<T: Send>(
+    members: usize,
+    grid: &Grid,
+    run: &Run<'_>,
+    job: impl Fn(Range<usize>) -> T + Sync,
+) -> Result<Vec<T>, ForestError> {
+    let neighbours = grid.neighbours(members).max(1.0);
+    let advice = "lower density_ha or the age of the widest trees";
+    run.budget.check_estimate(Counted::Looks, neighbours * members as f64, advice)?;
+    let size = (ops::whole(JOB_LOOKS / neighbours) as usize).clamp(16, MOST_OF_A_JOB);
+    let range = |k: usize| k * size..((k + 1) * size).min(members);
+    Ok(map_until_cancelled(run, members.div_ceil(size), |k| job(range(k)))?)
 }
 
 /// Counts of one step.
@@ -139,23 +192,9 @@ pub(super) fn step(
     run: &Run<'_>,
 ) -> Result<Turnover, ForestError> {
     let grid = sorted(members, area);
-    let (all, has_seedlings): (&[Member], _) = (members, next_id.is_some());
-    let job = |k: usize| {
-        let range = k * JOB..((k + 1) * JOB).min(all.len());
-        let mut part = Part { lived: Vec::with_capacity(range.len()), seedlings: Vec::new() };
-        for i in range {
-            let (me, around) = (all[i], look(all, &grid, &area.kinds, i));
-            let kind = &area.kinds[usize::from(me.species)];
-            let own = seed.child(u64::from(me.id));
-            let Some(later) = grown(me, &around, kind, area.spec.site, years, own) else { continue };
-            if has_seedlings {
-                sow(&later, &around, kind, area, years, own, &mut part.seedlings);
-            }
-            part.lived.push(later);
-        }
-        part
-    };
-    let parts = map_until_cancelled(run, all.len().div_ceil(JOB), job)?;
+    let count = members.len();
+    let stride = Stride { area, members, grid, years, has_seedlings: next_id.is_some(), seed };
+    let parts = in_jobs(count, &stride.grid, run, |range| stride.part(range))?;
     let before = members.len();
     members.clear();
     parts.iter().for_each(|part| members.extend_from_slice(&part.lived));
@@ -169,7 +208,7 @@ pub(super) fn step(
             members.push(seedling);
         }
     }
-    run.budget.check(base::Counted::Trees, members.len() as u64, "lower seedlings, years or area_m")?;
+    run.budget.check(Counted::Trees, members.len() as u64, "lower seedlings, years or area_m")?;
     Ok(Turnover { died, came })
 }
 
@@ -179,34 +218,29 @@ pub(super) fn sorted(members: &mut Vec<Member>, area: &Area<'_>) -> Grid {
     Grid::sort(members, area.low, area.high - area.low, 2.0 * widest)
 }
 
-/// Seedlings of a tree that come to breast height.
-fn sow(
-    parent: &Member,
-    around: &Around,
-    kind: &Kind,
-    area: &Area<'_>,
-    years: f64,
-    seed: Seed,
-    into: &mut Vec<Member>,
-) {
-    let seed_age = (SEED_SHARE * kind.allometry.life_years).clamp(SEED_AGE[0], SEED_AGE[1]);
-    if parent.age < seed_age || kind.seedlings <= 0.0 {
-        return;
-    }
-    let mut stream = seed.stream(Draw::Scatter);
-    let wanted = kind.seedlings * years * around.light;
-    let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
-    for _ in 0..count {
-        // Exponential distances in the plane: as far as the species spreads, in the mean.
-        let far = -kind.spread_m * ops::ln(1.0 - stream.uniform());
-        let p = parent.place() + base::turn::direction(stream.range(0.0, ops::TAU)) * far;
-        let luck = stream.uniform();
-        if !area.is_within(p) || !area.shapes.is_open(p) {
-            continue;
+impl Stride<'_> {
+    /// Seedlings of a tree that come to breast height.
+    fn sow(&self, parent: &Member, around: &Around, kind: &Kind, seed: Seed, into: &mut Vec<Member>) {
+        let area = self.area;
+        let seed_age = (SEED_SHARE * kind.allometry.life_years).clamp(SEED_AGE[0], SEED_AGE[1]);
+        if parent.age < seed_age || kind.seedlings <= 0.0 {
+            return;
         }
-        let suits = area.conditions(p).map_or(0.0, |c| area.suits(usize::from(parent.species), &c, p));
-        if luck < suits {
-            into.push(Member::seedling(p, parent.species, kind, stream.normal()));
+        let mut stream = seed.stream(Draw::Scatter);
+        let wanted = kind.seedlings * self.years * around.light;
+        let count = ops::whole(wanted) + u32::from(stream.chance(wanted.fract()));
+        for _ in 0..count {
+            // Exponential distances in the plane: as far as the species spreads, in the mean.
+            let far = -kind.spread_m * ops::ln(1.0 - stream.uniform());
+            let p = parent.place() + base::turn::direction(stream.range(0.0, ops::TAU)) * far;
+            let (luck, normal) = (stream.uniform(), stream.normal());
+            if !area.is_within(p) || !area.shapes.is_open(p) {
+                continue;
+            }
+            let suits = area.conditions(p).map_or(0.0, |c| area.suits(usize::from(parent.species), &c, p));
+            if luck < suits {
+                into.push(Member::seedling(p, parent.species, kind, normal));
+            }
         }
     }
 }
@@ -218,11 +252,8 @@ pub(super) fn last_look(
     area: &Area<'_>,
     run: &Run<'_>,
 ) -> Result<Vec<Around>, ForestError> {
-    let job = |k: usize| {
-        let range = k * JOB..((k + 1) * JOB).min(members.len());
-        range.map(|i| look(members, grid, &area.kinds, i)).collect::<Vec<_>>()
-    };
-    Ok(map_until_cancelled(run, members.len().div_ceil(JOB), job)?.into_iter().flatten().collect())
+    let looks = |range: Range<usize>| range.map(|i| look(members, grid, &area.kinds, i)).collect::<Vec<_>>();
+    Ok(in_jobs(members.len(), grid, run, looks)?.into_iter().flatten().collect())
 }
 
 /// How far a crown of a radius is pushed, metres: the farther, the more its neighbours stand on one side and the more they

@@ -182,7 +182,8 @@ fn threads_make_no_difference_and_seeds_do() {
 fn rows_are_rows() {
     let mut spec = pine(100.0, 1.0, 0);
     spec.species[0] = SpeciesSpec { name: "apple".into(), age_years: [20.0, 20.0], ..SpeciesSpec::default() };
-    spec.pattern = crate::Pattern::Rows { spacing_m: 5.0, row_m: 10.0, angle_deg: 0.0, jitter_m: 0.0 };
+    spec.pattern =
+        crate::PlantingPattern::Rows { spacing_m: 5.0, row_m: 10.0, angle_deg: 0.0, jitter_m: 0.0 };
     let grown = grow(&spec);
     assert_eq!(grown.stand.trees.len(), 200);
     let is_on = |t: &Tree| (t.foot_m.x / 5.0).fract() == 0.0 && (t.foot_m.z / 10.0).fract() == 0.0;

@@ -63,7 +63,19 @@ const WORDS: &[(Field, &[&str])] = &[
     (Field::Common, &["name", "treename", "commonname", "common"]),
     (
         Field::Height,
-        &["height", "treeheight", "totalheight", "ht", "h", "heighttotal", "hoehe", "hauteur", "altura"],
+        &[
+            "height",
+            "treeheight",
+            "totalheight",
+            "ht",
+            "h",
+            "heighttotal",
+            "hoehe",
+            "baumhoehe",
+            "baumh\u{f6}he",
+            "hauteur",
+            "altura",
+        ],
     ),
     (
         Field::Dbh,

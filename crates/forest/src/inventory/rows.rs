@@ -399,7 +399,7 @@ fn number(cell: Cell<'_>, has_decimal_commas: bool) -> Result<Option<(f64, Optio
     } else {
         digits.parse::<f64>()
     };
-    let value = read.map_err(|_| {
+    let value = read.map_err(|_not_a_number| {
         let hint = if digits.contains(',') {
             "; write a decimal point, or separate columns by semicolons"
         } else {

@@ -207,7 +207,7 @@ proptest! {
         let spec = InventorySpec { setting, crs: Some(Crs::Metres), ..InventorySpec::default() };
         let (stand, report) = read_inventory(text.as_bytes(), &spec, &Run::plain()).unwrap();
         prop_assert_eq!(stand.trees.len(), rows.len());
-        prop_assert_eq!(report.height.given + report.height.filled, stand.trees.len() as u32);
+        prop_assert_eq!(report.height.given + report.height.filled, u32::try_from(stand.trees.len()).unwrap());
         prop_assert_eq!(stand.validate().next(), None);
         for (tree, (.., h, d, c, a, _)) in stand.trees.iter().zip(&rows) {
             prop_assert!(h.is_none_or(|h| h == tree.height_m) && c.is_none_or(|c| c == tree.crown_width_m));
