@@ -8,6 +8,7 @@ mod bloom;
 mod clouds;
 mod command;
 mod files;
+mod forest;
 mod generated;
 mod grow;
 mod hostile;

@@ -13,4 +13,5 @@ mod opf;
 mod opf_reader;
 mod scans;
 mod structure;
+mod tiles;
 mod types;
