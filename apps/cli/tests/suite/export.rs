@@ -37,7 +37,7 @@ fn each_level_of_any_maker_has_at_most_half_of_the_one_before_while_parts_can_be
         (&["sketch", "flower.svg"], 2),
         (&["shape", OAK, "--list", "0"], 3),
         (&["leaf", "--venation", "palmate"], 1),
-        (&["bloom", "run", "tulip", "--day", "6"], 2),
+        (&["bloom", "run", "tulip", "--day", "6"], 1),
     ];
     for (maker, halved) in makers {
         let args = [maker, &["-o", "x.glb", "--lods", "3"]].concat();
