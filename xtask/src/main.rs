@@ -26,8 +26,8 @@ cargo xtask COMMAND
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
   test           sets up what the tests need and runs them: native, WASM in Node, Khronos validator, npm, Python, Studio.
                  With --all everything of it: all on one thread and on four, all species in each test,
-                 all interruptions of commands and kills of pages, all journeys in a headset, and the packages for people
-                 (wheel, archive, extension for Blender)
+                 all interruptions of commands and kills of pages, all journeys in a headset, whether the fuzz targets
+                 compile, and the packages for people (wheel, archive, extension for Blender)
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
@@ -217,12 +217,24 @@ fn test(share: Share) -> Outcome {
     })?;
     if share == Share::All {
         // Without `npm::pack`: the core of trees alone is larger than it allows today.
+        minutes.of("fuzz targets", fuzz_targets)?;
         minutes.of("the wheel", python::wheel)?;
         minutes.of("the archive", archive::run)?;
         minutes.of("the extension for Blender", blender::pack)?;
     }
     minutes.tell();
     Ok(())
+}
+
+/// Whether the fuzz targets, which are a workspace of their own, compile: `cargo fuzz` and its compiler are not needed for that.
+fn fuzz_targets() -> Outcome {
+    let target = shell::target_dir().join("fuzz");
+    let mut c = shell::prepare(
+        shell::cargo_path(),
+        &["check", "--quiet", "--locked", "--manifest-path", "fuzz/Cargo.toml", "--target-dir"],
+    );
+    c.arg(target);
+    shell::finish(c)
 }
 
 fn test_native(share: Share) -> Outcome {

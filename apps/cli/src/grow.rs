@@ -3,20 +3,21 @@
 use std::cell::RefCell;
 use std::path::Path;
 
-use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat, Room};
+use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat, PngCache, Room};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
     SelfOrganizingSpec,
 };
-use burgeon::skin::{FoliageStyle, SkinSpec};
+use burgeon::skin::SkinSpec;
 use burgeon::{
-    ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
-    TreeSpec, make_tree, method_word, read_tree_spec,
+    HeightError, ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError,
+    TreeOptions, TreeSpec, age_of_height, make_tree, method_word, read_tree_spec,
 };
 
-use crate::args::{FoliageWord, GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
+use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
 use crate::failure::{Failure, Outcome};
+use crate::levels::{Form, Whole};
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
@@ -35,9 +36,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
     let inputs = inputs.chain(&args.growth.leaf_template).chain(&args.surface.skin.materials);
     let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
-    let files_beside =
-        args.surface.lod_files() + u32::from(args.impostor.is_some() && !args.surface.in_one_file());
-    let plan = |path| files::plan_plant(&mut outputs, path, files_beside);
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.export.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
@@ -63,23 +62,19 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     outputs.check()?;
     let seed = Seed::new(args.seed);
+    set_age(args, &mut spec, seed, &machine)?;
     let options = TreeOptions {
-        skin: SkinSpec {
-            worn: materials.unwrap_or_default().worn(),
-            foliage: args.foliage.map_or_else(FoliageStyle::default, FoliageWord::foliage),
-            ..args.surface.spec()
-        },
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
         leaf,
-        lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
-        copies: args.instances,
-        impostor: args.impostor.filter(|_| matches!(format, Some(PlantFormat::Model(_)))),
+        levels: args.surface.export.levels(format),
+        height_m: args.growth.height,
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, mut model, layout, mut lods, mut copies, mut item } =
+    let MadeTree { grown, mut model, layout, mut levels, mut item } =
         made.map_err(|e| failure(args, &spec, e))?;
-    let without = copies.iter_mut().map(|(rest, _)| rest);
-    lods.iter_mut().chain([&mut model]).chain(without).for_each(|m| m.offset_m = origin.offset_m);
+    let without = levels.copies.iter_mut().map(|(rest, _)| rest);
+    levels.lods.iter_mut().chain([&mut model]).chain(without).for_each(|m| m.offset_m = origin.offset_m);
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
@@ -89,9 +84,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let mut items = vec![item];
     checks::accept(&items, &args.checks).map_err(|f| f.of(Path::new(&named(args))))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let form = levels::Form::of(&args.surface).with(&copies);
-        let (goal, plant) = ((path, format, form), (&grown.plant, &model));
-        levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
+        let form = Form::new(path, format, &args.surface.export, &args.axes);
+        let whole = Whole { plant: &grown.plant, model: model.clone(), levels };
+        levels::write(&mut outputs, &form, whole, &mut items, &mut PngCache::new(), &machine)?;
     }
     if let Some(path) = &args.qsm {
         files::write_qsm(&mut outputs, path, &grown.plant, &args.axes)?;
@@ -110,6 +105,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("grow", args.seed);
+    run.engine = args.surface.export.report();
     run.input.path = named(args);
     run.input.offset_m = origin.told(&files::axes(args.axes.up, args.axes.unit));
     run.ok = 1;
@@ -125,6 +121,19 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     Ok(())
 }
 
+/// The age at which the tree has the height of --height.
+fn set_age(args: &GrowArgs, spec: &mut TreeSpec, seed: Seed, machine: &Machine) -> Outcome {
+    let Some(height) = args.growth.height else { return Ok(()) };
+    let free = spec.obstacles.is_empty();
+    args.given.only_if(free, &["height"], "trees without obstacles", "this one would meet its own")?;
+    let age = age_of_height(spec, seed, height, &machine.run());
+    spec.age = age.map_err(|e| match e {
+        HeightError::Tree(e) => failure(args, spec, e),
+        e => Failure::at(Path::new(&named(args)), format_args!("--height: {e}")),
+    })?;
+    Ok(())
+}
+
 /// Fails on options that nothing uses.
 fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
@@ -133,20 +142,7 @@ fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     // What a drawing shows is what its meshes show.
     given.check_surface(Seen { report: seen.report || args.drawing.is_some(), ..seen })?;
     let written = args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes));
-    args.surface.check_used(given, format)?;
-    let holds = |room| format.is_some_and(|format| format.holds(room));
-    given.only_if_holds(holds(Room::Instances), &["instances"], Room::Instances)?;
-    let textured = holds(Room::Textures);
-    given.only_if(textured, &["impostor"], "models with textures", "none is made")?;
-    let painted = (textured || args.png.is_some()) && args.surface.skin.paints();
-    given.only_if(painted, &["foliage"], "models and pictures with textures", "none is made")?;
-    let by_level = args.foliage == Some(FoliageWord::ByLevel);
-    given.only_if(
-        !by_level || args.surface.lods > 0,
-        &["foliage"],
-        "coarser copies (--lods)",
-        "none is made",
-    )?;
+    args.surface.check_used(given, format, args.png.is_some())?;
     let plain = args.growth.leaf_template.is_none();
     given.only_if(plain, &["foliage"], "leaves of the species", "--leaf-template gives another")?;
     let read = !args.growth.obstacle.is_empty() || args.points.attractors.is_some();

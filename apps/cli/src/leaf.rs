@@ -3,21 +3,21 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{Room, marks_template, read_picture, write_marks, write_rays};
+use burgeon::formats::{PngCache, Room, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::glam::DVec3;
 use burgeon::leaf::{
     FullMarks, LeafGrowth, LeafPaint, LeafSpec, Marks, PalmateSpec, ParallelSpec, Rays, ScanSpec,
     ThicknessRule, VeinParameters,
 };
-use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, LeafError, LeafOptions, MadePlant, Report, RunReport, Seed, ShootSpec};
 use companions::LIMITS;
 
-use crate::args::{AxesArgs, LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, VenationWord};
+use crate::args::{AxesArgs, EXPORT, LeafArgs, ParametersWord, RingsWord, SurfaceWord, VenationWord};
 use crate::failure::{Failure, Outcome};
 use crate::leaf_data::{self, Form, ReadLeaf};
+use crate::levels::Whole;
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
@@ -55,7 +55,11 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
     }
-    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, args.lods)).transpose()?;
+    let format = args
+        .output
+        .as_deref()
+        .map(|p| files::plan_plant(&mut outputs, p, args.export.lod_files()))
+        .transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -64,9 +68,9 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         args.given.check_axes(!args.inputs.is_empty() || format.holds(Room::Axes))?;
     }
     let blown = format.is_some_and(|format| format.holds(Room::Wind));
-    let meshed = matches!(format, Some(PlantFormat::Model(_)));
-    args.given.only_if(meshed, &["lods"], "models", "none is made")?;
     args.given.only_if_holds(blown, &["wind"], Room::Wind)?;
+    args.given.refuse(&["foliage"], "trees and drawings", "the leaf that is made has its own form")?;
+    args.export.check_used(&args.given, (format, args.png.is_some()), true)?;
     let Product { mut made, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
@@ -74,9 +78,10 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     if let Some(path) = &args.edits {
         edits::some_done(path, &item, item.edits.len())?;
     }
-    let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
-    let mut lods = lods.collect::<Result<Vec<Model>, _>>().map_err(|e| failure(args, e.into()))?;
-    lods.iter_mut().for_each(|m| m.offset_m = made.model.offset_m);
+    let levels = made.levels(&args.export.levels(format), &machine.run());
+    let mut levels = levels.map_err(|e| failure(args, e.into()))?;
+    let without = levels.copies.iter_mut().map(|(rest, _)| rest);
+    levels.lods.iter_mut().chain(without).for_each(|m| m.offset_m = made.model.offset_m);
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
         outputs.write("--marks", path, |out| match marks {
             Measured::Rows(marks) => write_marks(marks, &item.name, out),
@@ -89,8 +94,9 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // --unit and --up were those of the input: glTF in metres with +Y up is no surprise.
         let plain = !format.holds(Room::Axes) && !args.inputs.is_empty();
         let axes = if plain { &AxesArgs::default() } else { &args.axes };
-        let (goal, plant) = ((path, format, levels::Form::default()), (&made.plant, &made.model));
-        levels::write(&mut outputs, goal, plant, &lods, axes, &mut items, &machine)?;
+        let form = levels::Form::new(path, format, &args.export, axes);
+        let whole = Whole { plant: &made.plant, model: made.model.clone(), levels };
+        levels::write(&mut outputs, &form, whole, &mut items, &mut PngCache::new(), &machine)?;
     }
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);
@@ -100,6 +106,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     }
     items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("leaf", args.seed);
+    run.engine = args.export.report();
     run.input.offset_m = offset_m;
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
     run.items = items;
@@ -119,7 +126,7 @@ fn check_used(args: &LeafArgs) -> Outcome {
     let given = &args.given;
     given.only_if(args.template, &["rows"], "--template", "no template is written")?;
     if args.template {
-        for options in [&MESH[..], &SURFACE, &LOOK, &PLANT, &MADE] {
+        for options in [&MESH[..], &SURFACE, &LOOK, &PLANT, &MADE, &EXPORT] {
             given.refuse(options, "leaves that are made", "--template writes a file to fill in")?;
         }
     }
@@ -177,9 +184,8 @@ const LOOK: [&str; 4] = ["curl", "wilt", "ball", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.
-const MADE: [&str; 15] = [
+const MADE: [&str; 14] = [
     "strict",
-    "lods",
     "materials",
     "number",
     "length",
@@ -273,7 +279,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
     let materials = args.materials.as_deref().map(Materials::read).transpose()?;
     let worn = materials.unwrap_or_default().worn();
-    let skin = SkinSpec { wind: args.wind, worn, ..SkinSpec::default() };
+    let skin = SkinSpec { wind: args.wind || args.export.sway, worn, ..SkinSpec::default() };
     let edits = args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default();
     Ok(LeafOptions { spec, skin, picture, side_veins, edits })
 }

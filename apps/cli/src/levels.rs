@@ -1,90 +1,216 @@
-//! A plant's file with its coarser copies beside it.
+//! A plant's file with its coarser copies beside it, within a budget if one is asked for.
 
+use std::io::{self, Write};
 use std::path::Path;
 
-use burgeon::formats::{Level, ModelFormat, Packing, PngCache, Room, write_glb_levels, write_glb_rigged};
-use burgeon::mesh::{Copies, Model};
+use burgeon::formats::{
+    ExportSpec, Level, ModelFormat, PngCache, Room, WriteError, model_files, write_glb_levels,
+    write_glb_rigged,
+};
+use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part};
 use burgeon::plant::Plant;
-use burgeon::{ItemReport, Report, Warning};
+use burgeon::skin::{SolidError, SolidSpec};
+use burgeon::{Allowance, ItemReport, Levels, Report, Warning};
 
-use crate::args::{AxesArgs, PlantFormat, TreeSurfaceArgs};
-use crate::failure::Outcome;
+use crate::args::{AxesArgs, ExportArgs, PlantFormat};
+use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::picture;
+use crate::{engines, picture, say};
 
-/// How a .glb is written.
-#[derive(Clone, Copy, Debug, Default)]
+/// A plant as it was made.
+pub(crate) struct Whole<'a> {
+    pub(crate) plant: &'a Plant,
+    pub(crate) model: Model,
+    pub(crate) levels: Levels,
+}
+
+/// Where a plant goes, and how it is written.
+#[derive(Clone, Copy)]
 pub(crate) struct Form<'a> {
-    packing: Option<Packing>,
-    in_one_file: bool,
-    sway: bool,
-    /// Of the model and each coarser copy, what is left without leaves that are one form, and these; empty to write all
-    /// leaves as they are.
-    copies: &'a [(Model, Vec<Copies>)],
+    pub(crate) goal: Goal<'a>,
+    pub(crate) format: PlantFormat,
+    pub(crate) export: &'a ExportArgs,
+    pub(crate) axes: &'a AxesArgs,
 }
 
-impl Form<'_> {
-    pub(crate) fn of(args: &TreeSurfaceArgs) -> Self {
-        let (packing, in_one_file, sway) = (args.packing(), args.in_one_file(), args.sway);
-        Self { packing, in_one_file, sway, copies: &[] }
+impl<'a> Form<'a> {
+    /// A file that `-o` names.
+    pub(crate) fn new(
+        path: &'a Path,
+        format: PlantFormat,
+        export: &'a ExportArgs,
+        axes: &'a AxesArgs,
+    ) -> Self {
+        Self { goal: Goal::new("-o", path), format, export, axes }
     }
 
-    /// With leaves that are one form as copies.
-    pub(crate) fn with(self, copies: &[(Model, Vec<Copies>)]) -> Form<'_> {
-        Form { packing: self.packing, in_one_file: self.in_one_file, sway: self.sway, copies }
+    fn is_in_one_file(&self) -> bool {
+        self.export.in_one_file() && self.format.holds(Room::Levels)
+    }
+
+    fn gltf(&self) -> ModelFormat {
+        self.format.model().unwrap_or(ModelFormat::Glb)
+    }
+
+    /// The bytes of the file of a model, of which `levels` has all levels, and of the files beside it.
+    fn weigh(&self, model: &Model, levels: &[Level<'_>], cache: &mut PngCache) -> Outcome<u64> {
+        let failed = |e: WriteError| crate::output::write_failed(self.goal.path, e);
+        let Some(format) = self.format.model() else { return Ok(0) };
+        let mut out = Counter::default();
+        if format.holds(Room::Packing) {
+            if let Some(rig) =
+                self.export.sway.then(|| burgeon::skin::sway(model, burgeon::skin::gust(model))).flatten()
+            {
+                write_glb_rigged(model, &rig, cache, &mut out).map_err(failed)?;
+            } else {
+                let of_file = if self.is_in_one_file() { levels } else { &levels[..levels.len().min(1)] };
+                write_glb_levels(of_file, self.export.packing(), cache, &mut out).map_err(failed)?;
+            }
+            return Ok(out.bytes);
+        }
+        let spec: ExportSpec = files::axes(self.axes.up, self.axes.unit);
+        let made =
+            model_files(model, format, "model", &spec, cache, &mut Report::default()).map_err(failed)?;
+        Ok((made.own.len() + made.beside.iter().map(|f| f.bytes.len()).sum::<usize>()) as u64)
     }
 }
 
-/// Writes a plant to `path` and its coarser copies beside it. What became of it comes into the plant's entry of the
-/// report; each copy gets an entry of its own after it.
-pub(crate) fn write(
-    outputs: &mut Outputs,
-    (path, format, form): (&Path, PlantFormat, Form<'_>),
-    (plant, model): (&Plant, &Model),
-    lods: &[Model],
-    axes: &AxesArgs,
-    items: &mut Vec<ItemReport>,
-    machine: &Machine,
-) -> Outcome {
-    let mut cache = PngCache::new();
-    let split = |level: usize, model| {
-        let split = form.copies.get(level).map(|(rest, copies)| Level { model: rest, copies });
+/// Counts bytes.
+#[derive(Default)]
+struct Counter {
+    bytes: u64,
+}
+
+impl Write for Counter {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        self.bytes += buffer.len() as u64;
+        Ok(buffer.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The model and its levels as files hold them: what is left of each without leaves that are copies, and these.
+fn split<'a>(model: &'a Model, levels: &'a Levels) -> Vec<Level<'a>> {
+    let all = std::iter::once(model).chain(&levels.lods).enumerate();
+    let of = |(k, model): (usize, &'a Model)| {
+        let split = levels.copies.get(k).map(|(rest, copies)| Level { model: rest, copies: &copies[..] });
         split.unwrap_or(Level::plain(model))
     };
-    let one = form.in_one_file && format.holds(Room::Levels);
-    let gltf = format.model().unwrap_or(ModelFormat::Glb);
-    let all = std::iter::once((model, "-o", path.to_path_buf()));
-    let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
-    let whole: Vec<Level<'_>> =
-        std::iter::once(model).chain(lods).enumerate().map(|(k, m)| split(k, m)).collect();
-    let main = path;
+    all.map(of).collect()
+}
+
+/// Makes a plant as small as it has to be.
+fn fit(form: &Form<'_>, whole: &mut Whole<'_>, item: &mut ItemReport, cache: &mut PngCache) -> Outcome {
+    let export = form.export;
+    if !export.has_budget() || form.format.model().is_none() {
+        return Ok(());
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 4e9")]
+    let bytes = export.megabytes.map(|m| (m * 1e6) as u64);
+    let allowance = Allowance { triangles: export.triangles, bytes };
+    let model = std::mem::take(&mut whole.model);
+    let levels = std::mem::take(&mut whole.levels);
+    let asked = (export.lods, export.impostor.is_some());
+    let weigh = |model: &Model, levels: &Levels| form.weigh(model, &split(model, levels), cache);
+    let fitted = levels.within(model, allowance, asked, weigh)?;
+    let fitted = fitted.map_err(|e| Failure::at(form.goal.path, e))?;
+    if let Some(line) = fitted.line() {
+        item.warnings.push(line);
+    }
+    item.counts.vertices = fitted.model.vertex_count() as u64;
+    item.counts.triangles = fitted.model.triangle_count() as u64;
+    (whole.model, whole.levels) = (fitted.model, fitted.levels);
+    Ok(())
+}
+
+/// Makes one closed body of a plant.
+fn print(
+    form: &Form<'_>,
+    spec: &SolidSpec,
+    whole: &mut Whole<'_>,
+    item: &mut ItemReport,
+    machine: &Machine,
+) -> Outcome {
+    let made = machine
+        .with_progress("print", |_| burgeon::skin::solid(whole.plant, &whole.model, spec, &machine.run()));
+    let made = made.map_err(|e| match e {
+        SolidError::Cancelled(_) => Failure::Cancelled,
+        e => Failure::at(form.goal.path, e),
+    })?;
+    let wall = spec.wall_m * 1e3;
+    item.warnings
+        .push(format!("printed at 1 : {:.3}; what would be thinner than {wall} mm is thickened", made.scale));
+    if made.loose > 0 {
+        let one = "surface that hangs on nothing, or lies within the body, was";
+        let many = "surfaces that hang on nothing, or lie within the body, were";
+        item.warnings.push(format!("{} left out", say::counted(made.loose as u64, one, many)));
+    }
+    let material = Material::plain("print", MaterialKind::Other, [0.6; 3]);
+    let part = Part { name: "print".to_owned(), material: MaterialId::new(0), mesh: made.mesh };
+    let name = whole.model.name.clone();
+    whole.model = Model { name, parts: vec![part], materials: vec![material], offset_m: None };
+    whole.levels = Levels::default();
+    item.counts.vertices = whole.model.vertex_count() as u64;
+    item.counts.triangles = whole.model.triangle_count() as u64;
+    Ok(())
+}
+
+/// Writes a plant and its coarser copies beside it. What became of it comes into the plant's entry of the report, the first of
+/// `items`; each copy gets an entry of its own after it.
+pub(crate) fn write(
+    outputs: &mut Outputs,
+    form: &Form<'_>,
+    mut whole: Whole<'_>,
+    items: &mut Vec<ItemReport>,
+    cache: &mut PngCache,
+    machine: &Machine,
+) -> Outcome {
+    let (format, export) = (form.format, form.export);
+    if export.instances && whole.levels.copies.iter().all(|(_, copies)| copies.is_empty()) {
+        return Err(Failure::at(
+            form.goal.path,
+            "--instances is for plants of which a leaf stands in several places; this one has none: leave it out",
+        ));
+    }
+    if let Some(spec) = export.print() {
+        print(form, &spec, &mut whole, &mut items[0], machine)?;
+    }
+    fit(form, &mut whole, &mut items[0], cache)?;
+    if export.names {
+        let Whole { plant, model, levels } = &mut whole;
+        let rest = levels.copies.iter_mut().map(|(rest, _)| rest);
+        let all = levels.lods.iter_mut().chain(rest).chain([&mut *model]);
+        all.for_each(|model| engines::name_after(&plant.name, model));
+    }
+    if let Some(report) = export.report().filter(|_| !machine.quiet) {
+        say::line(&format!("for {}: {}", report.name, report.set.join(", ")));
+    }
+    let Whole { plant, model, levels } = &whole;
+    let (one, gltf) = (form.is_in_one_file(), form.gltf());
+    let of_file = split(model, levels);
+    let main = form.goal.path;
+    let all = std::iter::once((model, "-o", main.to_path_buf()));
+    let all = all.chain(levels.lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(main, level))));
     for (level, (model, by, path)) in all.enumerate() {
         machine.cancel.check()?;
+        let goal = Goal { by, path: &path, packing: export.packing(), ..form.goal };
+        let in_levels = |outputs: &mut Outputs, levels: &[Level<'_>], cache: &mut PngCache| {
+            files::write_gltf(outputs, goal, gltf, |out| write_glb_levels(levels, goal.packing, cache, out))
+        };
         let (written, write_ms) = machine.timed(|| match level {
-            0 if one => {
-                let goal = Goal::new(by, &path);
-                files::write_gltf(outputs, goal, gltf, |out| {
-                    write_glb_levels(&whole, form.packing, &mut cache, out)
-                })?;
-                Ok(Vec::new())
-            }
+            0 if one => in_levels(outputs, &of_file, cache).map(|()| Vec::new()),
             // It is in the file of the whole.
             _ if one => Ok(Vec::new()),
-            _ if form.sway => swaying(outputs, (Goal::new(by, &path), gltf), model, &mut cache),
-            _ if !form.copies.is_empty() => {
-                let level = [split(level, model)];
-                let goal = Goal::new(by, &path);
-                files::write_gltf(outputs, goal, gltf, |out| {
-                    write_glb_levels(&level, form.packing, &mut cache, out)
-                })?;
-                Ok(Vec::new())
+            _ if export.sway => swaying(outputs, (goal, gltf), model, cache),
+            _ if !levels.copies.is_empty() => {
+                in_levels(outputs, &of_file[level..=level], cache).map(|()| Vec::new())
             }
-            _ => {
-                let goal = Goal { packing: form.packing, ..Goal::new(by, &path) };
-                files::write_plant(outputs, goal, (plant, model), format, axes, &mut cache)
-            }
+            _ => files::write_plant(outputs, goal, (plant, model), format, form.axes, cache),
         });
         let written = written?;
         if level > 0 {

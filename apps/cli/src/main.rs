@@ -10,6 +10,7 @@ mod curve;
 mod disk;
 mod draft;
 mod edits;
+mod engines;
 mod failure;
 mod files;
 mod fit;
@@ -71,19 +72,27 @@ fn main() -> ExitCode {
         say::error(&format!("internal error, a bug in burgeon: {what}{place}"));
     }));
     let outcome = std::panic::catch_unwind(|| match cli.command {
+<<<<<<< HEAD
         Command::Sketch(args) => sketch::sketch(&args),
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
         Command::Scan(args) => scan::scan(&args),
         Command::Forest(args) => forest::forest(&args),
         Command::Shape(args) => shape::shape(&args),
+=======
+        Command::Sketch(mut args) => args.settle().and_then(|()| sketch::sketch(&args)),
+        Command::Leaf(mut args) => args.settle().and_then(|()| leaf::leaf(&args)),
+        Command::Grow(mut args) => args.settle().and_then(|()| grow::grow(&args)),
+        Command::Scan(mut args) => args.settle().and_then(|()| scan::scan(&args)),
+        Command::Shape(mut args) => args.settle().and_then(|()| shape::shape(&args)),
+>>>>>>> whole
         Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Render(args) => picture::render(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),
-        Command::Bloom(command) => bloom::bloom(&command),
+        Command::Bloom(mut command) => command.settle().and_then(|()| bloom::bloom(&command)),
         Command::Studio(args) => studio::studio(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

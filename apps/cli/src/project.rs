@@ -9,9 +9,9 @@ use burgeon::document::{
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::SkinSpec;
-use burgeon::{ItemReport, SceneError, SceneEvaluator, Seed};
+use burgeon::{ItemReport, LevelSpec, Levels, SceneError, SceneEvaluator, Seed};
 
-use crate::args::{SkinArgs, TreeSurfaceArgs};
+use crate::args::{FoliageWord, SkinArgs, TreeSurfaceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
@@ -118,22 +118,21 @@ pub(crate) fn asked(
 
 /// Makes one plant of a document, with the columns of wind and the coarser copies that are wanted.
 pub(crate) fn make(
-    path: &Path,
-    document: &Document,
-    id: PlantId,
+    (path, document, id): (&Path, &Document, PlantId),
     surface: &TreeSurfaceArgs,
+    levels: &LevelSpec,
     machine: &Machine,
-) -> Outcome<(Plant, Model, Vec<Model>, ItemReport)> {
+) -> Outcome<(Plant, Model, Levels, ItemReport)> {
     let failed = |e: SceneError| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) };
     let none = || Failure::Bug("no plant was made".into());
     let mut scene = SceneEvaluator::default();
-    scene.set_wind(surface.skin.wind || surface.sway);
+    scene.set_wind(surface.skin.wind || surface.export.sway);
+    scene.set_foliage(surface.export.foliage.map(FoliageWord::foliage));
     scene.update(id, document, &machine.run()).map_err(failed)?;
     let chosen = document.plant(id).ok_or_else(none)?;
-    let levels = (1..=surface.lods).map(|level| scene.at_level(chosen, document, level, &machine.run()));
-    let lods = levels.collect::<Result<_, _>>().map_err(failed)?;
+    let levels = scene.levels(chosen, levels, &machine.run()).map_err(failed)?;
     let made = scene.get(id).ok_or_else(none)?;
-    Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), lods, made.report()))
+    Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), levels, made.report()))
 }
 
 /// Writes a project, which `option` asks for.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{ExportSpec, StructureFormat};
+use burgeon::formats::{ExportSpec, PngCache, StructureFormat};
 use burgeon::glam::DVec3;
 use burgeon::scan::{FoundTree, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
@@ -11,8 +11,9 @@ use burgeon::{
 };
 use serde::Serialize;
 
-use crate::args::{PlantFormat, ScanArgs, Seen};
+use crate::args::{ScanArgs, Seen};
 use crate::failure::{Failure, Outcome};
+use crate::levels::{Form, Whole};
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
@@ -61,14 +62,14 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
     let inputs: Vec<&PathBuf> = inputs.into_iter().flatten().collect();
     let mut outputs = Outputs::new(&outputs, &inputs)?;
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.export.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    args.surface.check_used(&args.given, format)?;
+    args.surface.check_used(&args.given, format, args.png.is_some())?;
     let mut told = Report::default();
     let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
     if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
@@ -106,18 +107,17 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let offset = origin.offset_m.unwrap_or_default();
     let (mut made, found) = made.map_err(|e| failure(&args.input, e.in_scan(&axes, offset)))?;
     drop(points);
-    let lods = if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 };
-    let lods = (1..=lods).map(|level| made.at_level(level, &machine.run()));
-    let lods: Vec<_> = lods.collect::<Result<_, _>>().map_err(|e| failure(&args.input, e.into()))?;
+    let levels = made.levels(&args.surface.export.levels(format), &machine.run());
+    let levels = levels.map_err(|e| failure(&args.input, e.into()))?;
     let stood = offset + found.foot;
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
     checks::accept(&items, &args.checks).map_err(|f| f.of(&args.input))?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let goal = (path, format, levels::Form::of(&args.surface));
-        let plant = (&made.plant, &made.model);
-        levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
+        let form = Form::new(path, format, &args.surface.export, &args.axes);
+        let whole = Whole { plant: &made.plant, model: made.model.clone(), levels };
+        levels::write(&mut outputs, &form, whole, &mut items, &mut PngCache::new(), &machine)?;
     }
     if let Some(path) = &args.qsm {
         files::write_qsm(&mut outputs, path, &made.plant, &args.axes)?;
@@ -134,6 +134,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     }
     items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("scan", args.seed);
+    run.engine = args.surface.export.report();
     run.input.path = args.input.display().to_string();
     run.input.offset_m = origin.told(&axes);
     run.ok = 1;

@@ -7,7 +7,7 @@ use burgeon::formats::{PngCache, Room, write_glb_scene};
 use burgeon::mesh::Standing;
 use burgeon::{RunReport, SceneEvaluator, scene_model, standing};
 
-use crate::args::{PlantFormat, Seen, SketchArgs};
+use crate::args::{EXPORT, PlantFormat, Seen, SketchArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
@@ -60,6 +60,11 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let line = "this is a scene, whose plants have their own settings; change them in the Studio";
     given.refuse(&OF_ONE_DRAWING, "drawings", line)?;
     given.refuse(&["format"], "folders of models", "a scene is one model")?;
+    given.refuse(
+        &EXPORT,
+        "drawings",
+        "a scene is written as it stands; export its plants from the Studio",
+    )?;
     if document.plants().is_empty() {
         return Err(Failure::at(path, files::EMPTY));
     }

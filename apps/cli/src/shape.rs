@@ -4,19 +4,20 @@ use std::path::Path;
 
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, PlantEdit};
-use burgeon::formats::{Room, read_drawings};
+use burgeon::formats::{PngCache, Room, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    BranchRow, FlowerOptions, ItemReport, MadePlant, MadeTree, Preset, Report, RunReport, Seed, Stopped,
-    TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_flower, make_tree,
+    BranchRow, FlowerOptions, ItemReport, LevelSpec, Levels, MadePlant, MadeTree, Preset, Report, RunReport,
+    Seed, Stopped, TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_flower, make_tree,
 };
 
 use crate::args::{PlantFormat, Seen, ShapeArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::Kind;
+use crate::levels::{Form, Whole};
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::output::Outputs;
@@ -26,7 +27,7 @@ use crate::{bloom, checks, edits, files, grow, inputs, levels, picture, project,
 struct Shaped {
     plant: Plant,
     model: Model,
-    lods: Vec<Model>,
+    levels: Levels,
     item: ItemReport,
     seed: Seed,
     /// The project with the edits.
@@ -49,7 +50,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
         outputs.write("--schema", path, |file| Ok(writeln!(file, "{text}")?))?;
     }
-    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.export.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     check_used(args, format)?;
     if args.template {
@@ -63,10 +64,11 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     let edits = args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default();
     let asked = edits.len();
     let mut told = Report::default();
-    let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
+    let spec = args.surface.export.levels(format);
+    let made = machine.with_progress("shape", |_| make(args, (what, edits), &spec, &mut told, &machine))?;
     outputs.check()?;
     machine.cancel.check()?;
-    let Shaped { plant, model, lods, mut item, seed, edited } = made;
+    let Shaped { plant, model, levels, mut item, seed, edited } = made;
     if let Some(path) = &args.edits {
         edits::some_done(path, &item, asked)?;
     }
@@ -80,8 +82,9 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     let mut items = vec![item];
     checks::accept(&items, &args.checks)?;
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let goal = (path, format, levels::Form::of(&args.surface));
-        levels::write(&mut outputs, goal, (&plant, &model), &lods, &args.axes, &mut items, &machine)?;
+        let form = Form::new(path, format, &args.surface.export, &args.axes);
+        let whole = Whole { plant: &plant, model: model.clone(), levels };
+        levels::write(&mut outputs, &form, whole, &mut items, &mut PngCache::new(), &machine)?;
     }
     if let Some(png) = &args.png {
         let spec = args.picture.spec(seed.number());
@@ -91,6 +94,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     }
     items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("shape", seed.number());
+    run.engine = args.surface.export.report();
     run.input.path = what.display().to_string();
     run.ok = 1;
     if let Some(order) = args.list {
@@ -128,7 +132,7 @@ fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     }
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
-    args.surface.check_used(given, format)?;
+    args.surface.check_used(given, format, args.png.is_some())?;
     given.check_axes(format.is_some_and(|f| f.holds(Room::Axes)))
 }
 
@@ -138,13 +142,13 @@ fn out(text: &str) -> Outcome {
 
 fn make(
     args: &ShapeArgs,
-    what: &Path,
-    edits: Vec<PlantEdit>,
+    (what, edits): (&Path, Vec<PlantEdit>),
+    levels: &LevelSpec,
     told: &mut Report,
     machine: &Machine,
 ) -> Outcome<Shaped> {
     if let Some(spec) = bloom::species(what)? {
-        return flower(args, what, &spec, edits, machine);
+        return flower(args, (what, edits), &spec, levels, machine);
     }
     let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
@@ -159,13 +163,13 @@ fn make(
             None => grow::read_spec(what, told)?,
         };
         let skin = skin_of(args)?;
-        let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
+        let options = TreeOptions { skin, levels: *levels, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
             TreeError::Cancelled(_) => Failure::Cancelled,
             other => Failure::at(what, other),
         })?;
-        let MadeTree { grown, model, lods, item, .. } = made;
-        return Ok(Shaped { plant: grown.plant, model, lods, item, seed, edited: None });
+        let MadeTree { grown, model, levels, item, .. } = made;
+        return Ok(Shaped { plant: grown.plant, model, levels, item, seed, edited: None });
     }
     let opened = match stdin {
         Some((input, start)) => (input, files::kind_of(what, &start)?),
@@ -201,9 +205,9 @@ fn make(
         Some(path) => Materials::read(path)?.on(asked, id)?,
         None => asked,
     };
-    let (plant, model, lods, item) = project::make(what, &asked, id, &args.surface, machine)?;
+    let (plant, model, levels, item) = project::make((what, &asked, id), &args.surface, levels, machine)?;
     let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
-    Ok(Shaped { plant, model, lods, item, seed, edited: Some(document) })
+    Ok(Shaped { plant, model, levels, item, seed, edited: Some(document) })
 }
 
 fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
@@ -214,9 +218,9 @@ fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
 /// A flower in full bloom.
 fn flower(
     args: &ShapeArgs,
-    what: &Path,
+    (what, edits): (&Path, Vec<PlantEdit>),
     spec: &FlowerSpec,
-    edits: Vec<PlantEdit>,
+    levels: &LevelSpec,
     machine: &Machine,
 ) -> Outcome<Shaped> {
     no_project(args, what)?;
@@ -234,10 +238,9 @@ fn flower(
     };
     let day = (spec.opening_days, &spec.own_law());
     let made = make_flower(&spec.name, spec, day, &options, seed, &run).map_err(failed)?;
-    let lods = (1..=args.surface.lods).map(|level| made.at_level(level, &run));
-    let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
+    let levels = made.levels(levels, &run).map_err(failed)?;
     let MadePlant { plant, model, item, .. } = made;
-    Ok(Shaped { plant, model, lods, item, seed, edited: None })
+    Ok(Shaped { plant, model, levels, item, seed, edited: None })
 }
 
 /// Options of projects are for nothing else.

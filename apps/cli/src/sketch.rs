@@ -11,18 +11,19 @@ use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawi
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, SplitError,
-    make_from_sketch,
+    ItemReport, LeafTemplate, Levels, Made, MakeError, Run, RunReport, Seed, SketchOptions, SplitError,
+    make_levels_from_sketch,
 };
 
 use crate::args::{PlantFormat, ReadingArgs, Seen, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
+use crate::levels::{Form, Whole};
 use crate::machine::{Machine, Progress};
 use crate::materials::Materials;
 use crate::output::Outputs;
-use crate::{checks, names, output, picture, project, say};
+use crate::{checks, levels, names, output, picture, project, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -57,6 +58,8 @@ fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
     given.only_if(args.split.is_none(), &["leaf_template"], "models and pictures", leaf)?;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let surface = &args.surface;
+    surface.export.check_used(given, (format, args.png.is_some()), surface.skin.paints())?;
     given.check_axes(args.qsm.is_some() || format.is_some_and(|f| f.holds(Room::Axes)))
 }
 
@@ -142,6 +145,7 @@ impl<'a> Job<'a> {
 
     fn report(&self, project: Option<&DocumentPlant>) -> RunReport {
         let mut report = RunReport::new("sketch", self.seed(project).number());
+        report.engine = self.args.surface.export.report();
         let paths = self.args.inputs.iter().map(|p| p.display().to_string());
         report.input.path = paths.collect::<Vec<_>>().join(", ");
         report
@@ -160,7 +164,8 @@ impl<'a> Job<'a> {
             ("--report", self.args.common.report.as_ref()),
         ];
         let mut outputs = Outputs::new(&outputs, &self.inputs())?;
-        let plan = |path| files::plan_plant(&mut outputs, path, 0);
+        let beside = self.args.surface.export.lod_files();
+        let plan = |path| files::plan_plant(&mut outputs, path, beside);
         let format = self.args.output.as_deref().map(plan).transpose()?;
         let (first, read_ms) = machine.timed(|| -> Outcome<(Input, Source)> {
             let mut drawings = open(input)?;
@@ -188,12 +193,12 @@ impl<'a> Job<'a> {
             project::save(&mut outputs, "--split", path, &document)?;
         }
         let clocked = (machine, [read_ms, machine.whole_ms()], &machine.run());
-        let made = self.made(&read, &machine.run()).map_err(|failure| failure.of(input))?;
-        let mut item = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
-        item.timings_ms.total = machine.whole_ms();
+        let made = self.made(&read, format, &machine.run()).map_err(|failure| failure.of(input))?;
+        let mut items = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
+        items[0].timings_ms.total = machine.whole_ms();
         report.ok = 1;
         self.warn_of_unused(&mut report);
-        report.items.push(item);
+        report.items = items;
         crate::report::finish(&report, &self.args.common, outputs)?;
         if !machine.quiet {
             let item = &report.items[0];
@@ -201,6 +206,7 @@ impl<'a> Job<'a> {
                 say::warning(&format!("{}: {warning}", input.display()));
             }
             say::line(&crate::report::summary(item, self.args.png.as_deref()));
+            report.items[1..].iter().for_each(|i| say::line(&crate::report::summary(i, None)));
         }
         Ok(report)
     }
@@ -222,15 +228,16 @@ impl<'a> Job<'a> {
     }
 
     /// Makes one plant.
-    fn made(&self, input: &Input, run: &Run<'_>) -> Outcome<Made> {
+    fn made(&self, input: &Input, format: Option<PlantFormat>, run: &Run<'_>) -> Outcome<(Made, Levels)> {
         let seed = self.seed(input.project.as_deref());
-        let made =
-            make_from_sketch(&input.read.drawing, &self.options(input), seed, run).map_err(|e| match e {
-                MakeError::Cancelled(_) => Failure::Cancelled,
-                other => Failure::Bad(other.to_string()),
-            })?;
+        let levels = self.args.surface.export.levels(format);
+        let made = make_levels_from_sketch(&input.read.drawing, &self.options(input), (seed, &levels), run);
+        let (made, levels) = made.map_err(|e| match e {
+            MakeError::Cancelled(_) => Failure::Cancelled,
+            other => Failure::Bad(other.to_string()),
+        })?;
         checks::accept(std::slice::from_ref(&made.item), &self.args.checks)?;
-        Ok(made)
+        Ok((made, levels))
     }
 
     /// The drawing as a document in which each of its plants is one.
@@ -272,13 +279,13 @@ impl<'a> Job<'a> {
     /// Writes a plant's files, which are not yet in place.
     fn write(
         &self,
-        made: Made,
+        (made, levels): (Made, Levels),
         input: &Input,
         target: &Target,
         (machine, [read_ms, begun], run): (&Machine, [f64; 2], &Run<'_>),
         cache: &mut PngCache,
         outputs: &mut Outputs,
-    ) -> Outcome<ItemReport> {
+    ) -> Outcome<Vec<ItemReport>> {
         let Input { read, project } = input;
         let seed = self.seed(project.as_deref());
         let Made { plant, model, mut item, .. } = made;
@@ -286,17 +293,10 @@ impl<'a> Job<'a> {
         warnings.append(&mut item.warnings);
         item.warnings = warnings;
         run.cancel.check()?;
-        let (written, write_ms) = machine.timed(|| {
-            if let Some(path) = &target.qsm {
-                files::write_qsm(outputs, path, &plant, &self.args.axes)?;
-            }
-            let Some((path, format)) = &target.plant else { return Ok(Vec::new()) };
-            item.output = path.display().to_string();
-            let goal = Goal { of_many: target.of_many, ..Goal::new("-o", path) };
-            files::write_plant(outputs, goal, (&plant, &model), *format, &self.args.axes, cache)
-        });
-        item.warnings.extend(written?.iter().map(ToString::to_string));
-        item.timings_ms.add_io(read_ms, write_ms);
+        item.timings_ms.add_io(read_ms, 0.0);
+        if let Some(path) = &target.qsm {
+            files::write_qsm(outputs, path, &plant, &self.args.axes)?;
+        }
         if self.args.common.reports() {
             let (measured, ms) = machine.timed(|| plant.measure());
             item.plant = Some(measured);
@@ -310,8 +310,15 @@ impl<'a> Job<'a> {
             drawn?;
             item.timings_ms.picture += ms;
         }
-        item.timings_ms.total = read_ms + machine.whole_ms() - begun;
-        Ok(item)
+        let mut items = vec![item];
+        if let Some((path, format)) = &target.plant {
+            let form = Form::new(path, *format, &self.args.surface.export, &self.args.axes);
+            let form = Form { goal: Goal { of_many: target.of_many, ..form.goal }, ..form };
+            let whole = Whole { plant: &plant, model, levels };
+            levels::write(outputs, &form, whole, &mut items, cache, machine)?;
+        }
+        items[0].timings_ms.total = read_ms + machine.whole_ms() - begun;
+        Ok(items)
     }
 
     /// Every drawing of every input, spread over threads; memory holds one drawing a thread.
@@ -338,10 +345,10 @@ impl<'a> Job<'a> {
                         let run = machine.single();
                         let (target, clocked) =
                             (self.target(&next.name), (machine, [next.read_ms, machine.whole_ms()], &run));
-                        let made = self.made(&read, &run)?;
+                        let made = self.made(&read, target.plant.as_ref().map(|(_, f)| *f), &run)?;
                         let mut own = outputs.of_one();
-                        let item = self.write(made, &read, &target, clocked, &mut cache, &mut own)?;
-                        own.place().map(|()| item)
+                        let items = self.write(made, &read, &target, clocked, &mut cache, &mut own)?;
+                        own.place().map(|()| items)
                     });
                     if let Ok(mut done) = done.lock() {
                         done.add(next.index, &next.place, outcome, keep_items);
@@ -449,13 +456,13 @@ struct Done {
 }
 
 impl Done {
-    fn add(&mut self, index: u64, place: &str, outcome: Outcome<ItemReport>, keep: bool) {
+    fn add(&mut self, index: u64, place: &str, outcome: Outcome<Vec<ItemReport>>, keep: bool) {
         match outcome {
-            Ok(item) => {
+            Ok(items) => {
                 self.ok += 1;
-                self.warnings += item.warnings.len() as u64;
+                self.warnings += items.iter().map(|item| item.warnings.len() as u64).sum::<u64>();
                 if keep {
-                    self.items.push((index, item));
+                    self.items.extend(items.into_iter().map(|item| (index, item)));
                 }
             }
             Err(Failure::Bad(line)) => {
@@ -627,6 +634,8 @@ fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {
 
 fn set_skin(skin: &mut SkinSpec, args: &SurfaceArgs) {
     args.skin.set(skin);
+    skin.wind |= args.export.sway;
+    skin.foliage = args.export.foliage();
     skin.petals = args.petals.map(Into::into).or(skin.petals);
     skin.variation = args.variation.unwrap_or(skin.variation);
 }

@@ -2,6 +2,7 @@
 import type * as Three from 'three';
 import { type Copies, type Parted, part } from './leaves.js';
 import type { Answer, PartArrays } from './protocol.js';
+import { lit } from './through.js';
 import { type Blown, blown, type Wind } from './wind.js';
 import type { LevelView, MaterialView } from './wire.js';
 
@@ -281,14 +282,8 @@ export class Looks {
       roughness: look.roughness,
       metalness: 0,
     });
-    if (look.translucency > 0) {
-      // Light through a thin blade: a little of its own colour shines from the shaded side.
-      material.emissive.setRGB(1, 1, 1);
-      material.emissiveMap = map;
-      material.emissiveIntensity = 0.16 * look.translucency;
-      if (!map) material.emissive.copy(material.color);
-    }
     if (blows) blown(material, this.wind, of);
+    if (look.translucency > 0) lit(material, look.translucency);
     this.materials.set(key, material);
     return material;
   }

@@ -195,7 +195,7 @@ fn made(
     let owners = shown.owners.map(|layout| (structure.clone(), layout.clone()));
     let mut levels = vec![Level { model: shown.model.clone(), owners }];
     for level in 1..=asked.levels()? {
-        let model = asked.run(|run| scene.at_level(plant, document, level, run))?;
+        let model = asked.run(|run| scene.at_level(plant, level, run))?;
         levels.push(Level { model, owners: None });
     }
     let days = scene.days(id, document);

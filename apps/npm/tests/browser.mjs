@@ -168,6 +168,41 @@ try {
     const copied = pixels(copies, 1.6);
     return [differ(early, late), differ(still, late), differ(whole, late), differ(whole, copied)];
   });
+  // In the dark a plant is dark, and a leaf before the light has its own tint.
+  const shone = await page.evaluate(async () => {
+    const THREE = await import('three');
+    const { grow } = await import('burgeon');
+    const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+    renderer.setSize(300, 300);
+    const tree = await grow('hazel', { seed: 3, detail: 0.2, textures: false });
+    const high = tree.bounds.max[1];
+    const mean = (side) => {
+      const scene = new THREE.Scene();
+      scene.add(tree.object3D({ wind: false, shadows: false }));
+      if (side !== 0) {
+        const sun = new THREE.DirectionalLight(0xffffff, 3);
+        sun.position.set(0, 0.3, side);
+        scene.add(sun);
+      }
+      const camera = new THREE.PerspectiveCamera(45, 1, 0.1, 100);
+      camera.position.set(0, high / 2, 1.6 * high);
+      renderer.render(scene, camera);
+      const gl = renderer.getContext();
+      const data = new Uint8Array(4 * 300 * 300);
+      gl.readPixels(0, 0, 300, 300, gl.RGBA, gl.UNSIGNED_BYTE, data);
+      const sum = [0, 0, 0];
+      for (let k = 0; k < data.length; k += 4) for (const c of [0, 1, 2]) sum[c] += data[k + c];
+      return sum.map((x) => x / (300 * 300));
+    };
+    return { dark: mean(0), before: mean(1), behind: mean(-1) };
+  });
+  assert.deepEqual(shone.dark, [0, 0, 0], 'nothing glows in the dark');
+  const saturation = ([r, g, b]) => 1 - Math.min(r, g, b) / Math.max(r, g, b, 1e-9);
+  assert.ok(Math.max(...shone.behind) > 0.05 * Math.max(...shone.before), JSON.stringify(shone));
+  assert.ok(saturation(shone.behind) > 0.8 * saturation(shone.before), JSON.stringify(shone));
+  console.log(
+    `saturation before the light ${saturation(shone.before).toFixed(2)}, against it ${saturation(shone.behind).toFixed(2)}`,
+  );
   const shares = moved.map((x) => x.toFixed(4)).join(', ');
   assert.ok(moved[0] > 0.01 && moved[1] > 0.01, `wind moves it: ${shares}`);
   // Leaves as instances sway as their foot does, those of a mesh each vertex for itself: all but the same.

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence, Tuple
 
 from . import _burgeon
 from ._files import write_whole
 from ._given import beyond, coloured, flag, number, path, whole, word, wrong
+from ._recipe import Recipe, recipe
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,6 +24,24 @@ class Law:
 
     def __init__(self, raw: Any) -> None:
         self._raw = raw
+
+    def __reduce__(self) -> "Tuple[Any, ...]":
+        return _of_json, (self._raw.json(),)
+
+    def __copy__(self) -> "Law":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Law":
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        """The same laws, with all that was measured of them."""
+        if not isinstance(other, Law):
+            return NotImplemented
+        return self is other or self._raw.json() == other._raw.json()
+
+    def __hash__(self) -> int:
+        return hash(self._raw.json())
 
     @classmethod
     def fit(
@@ -67,7 +86,7 @@ class Law:
         ``scans``: a dict from days to clouds of points, each a file or an array (points, 3); the rest as for ``bloom``, which
         then makes the plant of any day: ``bloom(scans, 2.5, law=law)``.
         """
-        return cls(scans_of(name, scans, unit, up, single, seed, budget).law())
+        return cls(scans_of(name, scans, unit, up, single, seed, budget).make().law())
 
     @classmethod
     def read(cls, path: "str | os.PathLike[str]") -> "Law":
@@ -107,6 +126,10 @@ class Law:
         return f"<burgeon.Law {laws}>"
 
 
+def _of_json(text: str) -> Law:
+    return Law(_burgeon.RawLaw.read(text))
+
+
 def scans_of(
     name: str,
     scans: "Mapping[float, Any]",
@@ -116,8 +139,8 @@ def scans_of(
     seed: int,
     budget: float,
     texture: str = "scan",
-) -> "_burgeon.RawDays":
-    """Scans of several days, in the order of the days."""
+) -> Recipe:
+    """What makes scans of several days, in the order of the days."""
     rows = []
     for key, cloud in scans.items():
         row: "Dict[str, Any]" = {"day": number("scans: a day", key, -1e4, 1e4, "d"), "file": None, "points": b"", "colors": b""}
@@ -134,7 +157,7 @@ def scans_of(
         raise wrong("there are no scans: give a dict from days to clouds", "scans", "{}", "one day or more")
     days = (word("unit", unit), word("up", up), texture)
     seed, budget = whole("seed", seed, 0, 2**64 - 1), number("budget", budget, 1, 1000)
-    return _burgeon.RawDays(word("name", name), rows, days, flag("single", single), seed, budget)
+    return recipe("RawDays", word("name", name), rows, days, flag("single", single), seed, budget)
 
 
 def _numbers(values: Any, what: str) -> "np.ndarray":

@@ -11,6 +11,7 @@ from ._given import asked_of, beyond, flag, number, unused, whole, word, wrong
 from ._given import coloured as _coloured
 from ._given import path as path_of
 from ._given import points as _points
+from ._recipe import recipe
 from .errors import SpecError
 from .law import Law, scans_of
 from .plant import Plant
@@ -96,7 +97,7 @@ def grow(
         raise unused("foliage", foliage, "is cut out of pictures of leaves, which textures=False leaves out")
     if not isinstance(leaf, (Plant, type(None))):
         raise TypeError(f"leaf must be a plant of leaf(), not {leaf!r}")
-    plant = Plant(_burgeon.grow(base, asked, None if leaf is None else leaf._raw))
+    plant = Plant(recipe("grow", base, asked, leaf))
     for name, value in (("leaf", leaf), ("foliage", foliage)):
         if value is not None and plant.spec.get("bare"):
             raise unused(name, value, "is of trees with leaves, and this one is bare")
@@ -136,14 +137,14 @@ def bloom(
         texture = _scan_texture(fields, "flowers; a plant of scans has no fields but texture")
         days = scans_of("scan", cast("Mapping[float, Any]", spec), unit, up, single, seed, budget, texture)
         when = max(map(float, spec)) if day is None else number("day", day, -1e4, 1e4, "d")
-        return Plant(days.plant(when, None if law is None else law._raw))
+        return Plant(recipe("plant", when, law, before=days))
     for name, value, usual in (("unit", unit, "m"), ("up", up, "y"), ("single", single, False)):
         if value != usual:
             raise wrong(f"{name} is of scans of several days: give a dict from days to clouds", name, value, "left out")
     base, own = _base(cast("Spec", spec))
     asked = asked_of(seed, budget, {**own, **fields}, {"wind": wind})
     day = None if day is None else number("day", day, 0, 100, "d")
-    return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
+    return Plant(recipe("bloom", base, asked, day, law))
 
 
 CLOUDS = (".xyz", ".txt", ".ply", ".pcd", ".las", ".laz")
@@ -194,7 +195,7 @@ def leaf(
         if venation == "parallel" and side_veins is not None:
             raise unused("side_veins", side_veins, "is of palmate leaves: parallel veins have none between them")
         asked = asked_of(seed, budget, {**dict(spec or {}), **fields}, {"wind": wind})
-        return Plant(_burgeon.leaf_of_veins({"venation": word("venation", venation), "file": None, **numbers}, asked))
+        return Plant(recipe("leaf_of_veins", {"venation": word("venation", venation), "file": None, **numbers}, asked))
     given = [name for name, value in numbers.items() if value is not None and name != "side_veins"]
     if given:
         option = given[0].replace("_m", "")
@@ -220,10 +221,10 @@ def leaf(
             file = (os.path.splitext(os.path.basename(path))[0], _text(path))
             if side_veins is not None and _burgeon.is_rays(file[1]):
                 asked = asked_of(seed, budget, fields, {"wind": wind})
-                return Plant(_burgeon.leaf_of_veins({"venation": None, "file": file, **numbers}, asked))
+                return Plant(recipe("leaf_of_veins", {"venation": None, "file": file, **numbers}, asked))
     if side_veins is not None:
         raise unused("side_veins", side_veins, "is of leaves of chief veins: with venation, or of a file of them")
-    return Plant(_burgeon.leaf(file, toml, asked_of(seed, budget, {**own, **fields}, {"wind": wind})))
+    return Plant(recipe("leaf", file, toml, asked_of(seed, budget, {**own, **fields}, {"wind": wind})))
 
 
 def _only_of_files(unit: str, why: str) -> None:
@@ -247,7 +248,7 @@ def _scanned(name: str, file: Any, points: Any, budget: float, fields: "Mapping[
     if file is None:
         found, colors = _coloured(points)
         rows = found.tolist()
-    return Plant(_burgeon.leaf_of_scan(name, file, (rows, colors), texture, number("budget", budget, 1, 1000)))
+    return Plant(recipe("leaf_of_scan", name, file, (rows, colors), texture, number("budget", budget, 1, 1000)))
 
 
 def _scan_texture(fields: "Mapping[str, Any]", others: str) -> str:
@@ -308,7 +309,7 @@ def scan(
         name = "scan" if name is None else name
     base, own = (None, {}) if leaves is None else _base(leaves, flag("trust_paths", trust_paths))
     skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
-    return Plant(_burgeon.tree_of_scan(word("name", name), how, base, asked_of(seed, budget, own, skin)))
+    return Plant(recipe("tree_of_scan", word("name", name), how, base, asked_of(seed, budget, own, skin)))
 
 
 def sketch(
@@ -356,7 +357,7 @@ def sketch(
         name = "drawing" if name is None else name
     told = [(whole("classes: a stroke", row, 0, 10**6), word(f"classes[{row}]", kind)) for row, kind in (classes or {}).items()]
     day = None if day is None else number("day", day, 0, 100, "d")
-    return Plant(_burgeon.sketch(word("name", name), ink, asked, told, day))
+    return Plant(recipe("sketch", word("name", name), ink, asked, told, day))
 
 
 def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
@@ -398,7 +399,9 @@ def open(
     if not isinstance(project, bytes):
         with builtins.open(path_of("project", project), "rb") as file:
             project = file.read()
-    return [Plant(raw) for raw in _burgeon.open_project(project, number("budget", budget, 1, 1000), bool(wind), only)]
+    asked = (project, number("budget", budget, 1, 1000), bool(wind))
+    made = enumerate(_burgeon.open_project(*asked, only))
+    return [Plant(recipe("open_project", *asked, row if only is None else only), raw) for row, raw in made]
 
 
 def schema(maker: str) -> "Dict[str, Any]":

@@ -9,6 +9,7 @@ from . import _burgeon
 from ._files import write_whole
 from ._given import axes as check_axes
 from ._given import flag, keys, number, unused, whole, word, wrong
+from ._recipe import Recipe
 
 if TYPE_CHECKING:
     import numpy as np
@@ -235,14 +236,41 @@ def _look(
     }
 
 
+def _remade(recipe: Recipe) -> "Model":
+    return Model(recipe.make(), recipe)
+
+
 class Model:
     """Meshes and materials. Nothing changes it."""
 
-    __slots__ = ("_parts", "_raw")
+    __slots__ = ("_digest", "_parts", "_raw", "_recipe")
 
-    def __init__(self, raw: Any) -> None:
+    def __init__(self, raw: Any, recipe: "Optional[Recipe]" = None) -> None:
         self._raw = raw
+        self._recipe = recipe
+        self._digest: "Optional[str]" = None
         self._parts: "Optional[List[Part]]" = None
+
+    def __reduce__(self) -> "Tuple[Any, ...]":
+        """A pickle holds what its plant was asked for; it is made again where it is read."""
+        if self._recipe is None:
+            raise TypeError("the model of a forest cannot be pickled: save it, or pickle its plants")
+        return _remade, (self._recipe,)
+
+    def __copy__(self) -> "Model":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Model":
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        """The same name, meshes and materials."""
+        if not isinstance(other, Model):
+            return NotImplemented
+        return self is other or (self.name == other.name and self.digest == other.digest)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.digest))
 
     @property
     def name(self) -> str:
@@ -266,7 +294,9 @@ class Model:
     @property
     def digest(self) -> str:
         """Fingerprint of meshes and materials: the same on every machine."""
-        return self._raw.digest()
+        if self._digest is None:
+            self._digest = self._raw.digest()
+        return self._digest
 
     def _joined(self, name: str, width: int, missing: float) -> "np.ndarray":
         import numpy as np

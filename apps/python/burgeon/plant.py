@@ -11,6 +11,7 @@ from ._drawing import Drawing, draw
 from ._files import write_whole
 from ._given import STRUCTURES, asked_of, flag, number, whole, word, wrong
 from ._given import axes as check_axes
+from ._recipe import Recipe, recipe
 from .model import Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
@@ -178,11 +179,39 @@ class Organs(_Table):
 class Plant:
     """A plant of any maker. Nothing changes it: ``shape`` and ``at`` give others. Threads may share it."""
 
-    __slots__ = ("_known", "_raw")
+    __slots__ = ("_known", "_raw", "_recipe")
 
-    def __init__(self, raw: Any) -> None:
-        self._raw = raw
+    def __init__(self, recipe: Recipe, raw: Any = None) -> None:
+        self._recipe = recipe
+        self._raw = recipe.make() if raw is None else raw
         self._known: "Dict[str, Any]" = {}
+
+    def _then(self, function: str, *arguments: Any) -> "Plant":
+        """The plant that a method of this one's makes."""
+        then = recipe(function, *arguments, before=self._recipe)
+        return Plant(then, then.of(self._raw))
+
+    def __reduce__(self) -> "Tuple[Any, ...]":
+        """A pickle holds what the plant was asked for; it is made again where it is read."""
+        return Plant, (self._recipe,)
+
+    def __copy__(self) -> "Plant":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Plant":
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        """The same plant: name, seed, place, structure and meshes."""
+        if not isinstance(other, Plant):
+            return NotImplemented
+        return self is other or (self._marks() == other._marks() and self.model == other.model)
+
+    def __hash__(self) -> int:
+        return hash(self._marks())
+
+    def _marks(self) -> "Tuple[Any, ...]":
+        return self.name, self.seed, self.maker, self.digest, self.day, self.place
 
     def _keep(self, name: str, make: Any) -> Any:
         if name not in self._known:
@@ -290,12 +319,14 @@ class Plant:
     @property
     def model(self) -> Model:
         """Its meshes and materials."""
-        return self._keep("model", lambda: Model(self._raw.model()))
+        return self._keep("model", lambda: Model(self._raw.model(), recipe("model", before=self._recipe)))
 
     def level(self, level: int) -> Model:
         """Coarser meshes for far away, 1 to 6: about half of the triangles with each level."""
         level = whole("level", level, 0, 6)
-        return self.model if level == 0 else Model(self._raw.level(level))
+        if level == 0:
+            return self.model
+        return Model(self._raw.level(level), recipe("level", level, before=self._recipe))
 
     def labels(self) -> "List[np.ndarray]":
         """Of each part of ``model`` what its triangles lie on: (triangles, 3) int32 of part, axis, organ.
@@ -351,11 +382,11 @@ class Plant:
             edits = edits.get("edits", [edits])
         if not isinstance(edits, (list, tuple)):
             raise TypeError(f"edits must be a file, its content or a list of edits, not {edits!r}")
-        return Plant(self._raw.shape(list(edits)))
+        return self._then("shape", list(edits))
 
     def at(self, day: float) -> "Plant":
         """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
-        return Plant(self._raw.at(number("day", day, 0, 100, "d")))
+        return self._then("at", number("day", day, 0, 100, "d"))
 
     def again(
         self,
@@ -376,7 +407,7 @@ class Plant:
         skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
         asked = asked_of(1 if seed is None else seed, 1.0, fields, skin)
         day = None if day is None else number("day", day, 0, 100, "d")
-        return Plant(self._raw.again(asked, seed is not None, day))
+        return self._then("again", asked, seed is not None, day)
 
     @property
     def days(self) -> "Optional[Tuple[float, float]]":

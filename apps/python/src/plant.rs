@@ -170,7 +170,7 @@ impl RawPlant {
             return Ok(RawModel::new(made.map_err(|e| refused(py, &SceneError::from(e)))?));
         }
         let Some(plant) = held.document.plant(held.id) else { return Ok(self.model()) };
-        let made = compute(py, held.budget, |run| held.scene.at_level(plant, &held.document, level, run))?;
+        let made = compute(py, held.budget, |run| held.scene.at_level(plant, level, run))?;
         Ok(RawModel::new(made.map_err(|e: SceneError| refused(py, &e))?))
     }
 

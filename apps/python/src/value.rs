@@ -10,6 +10,9 @@ use crate::fault::beyond;
 /// Deeper than any spec is nested; a list that holds itself ends here.
 const DEEPEST: usize = 32;
 
+/// Up to 2^53 a float tells each whole number from the next.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
 /// A value as JSON; arrays and numbers of `NumPy` are taken for lists and numbers. `path`: what it is called in messages.
 pub(crate) fn json_of(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
     of(value, path, 0)
@@ -34,6 +37,11 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     }
     if value.is_instance_of::<PyFloat>() {
         let number: f64 = value.extract()?;
+        // Numbers of NumPy are often floats that count things: a field that takes whole numbers takes them.
+        if number.fract() == 0.0 && number.abs() <= LARGEST_WHOLE {
+            #[expect(clippy::cast_possible_truncation, reason = "whole, and within 2^53")]
+            return Ok(Value::Number((number as i64).into()));
+        }
         let none = || beyond(path, number, "a finite number");
         return Number::from_f64(number).map(Value::Number).ok_or_else(none);
     }

@@ -119,7 +119,7 @@ impl Held {
                 let Some(plant) = self.document.plant(self.id) else {
                     return Ok((self.model().clone(), None));
                 };
-                let at = self.scene.level(plant, &self.document, level, run)?;
+                let at = self.scene.level(plant, level, run)?;
                 let split = if form.instances { at.copies() } else { None };
                 Ok((at.model, split))
             })?;

@@ -5,17 +5,18 @@
 use base::LiteMap;
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, Report, Run, Seed, Stage, Warning};
+use base::{Cancelled, Counted, Report, Run, Seed, Stage, Stopped, Warning};
 use document::{Photo, PlantEdit};
 use glam::DVec2;
 use ink::{Classified, Drawing, Ink, KeptMeasures, StrokeClass};
 use mesh::{Model, Texture};
-use plant::Plant;
+use plant::{AxisKind, OrganKind, Plant};
 use reading::{KeptStrokes, Kind, Reading, VeinReading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
 use crate::checks::{Sketched, check_plant, check_sketch};
+use crate::levels::{LaidOut, LevelSpec, Levels, level_of};
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
@@ -82,6 +83,9 @@ pub struct Evaluator {
     /// See [`crate::SceneEvaluator::set_measuring_later`].
     pub(crate) later: bool,
 }
+
+/// A plant of more leaves than so many for each stroke has some that were not drawn.
+const LEAVES_OF_A_STROKE: usize = 2;
 
 /// How true a plant of more strokes is to its drawing may be measured after the plant was seen.
 const MANY: usize = 512;
@@ -209,7 +213,8 @@ impl Evaluator {
         if let Some(photo) = &mut photo {
             photo.place.opacity = 1.0;
         }
-        self.mesh(&options.skin, photo, &mut stages, run)?;
+        let skin = self.sparse(options);
+        self.mesh(&skin, photo, &mut stages, run)?;
         Ok(self.item(&drawing.name, stages, run))
     }
 
@@ -377,6 +382,22 @@ impl Evaluator {
         Ok(())
     }
 
+    /// How a drawing is skinned. The leaves of one that is filled sparsely are no finer than those of one that is filled as by
+    /// rule: fewer leaves would have more triangles.
+    fn sparse(&self, options: &SketchOptions) -> SkinSpec {
+        let density = options.spec.fill.density;
+        let strokes = self.strokes.as_ref().map_or(0, |k| k.from.strokes.len());
+        let filled = |plant: &&Plant| {
+            let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).count();
+            density > 0.0 && density < 1.0 && leaves > LEAVES_OF_A_STROKE * strokes
+        };
+        let crowd = self.plant().filter(filled).map(|plant| {
+            let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
+            [axes, plant.organs.len()].map(|n| base::ops::whole((n as f64 / density).round()) as usize)
+        });
+        SkinSpec { crowd: crowd.or(options.skin.crowd), ..options.skin.clone() }
+    }
+
     fn mesh(
         &mut self,
         skin: &SkinSpec,
@@ -388,7 +409,8 @@ impl Evaluator {
             return Ok(());
         }
         let mut report = Report::default();
-        let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
+        let decoded = photo.as_ref().is_none_or(|p| self.decode(p, &mut report));
+        let traced = photo.as_ref().filter(|_| decoded).and_then(|p| self.traced(p));
         let mut shapes = core::mem::take(&mut self.shapes);
         let coarse = self.plant().filter(|_| self.preview).and_then(|plant| coarse_preview(plant, skin));
         let plant = coarse.as_ref().map(|(copy, _)| copy).or_else(|| self.plant());
@@ -411,20 +433,26 @@ impl Evaluator {
         Ok(())
     }
 
-    /// The photograph in the plant's plane; `None` if it does not decode.
-    fn traced(&mut self, photo: &Photo, report: &mut Report) -> Option<Traced> {
+    /// Keeps the pixels of a photograph; whether it decodes.
+    fn decode(&mut self, photo: &Photo, report: &mut Report) -> bool {
         let known = self.picture.as_ref().is_some_and(|(png, _)| Arc::ptr_eq(png, photo.png()));
         if !known {
             let texture = formats::read_picture(photo.png()).map(Arc::new);
             self.picture = Some((Arc::clone(photo.png()), texture));
         }
-        let Some(texture) = self.picture.as_ref().and_then(|(_, t)| t.clone()) else {
+        let decoded = self.picture.as_ref().is_some_and(|(_, texture)| texture.is_some());
+        if !decoded {
             report.warn(
                 "photo",
                 "the photograph under the drawing cannot be decoded; its colours are not used",
             );
-            return None;
-        };
+        }
+        decoded
+    }
+
+    /// The photograph in the plant's plane; `None` if it was not decoded.
+    fn traced(&self, photo: &Photo) -> Option<Traced> {
+        let texture = self.picture.as_ref().and_then(|(_, t)| t.clone())?;
         let front = self.front()?;
         let drawing = &self.strokes.as_ref()?.from;
         let place = |x: f64, y: f64| (DVec2::new(x, y) - front.origin) * front.metres_per_unit;
@@ -434,6 +462,28 @@ impl Evaluator {
         let strokes = base::set_of((0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i));
         let size_m = (photo.place.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
+    }
+
+    /// A coarser copy of the model, with the same materials, the plant that it is of, and what of that lies where in it; none
+    /// before an update. As [`crate::MadePlant::at_level`] has it.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<Option<LaidOut>, Stopped> {
+        let (Some(plant), Some(model), Some(made)) = (self.plant(), &self.model, &self.plant) else {
+            return Ok(None);
+        };
+        let (skin, photo) = &model.from;
+        let traced = photo.as_ref().and_then(|photo| self.traced(photo));
+        let leaf = made.from.3.as_ref();
+        let mesh = |plant: &Plant, skin: &SkinSpec| {
+            let pictures = SurfacePictures { traced: traced.as_ref(), ..SurfacePictures::default() };
+            let (mut model, layout) = skin::skin_laid_out(plant, skin, pictures, None, run)?;
+            model.name.clone_from(&plant.name);
+            leaf.inspect(|leaf| leaf.dress(&mut model, &skin.worn));
+            Ok((model, layout))
+        };
+        level_of(plant, (skin, &model.value), level, mesh).map(Some)
     }
 
     fn item(&self, name: &str, stages: Vec<Stage>, run: &Run<'_>) -> ItemReport {
@@ -564,10 +614,36 @@ pub fn make_from_sketch(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<Made, MakeError> {
+    let (made, _) = make_levels_from_sketch(drawing, options, (seed, &LevelSpec::default()), run)?;
+    Ok(made)
+}
+
+/// [`make_from_sketch`], with coarser copies of the plant and the like.
+///
+/// # Errors
+/// As [`make_from_sketch`].
+pub fn make_levels_from_sketch(
+    drawing: &Drawing,
+    options: &SketchOptions,
+    (seed, levels): (Seed, &LevelSpec),
+    run: &Run<'_>,
+) -> Result<(Made, Levels), MakeError> {
     let mut evaluator = Evaluator::default();
-    let item = evaluator.update(drawing, options, seed, run)?;
+    let mut item = evaluator.update(drawing, options, seed, run)?;
+    let start = run.clock.now_ms();
+    let finest = evaluator.model().zip(evaluator.plant()).zip(evaluator.layout());
+    let levels = match finest {
+        Some(((model, plant), layout)) => {
+            let at = |level| evaluator.laid_out_at(level, run).map_err(MakeError::from);
+            Levels::new(levels, (model, plant, layout), at, run)?
+        }
+        None => Levels::default(),
+    };
+    let ms = run.clock.now_ms() - start;
+    item.timings_ms.mesh += ms;
+    item.timings_ms.total += ms;
     let (reading, plant, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: all three are there
-    Ok(Made { reading, plant, model, item })
+    Ok((Made { reading, plant, model, item }, levels))
 }
 
 #[cfg(test)]

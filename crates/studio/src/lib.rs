@@ -25,6 +25,7 @@ mod evaluate;
 mod flowers;
 mod leaf_blade;
 mod leaves;
+mod levels;
 mod made;
 mod make;
 mod motion;
@@ -55,19 +56,20 @@ pub use base::{
 pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law};
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
-pub use evaluate::{Evaluator, FrontView, make_from_sketch};
+pub use evaluate::{Evaluator, FrontView, make_from_sketch, make_levels_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
+pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{
-    CheckReport, Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit,
-    LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord, StrokeReport,
-    TimingsMs,
+    CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
+    LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord,
+    StrokeReport, TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
@@ -91,10 +93,10 @@ pub use survey::{
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    GUIDED_METHODS, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, ScanTreeOptions,
-    ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree,
-    make_tree_from_scan, method_word, read_tree_spec, scale_to_height, show_obstacles, tree_blade,
-    tree_schema, tree_size,
+    GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
+    ScanTreeOptions, ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, age_of_height,
+    coarser, guided_methods, make_tree, make_tree_from_scan, method_word, read_tree_spec, scale_to_height,
+    show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

@@ -5,9 +5,10 @@ use document::PlantEdit;
 use mesh::Model;
 use plant::Plant;
 use reading::Reading;
-use skin::{Layout, SkinSpec};
+use skin::{Layout, SkinSpec, SurfacePictures};
 
 use crate::checks::check_plant;
+use crate::levels::{LaidOut, LevelSpec, Levels, level_of};
 use crate::report::{CheckReport, Counts, ItemReport, TimingsMs};
 use crate::shaping::EditReport;
 
@@ -40,13 +41,26 @@ pub struct MadePlant {
 }
 
 impl MadePlant {
-    /// A coarser copy of the meshes, with the same materials: each level has about half of the triangles of the one
-    /// before, and every organ.
+    /// A coarser copy of the meshes, with the same materials: each level has at most half of the triangles of the one
+    /// before. Plants of hundreds of leaves or axes have fewer of them, others all.
     ///
     /// # Errors
     /// [`Stopped`].
     pub fn at_level(&self, level: u32, run: &Run<'_>) -> Result<Model, Stopped> {
+        Ok(self.laid_out_at(level, run)?.0)
+    }
+
+    fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<LaidOut, Stopped> {
         coarse(&self.plant, &self.skin, &self.model, level, run)
+    }
+
+    /// Coarser copies and the like.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn levels(&self, spec: &LevelSpec, run: &Run<'_>) -> Result<Levels, Stopped> {
+        let at = |level| self.laid_out_at(level, run).map(Some);
+        Levels::new(spec, (&self.model, &self.plant, &self.layout), at, run)
     }
 
     /// With an entry that tells counts, times, warnings, and what became of the edits that were asked for; [`Self::told`]
@@ -100,22 +114,15 @@ pub(crate) fn digest(model: &Model) -> String {
     digest.hex()
 }
 
-/// A plant with a half of the triangles for each level, with the materials of `fine`.
+/// [`level_of`] a plant without pictures of its own.
 pub(crate) fn coarse(
     plant: &Plant,
     skin: &SkinSpec,
     fine: &Model,
     level: u32,
     run: &Run<'_>,
-) -> Result<Model, Stopped> {
-    let level = level.min(6);
-    let detail = skin.detail / f64::from(1_u32 << level);
-    let sides = skin.sides.saturating_sub(2 * level).max(3);
-    let mut model = skin::skin(plant, &SkinSpec { detail, sides, ..skin.clone() }, run)?;
-    for material in &mut model.materials {
-        if let Some(same) = fine.materials.iter().find(|m| m.name == material.name) {
-            *material = same.clone();
-        }
-    }
-    Ok(model)
+) -> Result<LaidOut, Stopped> {
+    level_of(plant, (skin, fine), level, |plant, skin| {
+        skin::skin_laid_out(plant, skin, SurfacePictures::default(), None, run)
+    })
 }

@@ -11,6 +11,7 @@ use plant::{Flower, FlowerId, Organ, OrganKind, Paint, Plant, Shape};
 use skin::{KeptShapes, Layout, PetalColor, SkinSpec, SurfacePictures};
 
 use crate::evaluate::make_from_sketch;
+use crate::levels::{LaidOut, LevelSpec, Levels};
 use crate::made::coarse;
 use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
@@ -150,12 +151,23 @@ impl OpeningPlant {
         Ok(OpenedPlant { plant, model, layout, overlap })
     }
 
-    /// A coarser copy of the meshes of one day, with the same materials: about half of the triangles a level.
+    /// Coarser copies of the meshes of one day and the like, with the same materials: at most half of the triangles a level.
     ///
     /// # Errors
     /// [`Stopped`].
-    pub fn at_level(&self, open: &OpenedPlant, level: u32, run: &Run<'_>) -> Result<Model, Stopped> {
-        coarse(&open.plant, &self.steady(), &open.model, level, run)
+    pub fn levels(&self, open: &OpenedPlant, spec: &LevelSpec, run: &Run<'_>) -> Result<Levels, Stopped> {
+        let at = |level| self.coarse((&open.plant, &open.model), level, run).map(Some);
+        Levels::new(spec, (&open.model, &open.plant, &open.layout), at, run)
+    }
+
+    /// A level of a plant of one day that this made, and of its model.
+    pub(crate) fn coarse(
+        &self,
+        (plant, model): (&Plant, &Model),
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<LaidOut, Stopped> {
+        coarse(plant, &self.steady(), model, level, run)
     }
 
     fn steady(&self) -> SkinSpec {

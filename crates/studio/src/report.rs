@@ -24,6 +24,9 @@ pub struct RunReport {
     pub seed: u64,
     /// What was read.
     pub input: InputReport,
+    /// The program that the export is for, and what was set for it.
+    #[serde(rename = "for", default, skip_serializing_if = "Option::is_none")]
+    pub engine: Option<EngineReport>,
     /// One entry for each plant that was made.
     pub items: Vec<ItemReport>,
     /// Number of plants made.
@@ -43,12 +46,22 @@ impl RunReport {
             version: crate::VERSION.into(),
             seed,
             input: InputReport::default(),
+            engine: None,
             items: Vec::new(),
             ok: 0,
             failed: 0,
             warnings: Vec::new(),
         }
     }
+}
+
+/// The program that an export is for.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EngineReport {
+    /// Its word.
+    pub name: String,
+    /// The options that were set for it, as they would stand on the command line.
+    pub set: Vec<String>,
 }
 
 /// What was read.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use base::{Cancelled, Report, Run, Seed};
 use document::{
-    Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
-    SketchCommand, SketchSettings, TreeSettings,
+    Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
+    SketchSettings, TreeSettings,
 };
 use formats::{MarksAxes, is_rays, read_marks, read_rays, read_vein_graph};
 use glam::{DQuat, DVec3};
@@ -19,12 +19,13 @@ use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, Rays, ThicknessRule};
 use mesh::{Copies, MaterialId, Model, Standing};
 use plant::{AxisId, Plant};
-use skin::{Layout, SkinSpec, Worn};
+use skin::{FoliageStyle, Layout, SkinSpec, Worn};
 
 pub use self::error::SceneError;
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower, untold_flower};
 use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
+use crate::levels::{LevelSpec, Levels};
 use crate::made::{MadePlant, coarse, digest};
 use crate::make::{SketchOptions, worn};
 use crate::opening::OpeningPlant;
@@ -113,6 +114,7 @@ impl ScenePlant<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
     wind: bool,
+    foliage: Option<FoliageStyle>,
     previewing: bool,
     later: bool,
     plants: base::LiteMap<PlantId, Kept>,
@@ -144,10 +146,15 @@ struct MadeFrom {
     hidden: Vec<Arc<str>>,
     worn: Worn,
     wind: bool,
+    foliage: Option<FoliageStyle>,
 }
 
 impl MadeFrom {
-    fn of(plant: &DocumentPlant, leaf: Option<LeafTemplate>, wind: bool) -> Self {
+    fn of(
+        plant: &DocumentPlant,
+        leaf: Option<LeafTemplate>,
+        (wind, foliage): (bool, Option<FoliageStyle>),
+    ) -> Self {
         let settings = plant.settings();
         let grown = matches!(settings.maker, Maker::Tree(_));
         Self {
@@ -160,12 +167,18 @@ impl MadeFrom {
             hidden: plant.layers().iter().filter(|l| l.hidden).map(|l| Arc::clone(&l.name)).collect(),
             worn: worn(plant),
             wind,
+            foliage,
         }
     }
 
     fn tree_options(&self, tree: &TreeSettings) -> TreeOptions {
         TreeOptions {
-            skin: SkinSpec { wind: self.wind, worn: self.worn.clone(), ..tree.skin.clone() },
+            skin: SkinSpec {
+                wind: self.wind,
+                foliage: self.foliage.unwrap_or(tree.skin.foliage),
+                worn: self.worn.clone(),
+                ..tree.skin.clone()
+            },
             leaf: self.leaf.clone(),
             edits: self.edits.clone(),
             obstacles: tree.obstacles.iter().map(|o| o.name.clone()).collect(),
@@ -223,6 +236,11 @@ impl SceneEvaluator {
     /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
         self.wind = wind;
+    }
+
+    /// How the leaves of all plants are drawn, from the next update on. Default: as each plant has it.
+    pub fn set_foliage(&mut self, foliage: Option<FoliageStyle>) {
+        self.foliage = foliage;
     }
 
     /// Whether updates are previews while somebody shapes: reports of trees and drawings then have no digest, which is a
@@ -326,7 +344,7 @@ impl SceneEvaluator {
             None => None,
         };
         let previewing = self.previewing;
-        let from = MadeFrom::of(plant, leaf, self.wind);
+        let from = MadeFrom::of(plant, leaf, (self.wind, self.foliage));
         let is_it = |k: &Kept| {
             let whole = previewing || !k.made.item.digest.is_empty() || k.made.is_untold();
             k.made.from.as_ref() == Some(&from) && whole
@@ -427,32 +445,40 @@ impl SceneEvaluator {
     }
 
     /// A coarser copy of a plant's last result for level `level` (1 to 6; 0 is the result itself), with the materials of
-    /// the finest. Trees lose leaves and twigs, others only triangles: about a half with each level, of drawings two
-    /// thirds.
+    /// the finest. Plants of hundreds of leaves or axes lose leaves and twigs, others only triangles: at least a half with
+    /// each level.
     ///
     /// # Errors
     /// [`SceneError`]; [`SceneError::NotMade`] for a plant without a result.
-    pub fn at_level(
+    pub fn at_level(&self, plant: &DocumentPlant, level: u32, run: &Run<'_>) -> Result<Model, SceneError> {
+        Ok(self.level(plant, level, run)?.model)
+    }
+
+    /// Coarser copies of a plant's last result and the like.
+    ///
+    /// # Errors
+    /// As [`Self::at_level`].
+    pub fn levels(
         &self,
         plant: &DocumentPlant,
-        document: &Document,
-        level: u32,
+        spec: &LevelSpec,
         run: &Run<'_>,
-    ) -> Result<Model, SceneError> {
-        Ok(self.level(plant, document, level, run)?.model)
+    ) -> Result<Levels, SceneError> {
+        let name = || SceneError::NotMade(plant.settings().name.clone());
+        let shown = self.get(plant.id()).ok_or_else(name)?;
+        let (whole, layout) = shown.plant.zip(shown.owners).ok_or_else(name)?;
+        let at = |level| {
+            let PlantLevel { model, laid_out } = self.level(plant, level, run)?;
+            Ok(laid_out.map(|laid_out| (model, laid_out)))
+        };
+        Levels::new(spec, (shown.model, whole, layout), at, run)
     }
 
     /// As [`Self::at_level`], also with what lies where in the model, where that is known.
     ///
     /// # Errors
     /// As [`Self::at_level`].
-    pub fn level(
-        &self,
-        plant: &DocumentPlant,
-        document: &Document,
-        level: u32,
-        run: &Run<'_>,
-    ) -> Result<PlantLevel, SceneError> {
+    pub fn level(&self, plant: &DocumentPlant, level: u32, run: &Run<'_>) -> Result<PlantLevel, SceneError> {
         let bare = |model| PlantLevel { model, laid_out: None };
         let name = || SceneError::NotMade(plant.settings().name.clone());
         let made = &self.plants.get(&plant.id()).ok_or_else(name)?.made;
@@ -463,22 +489,19 @@ impl SceneEvaluator {
                 let (model, laid_out) = made.tree.laid_out_at(level, run)?.ok_or_else(name)?;
                 Ok(PlantLevel { model, laid_out: Some(laid_out) })
             }
-            Maker::Sketch(sketch) => {
-                let mut skin = sketch.skin.clone();
-                for _ in 0..level {
-                    skin.detail = (skin.detail / 3.0).max(0.1);
-                    skin.sides = (skin.sides / 2).max(3);
-                }
-                let mut editor = Editor::new(document.clone());
-                // A mesh that is as coarse as it can be stays as it is.
-                if editor.run(SketchCommand::SetSkin(skin).of(plant.id())).is_err() {
-                    return Ok(bare(shown.model.clone()));
-                }
-                let mut aside = self.aside([plant]);
-                aside.update(plant.id(), editor.document(), run)?;
-                aside.get(plant.id()).map(|made| bare(made.model.clone())).ok_or_else(name)
+            Maker::Sketch(_) => {
+                let opened = made.opening.as_ref().filter(|_| made.model.is_some()).zip(shown.plant);
+                let (model, laid_out) = match opened {
+                    Some((opening, plant)) => opening.coarse((plant, shown.model), level, run)?,
+                    None => made.sketch.laid_out_at(level, run)?.ok_or_else(name)?,
+                };
+                Ok(PlantLevel { model, laid_out: Some(laid_out) })
             }
-            _ => Ok(bare(coarse(shown.plant.ok_or_else(name)?, &made.skin, shown.model, level, run)?)),
+            _ => {
+                let plant = shown.plant.ok_or_else(name)?;
+                let (model, laid_out) = coarse(plant, &made.skin, shown.model, level, run)?;
+                Ok(PlantLevel { model, laid_out: Some(laid_out) })
+            }
         }
     }
 
@@ -541,6 +564,7 @@ impl Made {
     ) -> Result<Vec<&'static str>, SceneError> {
         let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::of_plant(plant) };
         options.skin.wind = from.wind;
+        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
         let drawing = plant.drawing();
         let item = self.sketch.update(&drawing, &options, from.seed, run)?;
         let mut done = self.sketch.stages_done().to_vec();
@@ -591,7 +615,9 @@ impl Made {
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
         let (input, mut options) = leaf_input(leaf)?;
-        (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
+        options.skin.wind = from.wind;
+        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
+        options.skin.worn.clone_from(&from.worn);
         let made = match &input {
             LeafInput::Marks(marks) => {
                 make_leaf_of(&from.name, marks, &options, from.seed, run, Report::default())?
@@ -610,7 +636,9 @@ impl Made {
     ) -> Result<Vec<&'static str>, SceneError> {
         let law = flower.law.as_ref().map_or_else(|| flower.spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
-        (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
+        options.skin.wind = from.wind;
+        options.skin.foliage = from.foliage.unwrap_or(options.skin.foliage);
+        options.skin.worn.clone_from(&from.worn);
         let make = if self.later { untold_flower } else { make_flower };
         let made = make(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;
         Ok(self.take(made))

@@ -183,7 +183,7 @@ fn export(
     if wanted.joined() {
         let models: Result<Vec<Model>, WorkspaceError> = (0..levels)
             .map(|level| {
-                let at = Level::of(scene, document, &made, level, run)?;
+                let at = Level::of(scene, &made, level, run)?;
                 Ok(scene_model(document.name(), &at.standing(&made, only.is_some())))
             })
             .collect();
@@ -191,7 +191,7 @@ fn export(
     }
     let mut files = Vec::new();
     for level in 0..levels {
-        let at = Level::of(scene, document, &made, level, run)?;
+        let at = Level::of(scene, &made, level, run)?;
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         let standing = at.standing(&made, only.is_some());
         files.extend(scene_files(document.name(), &standing, format, &stem, &spec, &mut PngCache::new())?);
@@ -279,7 +279,6 @@ impl Level {
     /// Level 0 is the finest.
     pub(crate) fn of(
         scene: &SceneEvaluator,
-        document: &Document,
         plants: &[&DocumentPlant],
         level: u32,
         run: &Run<'_>,
@@ -292,7 +291,7 @@ impl Level {
             at.rows.push(known.unwrap_or(at.models.len()));
             if known.is_none() {
                 revisions.push(revision);
-                at.models.push(scene.at_level(plant, document, level, run)?);
+                at.models.push(scene.at_level(plant, level, run)?);
             }
         }
         Ok(at)

@@ -101,7 +101,7 @@ impl Workspace {
             &mut self.scene
         };
         let plants = made(scene, document, only, run)?;
-        let at = Level::of(scene, document, &plants, if from_afar { 0 } else { level }, run)?;
+        let at = Level::of(scene, &plants, if from_afar { 0 } else { level }, run)?;
         if from_afar {
             let finest = scene_model(document.name(), &at.standing(&plants, only.is_some()));
             let far = far(&finest, run)?.ok_or(WorkspaceError::NothingMade)?;

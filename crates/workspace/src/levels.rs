@@ -61,7 +61,7 @@ impl Workspace {
             let again = known.filter(|s| s.level == row.level).map(|s| s.made);
             let made = again.or_else(|| {
                 let plant = document.plant(row.id)?;
-                self.scene.level(plant, document, row.level, run).ok()
+                self.scene.level(plant, row.level, run).ok()
             });
             let Some(made) = made else {
                 row.level = COARSEST;

@@ -5,9 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
+use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, ViewWord, ranged, size};
+use crate::engines::Settings;
+use crate::failure::Outcome;
 
 /// The two commands.
 #[derive(Debug, Subcommand)]
@@ -164,10 +167,8 @@ pub(crate) struct BloomRunArgs {
     pub(crate) materials: Option<PathBuf>,
     #[arg(long, help = lists::wind(" of a whole flower or a drawing"))]
     pub(crate) wind: bool,
-    /// Coarser copies of one shape of a whole flower or a drawing (--day, or .obj, .usda, ...) to write beside it
-    /// (OUT-lod1, OUT-lod2, ...), 0 to 6.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
-    pub(crate) lods: u32,
+    #[command(flatten)]
+    pub(crate) export: ExportArgs,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = crate::args::FormatWord::GLB)]
     pub(crate) format: crate::args::FormatWord,
@@ -234,5 +235,23 @@ fn lattice(text: &str) -> Result<[usize; 3], String> {
     match parts.as_deref() {
         Some(&[a, b, c]) if [a, b, c].iter().all(|n| (2..=16).contains(n)) => Ok([a, b, c]),
         _ => Err("give the control points along three axes, each 2 to 16, such as 4x4x4".into()),
+    }
+}
+
+impl BloomRunArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let Self { export, axes, wind, output, .. } = self;
+        Settings { export, axes, wind, output: Some(output) }.settle(&self.given)
+    }
+}
+
+impl BloomCommand {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        match self {
+            Self::Fit(_) => Ok(()),
+            Self::Run(args) => args.settle(),
+        }
     }
 }

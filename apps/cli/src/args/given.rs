@@ -32,6 +32,7 @@ impl Given {
                 let option = match *option {
                     "inputs" => "DATA".to_owned(),
                     "what" => "a plant".to_owned(),
+                    "engine" => "--for".to_owned(),
                     option => format!("--{}", option.replace('_', "-")),
                 };
                 Err(Failure::Bad(format!("{option} is for {users}; {this}: leave it out")))
@@ -76,8 +77,7 @@ impl Given {
         self.only_if(seen.model.is_some() || seen.picture, &colours, "models and pictures", none)?;
         let counted = seen.model.is_some() || seen.picture || seen.report;
         self.only_if(counted, &["detail", "sides"], "models, pictures and reports", "none is made")?;
-        self.only_if_holds(seen.model.is_some_and(|f| f.holds(Room::Wind)), &["wind"], Room::Wind)?;
-        self.only_if(seen.model.is_some(), &["lods"], "models", "none is made")
+        self.only_if_holds(seen.model.is_some_and(|f| f.holds(Room::Wind)), &["wind"], Room::Wind)
     }
 }
 

@@ -3,17 +3,15 @@
 use std::path::PathBuf;
 
 use burgeon::TreeSpec;
-use burgeon::formats::Packing;
-use burgeon::formats::Room;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
-use burgeon::skin::{FoliageStyle, SkinSpec};
 use clap::{Args, ValueEnum};
 
+use super::export::TreeSurfaceArgs;
 use super::given::Given;
 use super::lists;
-use super::plant_format::PlantFormat;
-use super::shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
+use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, seed};
+use crate::engines;
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
@@ -45,19 +43,6 @@ pub(crate) struct GrowArgs {
     pub(crate) points: PointsArgs,
     #[command(flatten)]
     pub(crate) surface: TreeSurfaceArgs,
-    /// Write each leaf shape once, and where its copies stand (`EXT_mesh_gpu_instancing`): a smaller .glb that is drawn
-    /// faster, for programs that know it.
-    #[arg(long, help_heading = "Surface", conflicts_with_all = ["wind", "sway"])]
-    pub(crate) instances: bool,
-    /// How leaves are drawn: by their outlines, as cards of which the leaf is cut out, or by their level of detail: outlines,
-    /// then cards, then cards of whole shoots [default: outlines].
-    #[arg(long, help_heading = "Surface", value_enum, value_name = "HOW")]
-    pub(crate) foliage: Option<FoliageWord>,
-    /// One more coarser copy, the last: views from all sides in an atlas of SIZE pixels a side, 128 to 4096
-    /// (docs/exports.md).
-    #[arg(long, help_heading = "Surface", value_name = "SIZE", conflicts_with_all = ["wind", "sway"],
-        value_parser = clap::value_parser!(u32).range(128..=4096))]
-    pub(crate) impostor: Option<u32>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
@@ -98,6 +83,11 @@ pub(crate) struct GrowthArgs {
     /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
     #[arg(long, value_name = "N")]
     pub(crate) age: Option<u32>,
+    /// The tree as it is when it is so high, in metres, within what its species reaches: at the age that comes nearest, and
+    /// scaled by what is left.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, conflicts_with = "age",
+        value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
+    pub(crate) height: Option<f64>,
     /// The season of its leaves, -1 to 1: -1 bare, leaves unfold to 0, summer; 0.5 all in the colours of autumn, 1 bare; not
     /// for evergreens [default: the preset's, mostly 0].
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<TreeSpec>(s, "look.season"))]
@@ -124,89 +114,6 @@ pub(crate) struct PointsArgs {
     /// Distance within which a point is consumed, in --unit, above 0 and at most --influence [default: 0.4 m].
     #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
     pub(crate) kill: Option<f64>,
-}
-
-/// How the tree is meshed.
-#[derive(Args, Debug)]
-#[command(next_help_heading = "Surface")]
-pub(crate) struct TreeSurfaceArgs {
-    #[command(flatten)]
-    pub(crate) skin: SkinArgs,
-    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
-    pub(crate) lods: u32,
-    /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
-    /// (docs/exports.md).
-    #[arg(long, value_enum, value_name = "HOW")]
-    pub(crate) pack: Option<PackWord>,
-    /// Where the coarser copies go: each into a file of its own, or all into the .glb (`MSFT_lod`) [default: each].
-    #[arg(long, value_enum, value_name = "WHERE")]
-    pub(crate) lod_file: Option<LodFileWord>,
-    /// Let the .glb sway: an animation in a loop, with a joint for each limb (docs/exports.md).
-    #[arg(long, conflicts_with_all = ["wind", "pack"])]
-    pub(crate) sway: bool,
-}
-
-impl TreeSurfaceArgs {
-    pub(crate) fn packing(&self) -> Option<Packing> {
-        self.pack.map(PackWord::packing)
-    }
-
-    /// The coarser copies go into the model's own file.
-    pub(crate) fn in_one_file(&self) -> bool {
-        self.lod_file == Some(LodFileWord::One)
-    }
-
-    /// Coarser copies with files of their own.
-    pub(crate) fn lod_files(&self) -> u32 {
-        if self.in_one_file() { 0 } else { self.lods }
-    }
-
-    /// How the meshes are made; what sways needs the columns of the wind.
-    pub(crate) fn spec(&self) -> SkinSpec {
-        let skin = self.skin.spec();
-        SkinSpec { wind: skin.wind || self.sway, ..skin }
-    }
-
-    /// Fails on options that nothing uses. `format`: of the plant that is written.
-    pub(crate) fn check_used(&self, given: &Given, format: Option<PlantFormat>) -> Outcome {
-        for (option, room) in [("pack", Room::Packing), ("lod_file", Room::Levels), ("sway", Room::Joints)] {
-            given.only_if_holds(format.is_some_and(|f| f.holds(room)), &[option], room)?;
-        }
-        given.only_if(self.lods > 0, &["lod_file"], "coarser copies (--lods)", "none is made")?;
-        let apart = !(self.in_one_file() && self.sway);
-        given.only_if(apart, &["sway"], "levels in files of their own", "--lod-file one puts them into one")
-    }
-}
-
-/// How leaves are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FoliageWord {
-    /// By their outlines
-    Outlines,
-    /// As cards with holes
-    Cards,
-    /// Outlines in the model, cards in OUT-lod1, cards of shoots in OUT-lod2 and those after it
-    ByLevel,
-}
-
-impl FoliageWord {
-    pub(crate) const fn foliage(self) -> FoliageStyle {
-        match self {
-            Self::Outlines => FoliageStyle::Outlines,
-            Self::Cards => FoliageStyle::Cards,
-            Self::ByLevel => FoliageStyle::ByLevel,
-        }
-    }
-}
-
-/// Where coarser copies go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum LodFileWord {
-    /// Beside the model: OUT-lod1, OUT-lod2, ...
-    Each,
-    /// Into the model's own file, as levels of its node
-    One,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -247,4 +154,13 @@ fn point(text: &str) -> Result<DVec3, String> {
 
 fn length(text: &str) -> Result<f64, String> {
     ranged(text, 1e-6, 1e6)
+}
+
+impl GrowArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let surface = &mut self.surface;
+        let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
+        engines::settle(&self.given, set, self.output.as_deref())
+    }
 }

@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use burgeon::leaf::{BallMove, LeafSpec, SurfaceKind};
 use clap::{Args, ValueEnum};
 
+use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, whole};
+use crate::engines::Settings;
+use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
@@ -62,9 +65,8 @@ pub(crate) struct LeafArgs {
     pub(crate) materials: Option<PathBuf>,
     #[arg(long, help = lists::wind(""))]
     pub(crate) wind: bool,
-    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
-    pub(crate) lods: u32,
+    #[command(flatten)]
+    pub(crate) export: ExportArgs,
     /// Hand edits on a whole plant (--plant), a JSON file; `burgeon shape --template` prints one.
     #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
@@ -282,4 +284,12 @@ pub(crate) enum ParametersWord {
     Shared,
     /// Chord lengths of the vein's own marks
     Own,
+}
+
+impl LeafArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let Self { export, axes, wind, output, .. } = self;
+        Settings { export, axes, wind, output: output.as_deref() }.settle(&self.given)
+    }
 }

@@ -2,6 +2,7 @@
 
 mod bloom;
 mod compare;
+mod export;
 mod files;
 mod forest;
 mod given;
@@ -18,10 +19,11 @@ mod sketch;
 
 pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
+pub(crate) use export::{EXPORT, ExportArgs, FoliageWord, LodFileWord, TreeSurfaceArgs};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
 pub(crate) use forest::{ForestArgs, GroundArgs};
 pub(crate) use given::{Given, Seen};
-pub(crate) use grow::{FoliageWord, GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
+pub(crate) use grow::{GrowArgs, MethodWord, PointsArgs};
 pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };

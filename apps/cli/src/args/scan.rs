@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::export::TreeSurfaceArgs;
 use super::given::Given;
-use super::grow::TreeSurfaceArgs;
 use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, ranged, seed};
+use crate::engines;
+use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -66,5 +68,14 @@ fn place(text: &str) -> Result<[f64; 2], String> {
     match numbers.as_slice() {
         &[a, b] if text.split(',').count() == 2 && a.abs() <= 1e8 && b.abs() <= 1e8 => Ok([a, b]),
         _ => Err("give two numbers within 1e8 such as 12.5,3".into()),
+    }
+}
+
+impl ScanArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let surface = &mut self.surface;
+        let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
+        engines::settle(&self.given, set, self.output.as_deref())
     }
 }

@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::export::TreeSurfaceArgs;
 use super::given::Given;
-use super::grow::TreeSurfaceArgs;
 use super::lists;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, seed};
+use crate::engines;
+use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
@@ -68,3 +70,12 @@ Edits are done one after another; one that cannot be done says why and changes n
 that is an error, and so is a number out of its range, such as an \"at\" outside of 0 to 1.
 A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
 by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
+
+impl ShapeArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let surface = &mut self.surface;
+        let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
+        engines::settle(&self.given, set, self.output.as_deref())
+    }
+}

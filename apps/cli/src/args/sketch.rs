@@ -7,10 +7,13 @@ use burgeon::sketch::{BranchDepth, LeafDepth, SketchSpec};
 use burgeon::skin::{PetalColor, SkinSpec};
 use clap::{Args, ValueEnum};
 
+use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
 use super::plant_format::PlantFormatWord;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, of, seed};
+use crate::engines;
+use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
@@ -132,6 +135,8 @@ fn kind(word: &str) -> Result<Kind, String> {
 pub(crate) struct SurfaceArgs {
     #[command(flatten)]
     pub(crate) skin: SkinArgs,
+    #[command(flatten)]
+    pub(crate) export: ExportArgs,
     /// Colour of petals that were drawn without one [default: by seed and name].
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
@@ -206,5 +211,14 @@ impl From<PetalWord> for PetalColor {
             PetalWord::Orange => Self::Orange,
             PetalWord::Blue => Self::Blue,
         }
+    }
+}
+
+impl SketchArgs {
+    /// Sets what the engine of `--for` wants.
+    pub(crate) fn settle(&mut self) -> Outcome {
+        let surface = &mut self.surface;
+        let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
+        engines::settle(&self.given, set, self.output.as_deref())
     }
 }

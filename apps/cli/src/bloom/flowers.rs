@@ -6,7 +6,7 @@ use burgeon::bloom::{self, FlowerSpec, GrowthLaw};
 use burgeon::{FlowerOptions, MakeError, OpeningError, OpeningPlant, Seed, Stopped, make_flower};
 
 use super::told::{BloomReport, tell};
-use super::write::write_show;
+use super::write::{levels_of, write_show};
 use super::{Show, Shown, hand_edits, no_pace};
 use crate::args::BloomRunArgs;
 use crate::failure::{Failure, Outcome};
@@ -49,7 +49,7 @@ pub(super) fn drawn_flower(
         let (read, ms) = machine.timed(|| drawing(path));
         (read?, ms)
     };
-    options.skin.wind = args.wind;
+    options.skin.wind = args.wind || args.export.sway;
     if let Some(path) = &args.materials {
         options.skin.worn = Materials::read(path)?.worn();
     }
@@ -68,6 +68,7 @@ pub(super) fn drawn_flower(
     let law = law.unwrap_or_else(|| plant.law());
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut head = report::of_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
+    head.engine = args.export.report();
     head.items[0].warnings.clone_from(&plant.item.warnings);
     head.items[0].warnings.extend(no_pace(args, &law));
     head.items[0].edits.clone_from(&plant.item.edits);
@@ -78,12 +79,11 @@ pub(super) fn drawn_flower(
         best: plant.days[0],
         shape: Box::new(|day| {
             let open = plant.at(day, &law, seed, &machine.run())?;
-            let lods = (1..=args.lods).map(|level| plant.at_level(&open, level, &machine.run()));
-            let lods = lods.collect::<Result<_, _>>()?;
+            let levels = plant.levels(&open, &levels_of(args), &machine.run())?;
             Ok(Shown {
                 plant: Some(open.plant),
                 model: open.model,
-                lods,
+                levels,
                 overlap: Some(open.overlap),
                 checks: vec![],
             })
@@ -129,7 +129,7 @@ pub(super) fn flower(
     let law = law.unwrap_or_else(|| spec.own_law());
     let seed = Seed::new(args.seed);
     let mut options = FlowerOptions { edits: hand_edits(args)?, ..FlowerOptions::default() };
-    options.skin.wind = args.wind;
+    options.skin.wind = args.wind || args.export.sway;
     if let Some(path) = &args.materials {
         options.skin.worn = Materials::read(path)?.worn();
     }
@@ -138,6 +138,7 @@ pub(super) fn flower(
         Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
     };
     let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    head.engine = args.export.report();
     head.items[0].warnings.extend(no_pace(args, &law));
     if let Some(edits) = &args.edits {
         let day = (spec.opening_days, &law);
@@ -153,11 +154,10 @@ pub(super) fn flower(
         shape: Box::new(|day| {
             let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run());
             let made = made.map_err(failed)?;
-            let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
-            let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
+            let levels = made.levels(&levels_of(args), &machine.run()).map_err(failed)?;
             let overlap = bloom::part_overlap(&made.plant, None);
             let (plant, checks) = (Some(made.plant), made.item.checks);
-            Ok(Shown { plant, model: made.model, lods, overlap: Some(overlap), checks })
+            Ok(Shown { plant, model: made.model, levels, overlap: Some(overlap), checks })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));

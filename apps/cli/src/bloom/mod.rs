@@ -7,14 +7,14 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use burgeon::CheckReport;
 use burgeon::bloom::{FlowerSpec, GrowthLaw};
 use burgeon::document::PlantEdit;
 use burgeon::formats::{ModelFormat, Room};
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
+use burgeon::{CheckReport, Levels};
 
-use crate::args::{BloomCommand, BloomRunArgs, PlantFormat};
+use crate::args::{BloomCommand, BloomRunArgs, EXPORT, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
@@ -53,8 +53,8 @@ struct Shown {
     /// None of scans, of which only points are known.
     plant: Option<Plant>,
     model: Model,
-    /// Coarser copies.
-    lods: Vec<Model>,
+    /// Coarser copies and the like, of one shape.
+    levels: Levels,
     /// The share of petal triangles that cross another petal.
     overlap: Option<f64>,
     /// What was checked of the plant, if that was of this day.
@@ -88,7 +88,7 @@ fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
     match (files::extension(&args.output), args.day) {
         (Some(_), _) => {
             outputs.plan("-o", &args.output)?;
-            files::plan_plant(&mut outputs, &args.output, args.lods)?;
+            files::plan_plant(&mut outputs, &args.output, args.export.lod_files())?;
         }
         (None, Some(_)) => {
             let endings = ModelFormat::written_endings();
@@ -127,7 +127,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     if args.plant {
         plant_formats(args)?;
     } else {
-        let plants = ["wind", "edits", "lods", "materials"];
+        let plants = [&["wind", "edits", "materials"], &EXPORT[..]].concat();
         let users = format!("{flowers}, drawings and scans with --plant");
         args.given.refuse(&plants, &users, &format!("{} is none", args.start))?;
     }
@@ -176,7 +176,11 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     let structure = matches!(structure, Some(PlantFormat::Structure(_)));
     let moving = ModelFormat::endings_with(Room::Morphs);
     let users = format!("models of one shape (--day, or another format than {moving})");
-    given.only_if(!several && !structure, &["lods"], &users, "none is written")?;
+    given.only_if(!several && !structure, &EXPORT, &users, "none is written")?;
+    if let Some(format) = (!several).then_some(extension).flatten().and_then(PlantFormat::from_extension) {
+        given.refuse(&["foliage"], "trees and drawings of them", "leaves of a flower have their own form")?;
+        args.export.check_used(given, (Some(format), args.png.is_some()), true)?;
+    }
     given.only_if(
         extension.is_none(),
         &["format"],

@@ -9,10 +9,12 @@ use burgeon::bloom::{
 use burgeon::formats::ExportSpec;
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
-use burgeon::{LeafError, MadePlant, OrganFit, Run, Seed, SeedlingError, SeedlingOptions, make_seedling};
+use burgeon::{
+    LeafError, Levels, MadePlant, OrganFit, Run, Seed, SeedlingError, SeedlingOptions, make_seedling,
+};
 
 use super::told::{BloomReport, ErrorReport, ResidualReport, ScannedPlant, tell};
-use super::write::write_show;
+use super::write::{levels_of, write_show};
 use super::{Show, Shown, hand_edits, no_pace};
 use crate::args::{BloomRunArgs, FrameWord, ScanTextureWord};
 use crate::failure::{Failure, Outcome};
@@ -108,20 +110,19 @@ pub(super) fn run(
                 if let Some(edits) = &args.edits {
                     edits::some_done(edits, &plant.item, options.leaf.edits.len())?;
                 }
-                let lods = (1..=args.lods).map(|level| plant.at_level(level, &compute));
-                let lods =
-                    lods.collect::<Result<_, _>>().map_err(|s| failed(start)(LeafError::from(s).into()))?;
+                let levels = plant.levels(&levels_of(args), &compute);
+                let levels = levels.map_err(|s| failed(start)(LeafError::from(s).into()))?;
                 scanned = Some(told);
                 let checks = plant.item.checks.clone();
                 item = Some(plant.item);
                 let model = Model { offset_m: loaded.origin.offset_m, ..plant.model };
-                return Ok(Shown { plant: Some(plant.plant), model, lods, overlap: None, checks });
+                return Ok(Shown { plant: Some(plant.plant), model, levels, overlap: None, checks });
             }
             let mut model =
                 burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &organs.rows, &organs.points);
             burgeon::colour_points(&mut model, &organs.colors);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
-            Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None, checks: vec![] })
+            Ok(Shown { plant: None, model, levels: Levels::default(), overlap: None, checks: vec![] })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
@@ -288,7 +289,7 @@ impl Organs {
 fn plant_options(args: &BloomRunArgs) -> Outcome<SeedlingOptions> {
     let mut options = SeedlingOptions::default();
     options.leaf.edits = hand_edits(args)?;
-    options.leaf.skin.wind = args.wind;
+    options.leaf.skin.wind = args.wind || args.export.sway;
     if let Some(path) = &args.materials {
         options.leaf.skin.worn = Materials::read(path)?.worn();
     }

@@ -146,6 +146,7 @@ pub(super) fn tell(
     let item = &mut told.head.items[0];
     (item.counts, item.plant) = (written.counts, written.measures);
     item.digest = written.digest;
+    item.warnings.extend(written.warnings);
     if !written.checks.is_empty() {
         item.checks = written.checks;
     }

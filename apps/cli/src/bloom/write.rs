@@ -6,15 +6,16 @@ use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, Room, write_clo
 use burgeon::glam::DVec3;
 use burgeon::mesh::PointCloud;
 use burgeon::plant::{Measures, Plant};
-use burgeon::{CheckReport, Counts, Digest};
+use burgeon::{CheckReport, Counts, Digest, ItemReport, LevelSpec};
 
 use super::{Show, Shown};
-use crate::args::{AxesArgs, BloomRunArgs, PictureArgs, PlantFormat};
+use crate::args::{AxesArgs, BloomRunArgs, PictureArgs};
 use crate::failure::Outcome;
 use crate::files::Goal;
+use crate::levels::{Form, Whole};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, names, picture};
+use crate::{files, levels, names, picture};
 
 /// What was written.
 #[derive(Default)]
@@ -27,6 +28,7 @@ pub(super) struct Written {
     pub(super) overlap: Vec<f64>,
     /// Of the first shape of which one failed, or of the last.
     pub(super) checks: Vec<CheckReport>,
+    pub(super) warnings: Vec<String>,
 }
 
 impl Written {
@@ -64,7 +66,12 @@ pub(super) fn write_show(
         let shown = (show.shape)(day)?;
         digest.add(&shown.model);
         written.take(&shown);
-        write_one(outputs, path, &shown, (axes, &args.axes))
+        let item = write_one(outputs, path, shown, axes, (args, machine))?;
+        // A budget may have made it smaller.
+        written.counts.vertices = item.counts.vertices;
+        written.counts.triangles = item.counts.triangles;
+        written.warnings.extend(item.warnings);
+        Ok(())
     };
     match (files::extension(&args.output), args.film(), args.one_day()) {
         (None, ..) => {
@@ -120,16 +127,34 @@ pub(super) fn write_show(
     Ok(written)
 }
 
+/// What is made besides the finest meshes: of an animation and of a folder nothing.
+pub(super) fn levels_of(args: &BloomRunArgs) -> LevelSpec {
+    let one = files::extension(&args.output).is_some() && args.film().is_none();
+    let format = files::plant_writable(&args.output).ok().filter(|_| one);
+    args.export.levels(format)
+}
+
 /// Clouds as PLY in double precision, everything else by the writers of models.
 fn write_one(
     outputs: &mut Outputs,
     path: &Path,
-    Shown { plant, model, lods, .. }: &Shown,
-    (axes, named): (&ExportSpec, &AxesArgs),
-) -> Outcome {
-    if let (Some(plant), format @ PlantFormat::Structure(_)) = (plant, files::plant_writable(path)?) {
-        let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
-        return files::write_plant(outputs, goal, (plant, model), format, named, cache).map(drop);
+    Shown { plant, model, levels, .. }: Shown,
+    axes: &ExportSpec,
+    (args, machine): (&BloomRunArgs, &Machine),
+) -> Outcome<ItemReport> {
+    let mut items = vec![ItemReport::default()];
+    items[0].counts.vertices = model.vertex_count() as u64;
+    items[0].counts.triangles = model.triangle_count() as u64;
+    let mut cache = PngCache::new();
+    if let Some(plant) = &plant {
+        // --unit and --up were those of the scans: glTF in metres with +Y up is no surprise.
+        let format = files::plant_writable(path)?;
+        let plain = AxesArgs::default();
+        let axes = if format.holds(Room::Axes) { &args.axes } else { &plain };
+        let form = Form::new(path, format, &args.export, axes);
+        let whole = Whole { plant, model, levels };
+        levels::write(outputs, &form, whole, &mut items, &mut cache, machine)?;
+        return Ok(items.swap_remove(0));
     }
     let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
     let format: ModelFormat = files::writable(path)?;
@@ -149,15 +174,11 @@ fn write_one(
                 cloud.colors.extend(part.mesh.colors.iter().map(|c| c.map(byte)));
             }
         }
-        return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));
+        outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out))?;
+        return Ok(items.swap_remove(0));
     }
     // --unit and --up were those of the scans: glTF in metres with +Y up is no surprise.
     let axes = if format.holds(Room::Axes) { axes } else { &ExportSpec::default() };
-    let mut cache = PngCache::new();
-    files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut cache)?;
-    for (model, level) in lods.iter().zip(1..) {
-        let path = files::lod(path, level);
-        files::write_model(outputs, Goal::new("--lods", &path), model, format, axes, &mut cache)?;
-    }
-    Ok(())
+    files::write_model(outputs, Goal::new("-o", path), &model, format, axes, &mut cache)?;
+    Ok(items.swap_remove(0))
 }

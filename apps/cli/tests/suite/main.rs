@@ -7,6 +7,7 @@ mod absurd;
 mod bloom;
 mod clouds;
 mod command;
+mod export;
 mod files;
 mod forest;
 mod generated;

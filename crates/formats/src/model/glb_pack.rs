@@ -7,7 +7,7 @@ use glam::DVec3;
 use mesh::{CopyPlace, MaterialKind, Model, TriMesh};
 use serde_json::{Value, json};
 
-use super::glb_write::{Encoded, InstanceColumns, Level, Writer, check_levels, row};
+use super::glb_write::{Encoded, InstanceColumns, Level, Writer, check_levels, pivot_row, row};
 use super::gltf::{
     Accessor, Attributes, Buffer, FLOAT, I8, I16, Mesh, Node, POINTS, Primitive, U8, U16, U32, View,
 };
@@ -364,9 +364,9 @@ impl Packer {
             attributes.wind = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U16, "VEC4", 8))?);
         }
         if !mesh.pivots.is_empty() {
-            let bytes = mesh.pivots.iter().flat_map(|&p| local(p).as_vec3().to_array());
-            let bytes: Vec<u8> = bytes.flat_map(f32::to_le_bytes).collect();
-            attributes.pivot = Some(self.column(&bytes, column(FLOAT, "VEC3", 12))?);
+            let rows = mesh.pivots.iter().flat_map(|&p| pivot_row(local(p).as_vec3().to_array()));
+            let bytes: Vec<u8> = rows.flat_map(f32::to_le_bytes).collect();
+            attributes.pivot = Some(self.column(&bytes, column(FLOAT, "VEC4", 16))?);
         }
         let points = mesh.triangles.is_empty();
         Ok(Primitive {

@@ -21,7 +21,7 @@ const LINEAR_MIPMAP_LINEAR: u32 = 9_987;
 
 /// Writes a model as a GLB: one root node named after the model, one node and mesh a part, materials with
 /// embedded PNG textures (each once), `alphaMode` MASK and `doubleSided` where the material says so. How wind moves
-/// the vertices is written as attributes `_WIND` (VEC4) and `_PIVOT` (VEC3, metres), where the model has it.
+/// the vertices is written as attributes `_WIND` (VEC4) and `_PIVOT` (VEC4: metres, and 1), where the model has it.
 ///
 /// Guaranteed: the same model gives the same bytes; the Khronos validator finds no error, and warns of
 /// nothing but tangents, which viewers compute for normal maps.
@@ -234,6 +234,13 @@ const LEVELS: &str = "MSFT_lod";
 
 fn room(model: &Model) -> usize {
     48 * model.vertex_count() + 12 * model.triangle_count() + 1024
+}
+
+/// A row of `_PIVOT`, a point with the fourth coordinate 1. It is as wide as `_WIND`, because Blender's importer takes the
+/// columns of an application's own attributes in an order that changes with each start, and fails on some orders of columns
+/// of two widths.
+pub(super) fn pivot_row([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 1.0]
 }
 
 pub(super) fn row(n: usize) -> Result<u32, WriteError> {
@@ -680,7 +687,8 @@ impl Writer {
                 attributes.wind = Some(self.column("VEC4", &mesh.wind, false)?);
             }
             if wind && !mesh.pivots.is_empty() {
-                attributes.pivot = Some(self.column("VEC3", &mesh.pivots, false)?);
+                let pivots: Vec<[f32; 4]> = mesh.pivots.iter().map(|&p| pivot_row(p)).collect();
+                attributes.pivot = Some(self.column("VEC4", &pivots, false)?);
             }
             let points = mesh.triangles.is_empty();
             let mut targets = Vec::with_capacity(morph.keys.len());

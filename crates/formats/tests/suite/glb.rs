@@ -92,6 +92,28 @@ fn the_same_model_gives_the_same_bytes() {
 }
 
 #[test]
+fn attributes_of_the_wind_are_of_one_width_for_the_importer_of_blender() {
+    use formats::{Packing, write_glb_packed};
+    let m = carried();
+    let (mut plain, mut packed) = (Vec::new(), Vec::new());
+    write_glb(&m, &mut plain).expect("writes");
+    write_glb_packed(&m, Packing::Quantized, &mut PngCache::new(), &mut packed).expect("writes");
+    for glb in [plain, packed] {
+        let j = json_of(&glb);
+        for mesh in j["meshes"].as_array().expect("meshes") {
+            let attributes = &mesh["primitives"][0]["attributes"];
+            let shape = |name: &str| {
+                let accessor = attributes[name].as_u64().and_then(|i| usize::try_from(i).ok());
+                &j["accessors"][accessor.expect(name)]["type"]
+            };
+            assert_eq!([shape("_WIND"), shape("_PIVOT")], ["VEC4"; 2], "{}", mesh["name"]);
+        }
+        let back = read_back(&glb);
+        assert!(back.parts.iter().all(|p| p.mesh.pivots.iter().all(|&p| p == [0.5, 0.0, 0.25])));
+    }
+}
+
+#[test]
 fn unsound_models_are_refused_by_name() {
     let mut m = model(2);
     m.parts[1].mesh.positions[3][1] = f32::NAN;

@@ -13,12 +13,10 @@ use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
 use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
 use crate::checks::{check_plant, check_tree};
+use crate::levels::LaidOut;
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
-
-/// A model, and the plant that it is of with what of it lies where in the model.
-pub(crate) type LaidOut = (Model, (Plant, Layout));
 
 /// Makes trees of a description that changes: an update does again only what a change touches.
 ///
@@ -93,7 +91,7 @@ const EARLIEST_FLOWERS: f64 = -0.9;
 pub(super) type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
 impl TreeEvaluator {
-    /// Brings everything up to date and reports. [`TreeOptions::lods`] are left to [`super::make_tree`].
+    /// Brings everything up to date and reports. [`TreeOptions::levels`] are left to [`super::make_tree`].
     ///
     /// # Errors
     /// [`TreeError`]: whatever is wrong with the spec, or cancelled.

@@ -18,6 +18,7 @@ mod blossom;
 mod compare;
 mod evaluate;
 mod file;
+mod height;
 mod lod;
 mod look;
 mod presets;
@@ -28,10 +29,11 @@ use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
-use mesh::{Copies, Model};
+use mesh::Model;
 use skin::{Layout, SkinSpec};
 use spec::SpecFault;
 
+use crate::levels::{LevelSpec, Levels};
 use crate::report::{GrowthReport, ItemReport};
 use crate::template::LeafTemplate;
 
@@ -42,6 +44,7 @@ pub use compare::{
 pub use evaluate::TreeEvaluator;
 pub(crate) use evaluate::{grow_plant, mesh_plant};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
+pub use height::{HeightError, age_of_height};
 pub use lod::coarser;
 use lod::keep_out;
 pub use presets::{PRESETS, Preset};
@@ -58,13 +61,8 @@ pub struct TreeOptions {
     pub height_m: Option<f64>,
     /// The leaf that the tree bears instead of its spec's form. Default none.
     pub leaf: Option<LeafTemplate>,
-    /// Coarser copies to make as well, 0 to 6: each has about half of the triangles of the one before.
-    pub lods: u32,
-    /// Views of the tree from all sides as the last of the coarser copies, in an atlas of so many pixels a side
-    /// ([`render::impostor`]). Default none.
-    pub impostor: Option<u32>,
-    /// Also take leaves that are one form out of the models, as copies: [`MadeTree::copies`]. Default false.
-    pub copies: bool,
+    /// Coarser copies and the like to make as well: each has about half of the triangles of the one before.
+    pub levels: LevelSpec,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<PlantEdit>,
     /// What the obstacles of the spec are called in messages, in their order; those without a name have their number.
@@ -80,10 +78,8 @@ pub struct MadeTree {
     pub model: Model,
     /// What of the plant lies where in the model.
     pub layout: Layout,
-    /// Coarser ones, finest first; the impostor is the last.
-    pub lods: Vec<Model>,
-    /// If asked for, of the model and each coarser one what is left without the leaves that are one form, and these.
-    pub copies: Vec<(Model, Vec<Copies>)>,
+    /// Coarser ones.
+    pub levels: Levels,
     /// Counts, times, growth, digest, warnings.
     pub item: ItemReport,
 }
@@ -221,33 +217,17 @@ pub fn make_tree(
     let mut evaluator = TreeEvaluator::default();
     let mut item = evaluator.update(spec, seed, options, run)?;
     let start = run.clock.now_ms();
-    let mut copies = Vec::new();
-    if let (true, Some((model, plant, layout))) = (options.copies, evaluator.laid_out()) {
-        copies.push(skin::copies(plant, model, layout));
-    }
-    let mut lods = Vec::new();
-    for level in 1..=options.lods.min(6) {
-        let Some((model, (plant, layout))) = evaluator.laid_out_at(level, run)? else { continue };
-        if options.copies {
-            copies.push(skin::copies(&plant, &model, &layout));
-        }
-        lods.push(model);
-    }
-    if let (Some(size), Some(model)) = (options.impostor, evaluator.model())
-        && let Some(far) = render::impostor(model, size, run)?
-    {
-        if options.copies {
-            copies.push((far.clone(), Vec::new()));
-        }
-        lods.push(far);
-    }
-    if !lods.is_empty() {
+    let levels = match evaluator.laid_out() {
+        Some(finest) => Levels::new(&options.levels, finest, |level| evaluator.laid_out_at(level, run), run)?,
+        None => Levels::default(),
+    };
+    if !levels.lods.is_empty() {
         let ms = run.clock.now_ms() - start;
         item.timings_ms.mesh += ms;
         item.timings_ms.total += ms;
     }
     let (grown, model, layout) = evaluator.take().ok_or(Cancelled)?; // update succeeded: all are there
-    Ok(MadeTree { grown, model, layout, lods, copies, item })
+    Ok(MadeTree { grown, model, layout, levels, item })
 }
 
 /// An obstacle that does not bound a volume; it is borne all the same.

@@ -85,9 +85,17 @@ impl Preset {
     ///
     /// ```
     /// assert!(burgeon::Preset::find("oak").is_some() && burgeon::Preset::find("fern").is_none());
+    /// assert_eq!(burgeon::Preset::find("Quercus robur").map(|p| p.key), Some("oak"));
     /// ```
     pub fn find(key: &str) -> Option<&'static Self> {
-        PRESETS.iter().find(|p| p.key == key)
+        let named =
+            || PRESETS.iter().find(|p| p.latin().is_some_and(|latin| latin.eq_ignore_ascii_case(key)));
+        PRESETS.iter().find(|p| p.key == key).or_else(named)
+    }
+
+    /// The Latin name of its species, as its file has it.
+    pub fn latin(&self) -> Option<&'static str> {
+        self.toml.lines().find_map(|line| line.strip_prefix("species = \"")?.strip_suffix('"'))
     }
 
     /// Its spec.

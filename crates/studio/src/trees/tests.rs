@@ -185,11 +185,12 @@ fn a_season_grows_nothing_again() {
 #[test]
 fn levels_of_detail_become_coarser_and_stay_sound() {
     let spec = young("hazel");
-    let options = TreeOptions { lods: 3, ..TreeOptions::default() };
+    let options =
+        TreeOptions { levels: LevelSpec { lods: 3, ..LevelSpec::default() }, ..TreeOptions::default() };
     let made = make_tree(&spec, Seed::new(1), &options, &Run::plain()).expect("sound");
     let mut last = made.model.triangle_count();
-    assert_eq!(made.lods.len(), 3);
-    for (level, lod) in (1..).zip(&made.lods) {
+    assert_eq!(made.levels.lods.len(), 3);
+    for (level, lod) in (1..).zip(&made.levels.lods) {
         assert_eq!(lod.validate().next(), None);
         let n = lod.triangle_count();
         assert!(n < last * 7 / 10 && n > 100, "level {level}: {n} after {last}");
@@ -287,10 +288,11 @@ fn weight(model: &Model) -> (f64, usize) {
 fn every_species_gets_lighter_level_by_level_and_keeps_its_leaves() {
     for preset in share::sample(PRESETS, 3, 4) {
         let spec = young(preset.key);
-        let options = TreeOptions { lods: 3, ..TreeOptions::default() };
+        let options =
+            TreeOptions { levels: LevelSpec { lods: 3, ..LevelSpec::default() }, ..TreeOptions::default() };
         let made = make_tree(&spec, Seed::new(3), &options, &Run::plain()).expect("sound");
         let (whole, mut last) = weight(&made.model);
-        for (level, lod) in (1..).zip(&made.lods) {
+        for (level, lod) in (1..).zip(&made.levels.lods) {
             let (area, n) = weight(lod);
             // Few fronds, blades of grass or limbs are not made fewer: such a level is light as it is.
             let few = last < 8_000 && n <= last;

@@ -75,3 +75,23 @@ fn a_score_is_how_often_such_a_reading_is_right() {
     let said = all.iter().map(|r| r.1).sum::<f64>() / all.len() as f64;
     assert!(all.len() > 30 && (right - said).abs() < 0.1, "{right} are right, {said} is said");
 }
+
+#[test]
+fn flowers_that_come_with_the_program_are_plausible_on_every_day() {
+    use burgeon::bloom::FlowerSpec;
+    use burgeon::skin::SkinSpec;
+    use burgeon::{FlowerOptions, Seed, make_flower};
+
+    let coarse = SkinSpec { detail: 0.2, ..SkinSpec::default() };
+    let options = FlowerOptions { skin: coarse, ..FlowerOptions::default() };
+    for word in FlowerSpec::PRESETS {
+        let spec = burgeon::bloom::preset(word).unwrap_or_else(|| panic!("{word} is no preset"));
+        for day in [0.0, spec.opening_days, spec.opening_days + spec.wilting_days] {
+            let made =
+                make_flower(&spec.name, &spec, (day, &spec.own_law()), &options, Seed::new(1), &Run::plain());
+            let item = made.unwrap_or_else(|e| panic!("{word} on day {day}: {e}")).item;
+            let failed: Vec<_> = item.checks.iter().filter(|c| !c.ok).collect();
+            assert!(!item.checks.is_empty() && failed.is_empty(), "{word} on day {day}: {failed:?}");
+        }
+    }
+}

@@ -4,7 +4,7 @@ use burgeon::glam::DVec3;
 use burgeon::mesh::{AlphaMode, MaterialKind, Model, Texture};
 use burgeon::render::{Background, Camera, PictureSpec, View, shot};
 use burgeon::skin::{FoliageStyle, SkinSpec};
-use burgeon::{PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
+use burgeon::{LevelSpec, PRESETS, Preset, Run, Seed, TreeOptions, make_tree};
 
 use crate::SPECIES;
 use crate::share::sample;
@@ -127,7 +127,7 @@ fn each_level_of_the_other_species_does_so_too() {
 fn holds_of(first: usize) {
     let options = TreeOptions {
         skin: SkinSpec { textures: false, ..SkinSpec::default() },
-        lods: 3,
+        levels: LevelSpec { lods: 3, ..LevelSpec::default() },
         ..TreeOptions::default()
     };
     let own: Vec<&str> = PRESETS.iter().map(|p| p.key).skip(first).step_by(2).collect();
@@ -141,7 +141,7 @@ fn holds_of(first: usize) {
 fn cards_and_shoots_keep_the_foliage_too() {
     let options = TreeOptions {
         skin: SkinSpec { texture_size: 128, foliage: FoliageStyle::ByLevel, ..SkinSpec::default() },
-        lods: 3,
+        levels: LevelSpec { lods: 3, ..LevelSpec::default() },
         impostor: Some(256),
         ..TreeOptions::default()
     };
@@ -161,7 +161,7 @@ fn faults(key: &str, options: &TreeOptions) -> Vec<String> {
     let mut faults = Vec::new();
     let spec = Preset::find(key).expect("there").spec().expect("sound");
     let made = make_tree(&spec, Seed::new(1), options, &Run::plain()).expect("a tree");
-    let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.lods).collect();
+    let levels: Vec<&Model> = std::iter::once(&made.model).chain(&made.levels.lods).collect();
     let foliage = area(levels[0], leaf);
     let mut fine = Shot::of(levels[0], levels[0], 192);
     for (level, pair) in levels.windows(2).enumerate() {

@@ -1,0 +1,205 @@
+//! Plants of all makers are exported alike: levels, budgets, programs that they are for.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::tools::{FLOWER, bad, folder, good};
+
+const OAK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/gallery/oak.svg");
+
+/// The entries of the report of a command.
+fn items(dir: &Path, args: &[&str]) -> Vec<Value> {
+    let report: Value = serde_json::from_str(&good(dir, &[args, &["--json"]].concat())).unwrap();
+    report["items"].as_array().unwrap().clone()
+}
+
+fn triangles(items: &[Value]) -> Vec<u64> {
+    items.iter().map(|item| item["counts"]["triangles"].as_u64().unwrap()).collect()
+}
+
+/// The JSON of a GLB.
+fn gltf(path: &Path) -> Value {
+    let glb = fs::read(path).unwrap();
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&glb[20..20 + length]).unwrap()
+}
+
+#[test]
+fn each_level_of_any_maker_has_at_most_half_of_the_one_before_while_parts_can_be_coarser() {
+    let dir = folder("export-levels");
+    fs::write(dir.join("flower.svg"), FLOWER).unwrap();
+    // With each the levels that have at most half: parts of few, such as veins and petals, are then as coarse as they can be.
+    let makers: [(&[&str], usize); 5] = [
+        (&["sketch", OAK], 3),
+        (&["sketch", "flower.svg"], 2),
+        (&["shape", OAK, "--list", "0"], 3),
+        (&["leaf", "--venation", "palmate"], 1),
+        (&["bloom", "run", "tulip", "--day", "6"], 1),
+    ];
+    for (maker, halved) in makers {
+        let args = [maker, &["-o", "x.glb", "--lods", "3"]].concat();
+        let counts = if maker[0] == "bloom" {
+            good(&dir, &[&args[..], &["-q"]].concat());
+            let files = ["x.glb", "x-lod1.glb", "x-lod2.glb", "x-lod3.glb"];
+            let info = |file: &&str| {
+                let info: Value = serde_json::from_str(&good(&dir, &["info", file, "--json"])).unwrap();
+                info["model"]["triangles"].as_u64().unwrap()
+            };
+            files.iter().map(info).collect()
+        } else {
+            triangles(&items(&dir, &args))
+        };
+        assert_eq!(counts.len(), 4, "{maker:?}");
+        assert!(counts.windows(2).all(|w| w[1] > 0 && w[1] < w[0]), "{maker:?}: {counts:?}");
+        assert!(counts.windows(2).take(halved).all(|w| 2 * w[1] <= w[0]), "{maker:?}: {counts:?}");
+    }
+}
+
+#[test]
+fn sparser_crowns_have_fewer_triangles() {
+    let dir = folder("export-density");
+    let counts: Vec<u64> = ["0.1", "0.3", "1"]
+        .iter()
+        .flat_map(|density| triangles(&items(&dir, &["sketch", OAK, "--density", density])))
+        .collect();
+    assert!(counts.windows(2).all(|w| w[0] < w[1]), "{counts:?}");
+}
+
+#[test]
+fn a_drawing_is_exported_as_a_tree_is() {
+    let dir = folder("export-drawing");
+    let made = |more: &[&str]| {
+        let all = [&["sketch", OAK, "--textures", "64", "-o", "oak.glb"], more].concat();
+        (items(&dir, &all), gltf(&dir.join("oak.glb")), fs::metadata(dir.join("oak.glb")).unwrap().len())
+    };
+    let (_, _, plain) = made(&[]);
+    let (_, json, packed) = made(&["--pack", "meshopt"]);
+    assert!(4 * packed < plain && json["extensionsRequired"].to_string().contains("meshopt"));
+    let (_, json, light) = made(&["--instances"]);
+    assert!(light < plain && json["extensionsUsed"].to_string().contains("EXT_mesh_gpu_instancing"));
+    let (_, json, _) = made(&["--sway"]);
+    assert_eq!(json["animations"][0]["name"], "wind");
+    let (items, json, _) = made(&["--lods", "2", "--lod-file", "one", "--foliage", "by-level"]);
+    assert_eq!(json["nodes"][0]["extensions"]["MSFT_lod"]["ids"].as_array().map(Vec::len), Some(2));
+    assert_eq!(items.len(), 3);
+    made(&["--impostor", "128"]);
+    assert_eq!(
+        gltf(&dir.join("oak-lod1.glb"))["materials"][0]["extras"]["impostor"]["type"]
+            .as_str()
+            .unwrap_or("hemi-octahedral"),
+        "hemi-octahedral"
+    );
+    // In a folder as in a file.
+    good(&dir, &["sketch", OAK, "-o", "folder/", "--lods", "1", "--no-textures", "-q"]);
+    assert!(dir.join("folder/oak-lod1.glb").exists());
+    fs::write(dir.join("flower.svg"), FLOWER).unwrap();
+    let alone = bad(&dir, &["leaf", "--venation", "palmate", "-o", "x.glb", "--instances"]);
+    assert!(alone.contains("--instances"), "{alone}");
+}
+
+#[test]
+fn a_budget_is_kept_or_refused_with_the_least_that_there_can_be() {
+    let dir = folder("export-budget");
+    let oak = ["sketch", OAK, "-o", "oak.glb"];
+    let few = items(&dir, &[&oak[..], &["--triangles", "20000", "--lods", "1"]].concat());
+    let counts = triangles(&few);
+    assert!(counts.len() == 2 && counts[0] <= 20_000 && 2 * counts[1] <= counts[0], "{counts:?}");
+    assert!(few[0]["warnings"].to_string().contains("level of detail"), "{}", few[0]["warnings"]);
+    items(&dir, &[&oak[..], &["--megabytes", "1"]].concat());
+    assert!(fs::metadata(dir.join("oak.glb")).unwrap().len() <= 1_000_000);
+    let free = items(&dir, &[&oak[..], &["--triangles", "900000", "--megabytes", "900"]].concat());
+    assert!(!free[0]["warnings"].to_string().contains("budget"), "all of it fits");
+    let none = bad(&dir, &[&oak[..], &["--triangles", "100"]].concat());
+    assert!(none.contains("at least") && none.contains("triangles"), "{none}");
+    let none = bad(&dir, &[&oak[..], &["--megabytes", "0.01"]].concat());
+    assert!(none.contains("megabytes"), "{none}");
+}
+
+#[test]
+fn an_engine_sets_what_it_wants_and_says_so() {
+    let dir = folder("export-engines");
+    let made = |engine: &str, file: &str, more: &[&str]| -> Value {
+        let all =
+            [&["sketch", OAK, "--textures", "64", "-o", file, "--for", engine, "--json"], more].concat();
+        serde_json::from_str(&good(&dir, &all)).unwrap()
+    };
+    let unity = made("unity", "oak.glb", &[]);
+    assert_eq!(unity["for"]["name"], "unity");
+    assert!(unity["for"]["set"].to_string().contains("--lods 3") && dir.join("oak-lod3.glb").exists());
+    let json = gltf(&dir.join("oak.glb"));
+    assert_eq!(json["animations"][0]["name"], "wind");
+    let names: Vec<&str> =
+        json["materials"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
+    assert!(names.iter().all(|name| name.starts_with("oak_")), "{names:?}");
+    let three = made("three", "oak.glb", &["--lods", "0"]);
+    assert!(!three["for"]["set"].to_string().contains("--lods"), "the command line wins");
+    let json = gltf(&dir.join("oak.glb"));
+    assert!(json["meshes"][0]["primitives"][0]["attributes"]["_WIND"].is_u64());
+    made("isaac", "oak.usda", &[]);
+    let text = fs::read_to_string(dir.join("oak.usda")).unwrap();
+    assert!(text.contains("upAxis = \"Z\"") && text.contains("metersPerUnit = 1"));
+    let plain: Value = serde_json::from_str(&good(&dir, &["sketch", OAK, "--json"])).unwrap();
+    assert!(plain.get("for").is_none());
+    let refused = bad(&dir, &["sketch", OAK, "-o", "oak.stl", "--for", "unity"]);
+    assert!(refused.contains(".glb") && refused.contains(".stl"), "{refused}");
+    assert!(bad(&dir, &["grow", "oak", "--for", "godot", "--png", "x.png"]).contains("-o"));
+}
+
+#[test]
+fn a_tree_has_the_height_that_is_asked_for_within_its_species() {
+    let dir = folder("export-height");
+    let tree = |height: &str| items(&dir, &["grow", "hazel", "--height", height, "--detail", "0.2"]);
+    for height in ["2", "3"] {
+        let measured = tree(height)[0]["plant"]["height_m"].as_f64().unwrap();
+        assert!((measured - height.parse::<f64>().unwrap()).abs() < 0.25, "{height}: {measured}");
+    }
+    let far = bad(&dir, &["grow", "hazel", "--height", "60", "--json"]);
+    assert!(far.contains("out of reach"), "{far}");
+    let latin = items(&dir, &["grow", "corylus avellana", "--age", "3", "--detail", "0.2"]);
+    let hazel = items(&dir, &["grow", "hazel", "--age", "3", "--detail", "0.2"]);
+    assert_eq!(latin[0]["digest"], hazel[0]["digest"]);
+    let old = bad(&dir, &["grow", "hazel", "--age", "5000", "--json"]);
+    assert!(old.contains("age must be"), "{old}");
+}
+
+#[test]
+fn a_print_is_one_closed_body_on_a_flat_foot() {
+    let dir = folder("export-print");
+    let all = ["sketch", OAK, "-o", "oak.stl", "--for", "print", "--print-height", "60", "--json"];
+    let report: Value = serde_json::from_str(&good(&dir, &all)).unwrap();
+    assert!(
+        report["items"][0]["warnings"].to_string().contains("1 : "),
+        "{}",
+        report["items"][0]["warnings"]
+    );
+    let stl = fs::read(dir.join("oak.stl")).unwrap();
+    let number = |at: usize| f32::from_le_bytes(stl[at..at + 4].try_into().unwrap());
+    let count = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
+    assert_eq!(stl.len(), 84 + 50 * count);
+    // Corners by their bits: each edge is there once each way.
+    let corner = |t: usize, c: usize| {
+        let at = 84 + 50 * t + 12 + 12 * c;
+        [0, 4, 8].map(|k| number(at + k).to_bits())
+    };
+    let mut edges = std::collections::BTreeMap::new();
+    let (mut low, mut high) = (f32::MAX, f32::MIN);
+    for t in 0..count {
+        for c in 0..3 {
+            let (a, b) = (corner(t, c), corner(t, (c + 1) % 3));
+            *edges.entry((a, b)).or_insert(0) += 1;
+            let z = f32::from_bits(a[2]);
+            (low, high) = (low.min(z), high.max(z));
+        }
+    }
+    let closed = edges.iter().all(|(&(a, b), &n)| n == 1 && edges.get(&(b, a)) == Some(&1));
+    assert!(closed && count > 1000, "{count} triangles");
+    assert!(low.abs() < 1e-3 && (high - 60.0).abs() < 2.0, "millimetres, +Z up: {low} to {high}");
+    let thin =
+        ["sketch", OAK, "-o", "x.stl", "--for", "print", "--print-height", "2000", "--print-wall", "0.2"];
+    let refused = bad(&dir, &thin);
+    assert!(refused.contains("at least") && refused.contains("mm"), "{refused}");
+    assert!(bad(&dir, &["sketch", OAK, "-o", "x.stl", "--print-wall", "1"]).contains("--for print"));
+}
