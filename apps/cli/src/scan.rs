@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use burgeon::formats::{ExportSpec, StructureFormat};
 use burgeon::glam::DVec3;
-use burgeon::scan::{FoundTree, ScanTreeError, TreeScanSpec};
+use burgeon::scan::{FoundTree, Interval, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, UpAxis, make_tree_from_scan,
+    ItemReport, Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, UpAxis,
+    make_tree_from_scan,
 };
 use serde::Serialize;
 
@@ -30,16 +31,36 @@ struct ScanTally {
     leaves: u64,
     wood: u64,
     other_things: u64,
+    /// Trunks that were seen at breast height.
+    stems: u64,
+    /// Of large pieces beyond gaps that were not bridged.
+    loose: u64,
+    /// The share of the tree's points near its wood or in its leaves, and for each tenth of the height from below.
+    explained: f64,
+    coverage: [Option<f64>; 10],
     bridges: u64,
+    /// A gap wider than usual that was bridged.
+    wide_gap_m: Option<f64>,
     cell_m: f64,
     rings: u64,
     circles: u64,
     pipe_exponent: f64,
+    /// `fitted`, `default` or `bound`.
+    pipe_source: &'static str,
     pipe_scatter: f64,
+    /// Between which values the figures lie, 9 of 10 times.
+    intervals: Intervals,
     /// Where the stem stood, in the axes of the scan, metres.
     foot_m: [f64; 3],
     /// Whether there was a ground.
     ground_found: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Intervals {
+    height_m: [f64; 2],
+    dbh_m: Option<[f64; 2]>,
+    wood_volume_m3: [f64; 2],
 }
 
 #[derive(Debug, Serialize)]
@@ -110,6 +131,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let lods = (1..=lods).map(|level| made.at_level(level, &machine.run()));
     let lods: Vec<_> = lods.collect::<Result<_, _>>().map_err(|e| failure(&args.input, e.into()))?;
     let stood = offset + found.foot;
+    name_options(&mut made.item, &found, &axes, offset);
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
@@ -164,14 +186,56 @@ fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> ScanTally {
         leaves: t.leaves as u64,
         wood: t.wood as u64,
         other_things: t.other_things as u64,
+        stems: t.stems as u64,
+        loose: t.loose as u64,
+        explained: t.explained,
+        coverage: t.coverage,
         bridges: t.bridges as u64,
+        wide_gap_m: t.wide_gap_m,
         cell_m: t.cell_m,
         rings: t.rings as u64,
         circles: t.circles as u64,
         pipe_exponent: t.pipe_exponent,
+        pipe_source: t.pipe_source.word(),
         pipe_scatter: t.pipe_scatter,
+        intervals: Intervals {
+            height_m: pair(found.intervals.height_m),
+            dbh_m: found.intervals.dbh_m.map(pair),
+            wood_volume_m3: pair(found.intervals.volume_m3),
+        },
         foot_m: metres.place(stood),
         ground_found: found.ground.is_some(),
+    }
+}
+
+const fn pair(i: Interval) -> [f64; 2] {
+    [i.low, i.high]
+}
+
+/// Names the options that help below the warnings that they help with.
+fn name_options(item: &mut ItemReport, found: &FoundTree, axes: &ExportSpec, offset: DVec3) {
+    let stem = found.other_stems.first().map(|&[x, z]| {
+        let [a, b, c] = axes.place(DVec3::new(x, 0.0, z) + offset);
+        let [a, b] = if axes.up == UpAxis::Y { [a, c] } else { [a, b] };
+        format!("--at {a:.2},{b:.2}")
+    });
+    let gap = found.tally.next_gap_m.map_or(1.0, |g| (10.0 * g + 1.0).ceil() / 10.0);
+    let gap = format!("--gap {gap}");
+    for (said, told) in item.warnings.iter_mut().zip(&item.told) {
+        let options = match told.code {
+            "several-stems" | "scan-others" => {
+                vec![stem.clone().unwrap_or_else(|| "--at A,B".into()), "--all".into()]
+            }
+            "volume-large-for-stem" => vec!["--all".into(), "--at A,B".into()],
+            "scan-loose" | "tree-cut" | "volume-small-for-stem" => vec![gap.clone()],
+            "scan-gap" => vec!["--gap".into()],
+            "scan-unused" => vec![gap.clone(), "--at A,B".into(), "--all".into()],
+            "scan-unexplained" => vec![gap.clone(), "--cell".into()],
+            "tree-small" | "size-small" | "size-large" => vec!["--unit".into()],
+            "scan-lies-down" => vec!["--up".into()],
+            _ => continue,
+        };
+        *said = format!("{said} ({})", options.join(", "));
     }
 }
 
@@ -179,12 +243,21 @@ fn summary(whole: &ScanRun, png: Option<&Path>) -> String {
     let item = &whole.run.items[0];
     let line = report::summary(item, png);
     let Some(m) = &item.plant else { return line };
-    let dbh = m.dbh_m.map_or_else(String::new, |d| format!(", DBH {:.1} cm", 100.0 * d));
+    let i = &whole.scan.intervals;
+    let dbh = m.dbh_m.zip(i.dbh_m).map_or_else(String::new, |(d, [low, high])| {
+        format!(", DBH {:.1} cm ({:.1} to {:.1})", 100.0 * d, 100.0 * low, 100.0 * high)
+    });
     let found = format!(
-        ", {} points: {:.2} m high{dbh}, {:.4} m3 of wood, {:.0} m of branches; ",
+        ", {} points, {:.0} % explained: {:.2} m high ({:.2} to {:.2}){dbh}, {:.4} m3 of wood ({:.4} to {:.4}), {:.0} m of \
+         branches; ",
         say::grouped(whole.scan.points),
+        100.0 * whole.scan.explained,
         m.height_m,
+        i.height_m[0],
+        i.height_m[1],
         m.wood_volume_m3,
+        i.wood_volume_m3[0],
+        i.wood_volume_m3[1],
         m.length_m
     );
     line.replacen("; ", &found, 1)
@@ -195,6 +268,9 @@ fn failure(path: &Path, error: ScannedTreeError) -> Failure {
         ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
         ScannedTreeError::Scan(e @ ScanTreeError::TooLarge(_)) => {
             Failure::at(path, format_args!("{e}; --unit mm or --unit cm says the unit"))
+        }
+        ScannedTreeError::Scan(e @ ScanTreeError::TooSmall(_)) => {
+            Failure::at(path, format_args!("{e}; --unit m or --unit cm says the unit"))
         }
         ScannedTreeError::Scan(e @ ScanTreeError::NoStem) => Failure::at(
             path,

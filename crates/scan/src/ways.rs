@@ -25,6 +25,14 @@ pub(crate) struct Ways {
     pub(crate) plant: Vec<u32>,
 }
 
+/// Gaps that were bridged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bridges {
+    pub(crate) count: usize,
+    /// Length of the longest, metres.
+    pub(crate) longest: f64,
+}
+
 impl Ways {
     pub(crate) fn new(points: &[DVec3], cell: f64) -> Self {
         let voxels = Voxels::with_cell(points, cell);
@@ -117,15 +125,15 @@ impl Ways {
     }
 
     /// Bridges gaps of at most `gap` from what is reached to the pieces that are not, the shortest of each piece at a
-    /// time, until none is left; the number of bridges.
+    /// time, until none is left.
     pub(crate) fn bridge(
         &mut self,
         gap: f64,
         piece: &[u32],
         open: impl Fn(usize) -> bool,
         cancel: &CancelToken,
-    ) -> Result<usize, Cancelled> {
-        let mut bridges = 0;
+    ) -> Result<Bridges, Cancelled> {
+        let mut bridges = Bridges::default();
         // Each round reaches what is near; pieces behind pieces need several.
         for _ in 0..24 {
             let reached: Vec<u32> = self.rows(|w, c| w.way[c].is_finite() && open(c));
@@ -157,7 +165,8 @@ impl Ways {
                 self.parent[to as usize] = from;
                 self.plant[to as usize] = self.plant[from as usize];
                 front.push(to);
-                bridges += 1;
+                bridges.count += 1;
+                bridges.longest = bridges.longest.max(length);
             }
             self.spread(&front, &open, cancel)?;
         }

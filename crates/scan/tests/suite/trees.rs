@@ -253,3 +253,82 @@ fn scans_that_are_no_good_say_so() {
     let volume = find(&mirrored).0.unwrap().plant.measure().wood_volume_m3;
     assert!((volume / truth.measure().wood_volume_m3 - 1.0).abs() < 0.05, "{volume}");
 }
+
+/// Points of the tree on its slope, less those between two heights over the ground.
+fn with_gap(points: &[DVec3], from: f64, to: f64) -> Vec<DVec3> {
+    points.iter().copied().filter(|p| !(from..to).contains(&(p.y - 0.06 * p.x))).collect()
+}
+
+#[test]
+fn a_crown_beyond_a_gap_belongs_to_its_trunk_and_it_is_told() {
+    let truth = tree();
+    let points = with_gap(&cloud(&[wood_mesh(&truth), ground()]), 0.9, 1.5);
+    let mut report = Report::default();
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut report).unwrap();
+    assert!(report.warnings.iter().any(|w| w.code == "scan-gap"), "{:?}", report.warnings);
+    assert!(found.tally.wide_gap_m.is_some_and(|g| (0.5..0.75).contains(&g)), "{:?}", found.tally);
+    let (a, b) = (truth.measure(), found.plant.measure());
+    assert!((b.height_m / a.height_m - 1.0).abs() < 0.02, "{} {}", b.height_m, a.height_m);
+    assert!(
+        (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.08,
+        "{} {}",
+        b.wood_volume_m3,
+        a.wood_volume_m3
+    );
+    // Who says which gaps may be bridged gets no wider ones, and is told what was left out.
+    let spec = TreeScanSpec { gap_m: Some(0.2), ..TreeScanSpec::default() };
+    let found = find_tree(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    let t = found.tally;
+    assert!(t.loose > 2 * t.wood && t.explained < 0.5, "{t:?}");
+    assert!(t.next_gap_m.is_some_and(|g| (0.5..0.75).contains(&g)), "{t:?}");
+    assert!(t.coverage[0].is_some_and(|c| c > 0.9) && t.coverage[8].is_some_and(|c| c < 0.1), "{t:?}");
+}
+
+#[test]
+fn trunks_are_counted_and_the_stem_at_a_place_is_taken_and_not_a_weed() {
+    let truth = tree();
+    let other = moved(tree(), DVec3::new(2.2, 0.1, 0.8));
+    // A weed between the two, nearer to the place that is said.
+    let mut weed = Plant::default();
+    weed.add_axis(AxisKind::Stem, None, 0, &[DVec3::new(1.9, 0.0, 0.2), DVec3::new(1.9, 0.8, 0.2)], None);
+    weed.nodes.radius_m.fill(0.03);
+    let points = cloud(&[wood_mesh(&truth), wood_mesh(&other), wood_mesh(&weed), ground()]);
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!((found.tally.stems, found.other_stems.len()), (2, 1), "{:?}", found.other_stems);
+    let spec = TreeScanSpec { at: Some([2.0, 0.4]), ..TreeScanSpec::default() };
+    let found = find_tree(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert!((found.foot - DVec3::new(2.2, 0.1, 0.8)).with_y(0.0).length() < 0.1, "{:?}", found.foot);
+    let (a, b) = (truth.measure(), found.plant.measure());
+    assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{} {}", b.height_m, a.height_m);
+}
+
+#[test]
+fn scans_from_the_air_and_in_another_unit_are_refused() {
+    let mut s = Seed::new(6).stream(Draw::Test);
+    let mut points: Vec<DVec3> = (0..20_000)
+        .map(|_| DVec3::new(s.range(-30.0, 30.0), s.range(0.0, 0.1), s.range(-30.0, 30.0)))
+        .collect();
+    for k in 0..36 {
+        let middle = DVec3::new(f64::from(k % 6) * 10.0 - 25.0, 12.0, f64::from(k / 6) * 10.0 - 25.0);
+        points.extend((0..400).map(|_| middle + DVec3::new(s.normal(), 2.0 * s.normal(), s.normal()) * 1.2));
+    }
+    let fault = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default());
+    assert!(matches!(fault, Err(ScanTreeError::Airborne(density, _)) if density < 10.0), "{fault:?}");
+    let truth = tree();
+    let small: Vec<DVec3> = cloud(&[wood_mesh(&truth), ground()]).iter().map(|p| *p * 0.001).collect();
+    let fault = find_tree(&small, &TreeScanSpec::default(), &Run::plain(), &mut Report::default());
+    assert!(matches!(fault, Err(ScanTreeError::TooSmall(_))), "{fault:?}");
+}
+
+#[test]
+fn figures_lie_in_their_intervals() {
+    let truth = tree();
+    let points = cloud(&[wood_mesh(&truth), ground()]);
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    let (a, i) = (truth.measure(), found.intervals);
+    let holds = |i: scan::Interval, x: f64| i.low <= x && x <= i.high;
+    assert!(holds(i.height_m, a.height_m) && i.dbh_m.is_some_and(|d| holds(d, a.dbh_m.unwrap())), "{i:?}");
+    assert!(holds(i.volume_m3, a.wood_volume_m3), "{i:?} {}", a.wood_volume_m3);
+    // They are no wider than they are of use.
+    assert!(i.volume_m3.high < 1.4 * i.volume_m3.low && i.height_m.high < 1.05 * i.height_m.low, "{i:?}");
+}
