@@ -30,6 +30,8 @@ mod output;
 mod petals;
 mod picture;
 mod placing;
+mod plot;
+mod plot_map;
 mod poses;
 mod presets;
 mod project;

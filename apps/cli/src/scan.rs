@@ -18,7 +18,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{checks, files, grow, levels, picture, report, say};
+use crate::{checks, files, grow, levels, picture, plot, report, say};
 
 /// What became of the points.
 #[derive(Debug, Serialize)]
@@ -71,6 +71,50 @@ struct ScanRun {
 }
 
 pub(crate) fn scan(args: &ScanArgs) -> Outcome {
+    if args.all { plot::scan_all(args) } else { scan_one(args) }
+}
+
+/// The options of the search and of the surface, and what was odd in them.
+pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTreeOptions> {
+    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, told)).transpose()?;
+    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
+        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
+    }
+    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
+    Ok(ScanTreeOptions {
+        scan: TreeScanSpec { cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
+        leaves,
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
+    })
+}
+
+/// Files that the options name and that are read.
+pub(crate) fn inputs_of(args: &ScanArgs) -> Vec<&PathBuf> {
+    let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
+    inputs.into_iter().flatten().collect()
+}
+
+/// A cloud near its origin.
+pub(crate) struct Read {
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) axes: ExportSpec,
+    pub(crate) origin: Origin,
+    pub(crate) ms: f64,
+}
+
+pub(crate) fn read(args: &ScanArgs, machine: &Machine, told: &mut Report) -> Outcome<Read> {
+    // Scanners write +Z up.
+    let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
+    let opened = files::open_cloud(&args.input)?;
+    let (cloud, ms) = machine
+        .timed(|| machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, told)));
+    let mut points = cloud?.points;
+    let mut origin = Origin::default();
+    origin.bring(&mut points, &axes, told);
+    Ok(Read { points, axes, origin, ms })
+}
+
+fn scan_one(args: &ScanArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),
@@ -79,9 +123,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         ("--mtg", args.mtg.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
-    let inputs: Vec<&PathBuf> = inputs.into_iter().flatten().collect();
-    let mut outputs = Outputs::new(&outputs, &inputs)?;
+    let mut outputs = Outputs::new(&outputs, &inputs_of(args))?;
     let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
@@ -91,21 +133,10 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     args.surface.check_used(&args.given, format)?;
     let mut told = Report::default();
-    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
-    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
-        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
-    }
-    // Scanners write +Z up.
-    let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
-    let opened = files::open_cloud(&args.input)?;
-    let (cloud, read_ms) = machine.timed(|| {
-        machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, &mut told))
-    });
-    let mut points = cloud?.points;
+    let mut options = options_of(args, &mut told)?;
+    let Read { points, axes, origin, ms: read_ms } = read(args, &machine, &mut told)?;
     outputs.check()?;
-    let mut origin = Origin::default();
-    origin.bring(&mut points, &axes, &mut told);
-    let at = args.at.map(|[a, b]| {
+    options.scan.at = args.at.map(|[a, b]| {
         // The two coordinates that are not up.
         let file = if matches!(args.axes.up, Some(UpAxis::Y)) {
             DVec3::new(a, 0.0, b)
@@ -115,12 +146,6 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         let p = origin.place(axes.inward(file));
         [p.x, p.z]
     });
-    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
-    let options = ScanTreeOptions {
-        scan: TreeScanSpec { at, cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
-        leaves,
-        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
-    };
     let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
     let made = machine
         .with_progress("scan", |_| make_tree_from_scan(&name, &points, &options, seed, &machine.run()));
@@ -263,7 +288,7 @@ fn summary(whole: &ScanRun, png: Option<&Path>) -> String {
     line.replacen("; ", &found, 1)
 }
 
-fn failure(path: &Path, error: ScannedTreeError) -> Failure {
+pub(crate) fn failure(path: &Path, error: ScannedTreeError) -> Failure {
     match error {
         ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
         ScannedTreeError::Scan(e @ ScanTreeError::TooLarge(_)) => {

@@ -56,8 +56,8 @@ struct Unknowns {
 const UNKNOWNS: Unknowns = Unknowns {
     model: 0.3,
     guess: 0.8,
-    form: 0.03,
-    form_in_leaf: 0.12,
+    form: 0.08,
+    form_in_leaf: 0.15,
     bark: 0.01,
     top: 0.002,
     top_in_leaf: 0.01,

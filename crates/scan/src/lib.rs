@@ -14,6 +14,7 @@
 //! | `radii` | radii from circles, the pipe model where points are few |
 //! | `intervals` | [`Intervals`]: between which values volume, diameter and height lie |
 //! | `tree` | [`find_tree`]: the whole way |
+//! | `plot` | [`find_plot`]: many trees, points shared among them |
 //! | `surface` | [`wood_gap`]: how far the wood of two plants is apart |
 //! | `scanner` | [`scan`]: what a scanner would see of a mesh, for trials |
 
@@ -23,6 +24,7 @@ mod foliage;
 mod ground;
 mod intervals;
 mod levels;
+mod plot;
 mod radii;
 mod scanner;
 mod stems;
@@ -35,6 +37,7 @@ mod ways;
 pub use error::ScanTreeError;
 pub use ground::Ground;
 pub use intervals::{Interval, Intervals};
+pub use plot::{Plot, PlotTree, find_plot};
 pub use radii::PipeSource;
 pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};

@@ -31,6 +31,11 @@ impl<'a> Site<'a> {
         p.y - self.level(p)
     }
 
+    /// Whether a point is low enough to touch the ground.
+    pub(crate) fn is_low(&self, p: DVec3) -> bool {
+        self.over(p) < self.contact
+    }
+
     pub(crate) fn level(&self, p: DVec3) -> f64 {
         self.ground.map_or(self.lowest, |g| g.height(p))
     }

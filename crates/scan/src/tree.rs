@@ -104,6 +104,17 @@ impl Scene {
         Ok(Self { points: all.len(), above, ground, height })
     }
 
+    /// One tree's own points, over a ground that is known.
+    pub(crate) fn of_tree(above: Vec<DVec3>, ground: Option<Ground>) -> Result<Self, ScanTreeError> {
+        if above.len() < FEWEST {
+            return Err(ScanTreeError::TooFew(above.len(), FEWEST));
+        }
+        let lowest = above.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let over = |p: &DVec3| p.y - ground.as_ref().map_or(lowest, |g| g.height(*p));
+        let height = highest(above.iter().map(over), above.len());
+        Ok(Self { points: above.len(), above, ground, height })
+    }
+
     /// Occupied cubes of what stands on the ground.
     pub(crate) fn ways(&self, cell_m: Option<f64>, run: &Run<'_>) -> Result<Ways, Cancelled> {
         run.cancel.check()?;
@@ -300,11 +311,16 @@ fn above_ground(all: &[DVec3], ground: Option<&Ground>) -> (Vec<DVec3>, f64) {
     let over = |p: &DVec3| p.y - ground.map_or(lowest, |g| g.height(*p));
     let thick = ground.map_or(f64::NEG_INFINITY, |g| g.thickness_m.max(0.02));
     let above: Vec<DVec3> = all.iter().copied().filter(|p| over(p) > thick).collect();
-    let mut heights: Vec<f64> = above.iter().step_by(above.len() / 100_000 + 1).map(over).collect();
-    base::sort_numbers(&mut heights);
-    let top = heights.len().saturating_sub(1 + heights.len() / 1000);
-    let height = heights.get(top).copied().unwrap_or(0.0);
+    let height = highest(above.iter().map(over), above.len());
     (above, height)
+}
+
+/// The greatest of so many heights: one in a thousand may be noise.
+fn highest(heights: impl Iterator<Item = f64>, count: usize) -> f64 {
+    let mut few: Vec<f64> = heights.step_by(count / 100_000 + 1).collect();
+    base::sort_numbers(&mut few);
+    let top = few.len().saturating_sub(1 + few.len() / 1000);
+    few.get(top).copied().unwrap_or(0.0)
 }
 
 /// Cubes with three points or more in the mean, as far as the size of the tree allows.

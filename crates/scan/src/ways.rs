@@ -23,6 +23,8 @@ pub(crate) struct Ways {
     pub(crate) parent: Vec<u32>,
     /// The plant that each cube was reached by.
     pub(crate) plant: Vec<u32>,
+    /// How much a metre of way counts for each plant; empty for 1.
+    pub(crate) pace: Vec<f64>,
 }
 
 /// Gaps that were bridged.
@@ -43,7 +45,19 @@ impl Ways {
             })
             .collect();
         let n = means.len();
-        Self { voxels, means, way: vec![f64::INFINITY; n], parent: vec![NONE; n], plant: vec![NONE; n] }
+        Self {
+            voxels,
+            means,
+            way: vec![f64::INFINITY; n],
+            parent: vec![NONE; n],
+            plant: vec![NONE; n],
+            pace: vec![],
+        }
+    }
+
+    /// How long a way of so many metres is for a plant.
+    fn paced(&self, plant: u32, length: f64) -> f64 {
+        length * self.pace.get(plant as usize).copied().unwrap_or(1.0)
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -111,7 +125,7 @@ impl Ways {
                 if k == c || !open(k) {
                     continue;
                 }
-                let next = way + self.means[c].distance(self.means[k]);
+                let next = way + self.paced(self.plant[c], self.means[c].distance(self.means[k]));
                 if next < self.way[k] {
                     self.way[k] = next;
                     self.parent[k] = at;
@@ -161,7 +175,8 @@ impl Ways {
             }
             let mut front = vec![];
             for (_, &(length, to, from)) in best.iter() {
-                self.way[to as usize] = self.way[from as usize] + length;
+                self.way[to as usize] =
+                    self.way[from as usize] + self.paced(self.plant[from as usize], length);
                 self.parent[to as usize] = from;
                 self.plant[to as usize] = self.plant[from as usize];
                 front.push(to);

@@ -4,7 +4,7 @@ use base::{Draw, Executor, Report, Run, Seed, ops};
 use glam::DVec3;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 use plant::{AxisKind, NodeId, Plant};
-use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_tree, scan, wood_gap, wood_mesh};
+use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_plot, find_tree, scan, wood_gap, wood_mesh};
 
 /// Jobs in the other order.
 struct Backwards;
@@ -12,6 +12,13 @@ impl Executor for Backwards {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
         (0..n).rev().for_each(job);
     }
+}
+
+/// The same as large, radii too.
+fn scaled(mut p: Plant, by: f64) -> Plant {
+    p.nodes.position.iter_mut().for_each(|q| *q *= by);
+    p.nodes.radius_m.iter_mut().for_each(|r| *r *= by);
+    p
 }
 
 /// A trunk of 6 m with ten boughs of a metre or two, each with three twigs. Radii follow the pipe model with n = 2.
@@ -331,4 +338,75 @@ fn figures_lie_in_their_intervals() {
     assert!(holds(i.volume_m3, a.wood_volume_m3), "{i:?} {}", a.wood_volume_m3);
     // They are no wider than they are of use.
     assert!(i.volume_m3.high < 1.4 * i.volume_m3.low && i.height_m.high < 1.05 * i.height_m.low, "{i:?}");
+}
+
+#[test]
+fn the_trees_of_a_plot_are_found_and_their_points_shared() {
+    let truth = tree();
+    // Two equal trees whose crowns touch, 2.4 m apart, a third, undergrowth and a person.
+    let places = [DVec3::ZERO, DVec3::new(2.4, 0.14, 0.0), DVec3::new(-0.3, 0.0, -2.4)];
+    let mut meshes: Vec<TriMesh> = places.iter().map(|&p| wood_mesh(&moved(tree(), p))).collect();
+    for (at, top, radius) in [(DVec3::new(1.2, 0.0, 0.5), 0.5, 0.02), (DVec3::new(-2.0, -0.2, 1.5), 1.6, 0.2)]
+    {
+        let mut low = Plant::default();
+        low.add_axis(AxisKind::Stem, None, 0, &[at, at + DVec3::Y * top], None);
+        low.nodes.radius_m.fill(radius);
+        meshes.push(wood_mesh(&low));
+    }
+    meshes.push(ground());
+    let points = cloud(&meshes);
+    let spec = TreeScanSpec::default();
+    let plot = find_plot(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!(plot.trees.len(), 3, "{:?}", plot.trees);
+    let owned: usize = plot.trees.iter().map(|t| t.points).sum();
+    assert_eq!(owned + plot.others + plot.loose + plot.ground_points, plot.points);
+    assert!(plot.others > 500, "the person: {}", plot.others);
+    let a = truth.measure();
+    for (k, tree) in plot.trees.iter().enumerate() {
+        let trunk = DVec3::new(tree.place[0], 0.0, tree.place[1]);
+        let at = places.iter().find(|p| (**p - trunk).with_y(0.0).length() < 0.15);
+        assert!(at.is_some(), "{tree:?}");
+        let found = plot.find_tree(k, &spec, &Run::plain(), &mut Report::default()).unwrap();
+        let b = found.plant.measure();
+        assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{k}: {} {}", b.height_m, a.height_m);
+        assert!((b.dbh_m.unwrap() / a.dbh_m.unwrap() - 1.0).abs() < 0.08, "{k}: {:?} {:?}", b.dbh_m, a.dbh_m);
+        assert!(
+            (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.15,
+            "{k}: {} {}",
+            b.wood_volume_m3,
+            a.wood_volume_m3
+        );
+    }
+    // The same, whichever point comes first.
+    let turned: Vec<DVec3> = points.iter().rev().copied().collect();
+    let again = find_plot(&turned, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    let counts = |p: &scan::Plot| p.trees.iter().map(|t| t.points).collect::<Vec<_>>();
+    assert_eq!(counts(&again), counts(&plot));
+}
+
+/// A bough of the larger tree touches the trunk of the smaller: it takes neither its top nor its boughs.
+#[test]
+fn a_bough_that_touches_a_smaller_tree_does_not_take_its_top() {
+    let (large, small) = (scaled(tree(), 1.4), scaled(tree(), 0.8));
+    // The first bough leaves the trunk along +x at 2.5 m, and ends 2.6 m away.
+    let at = DVec3::new(1.7, 0.1, 0.05);
+    let points = cloud(&[wood_mesh(&large), wood_mesh(&moved(small.clone(), at)), ground()]);
+    let spec = TreeScanSpec::default();
+    let plot = find_plot(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!(plot.trees.len(), 2, "{:?}", plot.trees);
+    for (k, truth) in [large, small].iter().enumerate() {
+        let found = plot.find_tree(k, &spec, &Run::plain(), &mut Report::default()).unwrap();
+        let (a, b) = (truth.measure(), found.plant.measure());
+        println!(
+            "{k}: height {} of {}, volume {} of {}",
+            b.height_m, a.height_m, b.wood_volume_m3, a.wood_volume_m3
+        );
+        assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{k}: {} {}", b.height_m, a.height_m);
+        assert!(
+            (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.2,
+            "{k}: {} {}",
+            b.wood_volume_m3,
+            a.wood_volume_m3
+        );
+    }
 }

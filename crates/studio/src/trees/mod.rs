@@ -44,7 +44,7 @@ pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 use lod::keep_out;
 pub use presets::{PRESETS, Preset};
-pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
+pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;
 
 /// How a tree is meshed. Not saved with it.
