@@ -15,7 +15,7 @@ mod shape;
 mod shared;
 mod sketch;
 
-pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
+pub(crate) use bloom::{BloomAtArgs, BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
 pub(crate) use given::{Given, Seen};

@@ -17,6 +17,7 @@ mod limits;
 mod named;
 mod options;
 mod replay;
+mod scans;
 mod shape;
 mod signals;
 mod times;
