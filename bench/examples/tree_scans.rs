@@ -13,7 +13,7 @@ use burgeon::formats::{ExportSpec, write_cloud_ply, write_qsm};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 use burgeon::plant::Plant;
-use burgeon::scan::{ScannerSpec, TreeScanSpec, find_tree, wood_gap};
+use burgeon::scan::{Interval, ScannerSpec, TreeScanSpec, find_tree, wood_gap};
 use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Preset, TreeOptions, make_tree};
 use rayon::prelude::*;
@@ -89,6 +89,8 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
 struct Row {
     truth: [f64; 3],
     found: [f64; 3],
+    /// Between which values the figures are said to lie.
+    said: [Interval; 3],
 }
 
 fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&PathBuf>) -> Row {
@@ -115,7 +117,7 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
         Ok(found) => found,
         Err(e) => {
             println!("{preset} {seed}: {e}");
-            return Row { truth: [1.0; 3], found: [0.0; 3] };
+            return Row { truth: [1.0; 3], found: [0.0; 3], said: [Interval::default(); 3] };
         }
     };
     let seconds = start.elapsed().as_secs_f64();
@@ -180,7 +182,14 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
             );
         }
     }
+    let i = found.intervals;
+    let said = [i.volume_m3, i.height_m, i.dbh_m.unwrap_or_default()];
+    println!(
+        "  said: volume {:.4} to {:.4}, height {:.2} to {:.2}, DBH {:.4} to {:.4}",
+        said[0].low, said[0].high, said[1].low, said[1].high, said[2].low, said[2].high
+    );
     Row {
+        said,
         truth: [a.wood_volume_m3, a.height_m, a.dbh_m.unwrap_or(1.0)],
         found: [b.wood_volume_m3, b.height_m, b.dbh_m.unwrap_or(0.0)],
     }
@@ -203,13 +212,17 @@ fn main() {
             }
         }
     }
-    let mut within = [0; 3];
+    let (mut within, mut covered) = ([0; 3], [0; 3]);
     let count = cases.len();
     for (preset, seed) in cases {
         let row = trial(&preset, seed, positions, leaves, save.as_ref());
         for ((within, found), truth) in within.iter_mut().zip(row.found).zip(row.truth) {
             *within += usize::from((found / truth - 1.0).abs() <= 0.05);
         }
+        for ((covered, said), truth) in covered.iter_mut().zip(row.said).zip(row.truth) {
+            *covered += usize::from((said.low..=said.high).contains(&truth));
+        }
     }
+    println!("in their intervals: volume {} height {} DBH {} of {count}", covered[0], covered[1], covered[2]);
     println!("within 5 %: volume {} height {} DBH {} of {count}", within[0], within[1], within[2]);
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Offset, Quantity, RegionLaw, Rival, Series, Trial};
 use burgeon::bloom::{MotionSpec, RegisterSpec, ShapeError};
 use burgeon::formats::read_growth;
-use burgeon::{RunReport, Seed, check_law};
+use burgeon::glam::DVec3;
+use burgeon::{RunReport, Seed, Warning, check_law};
 use serde::Serialize;
 
 use crate::args::FitArgs;
@@ -28,12 +29,17 @@ struct LawReport {
     p0: f64,
     r: f64,
     offset: f64,
+    /// On day 0, and what it tends to: K and p0 with the constant under the curve; none where the days tell no end.
+    first_m: f64,
+    final_m: Option<f64>,
     standard_errors: Option<[f64; 3]>,
     r2: f64,
     r2_adjusted: Option<f64>,
     loo_rmse: Option<f64>,
     /// Leave-one-out error of a straight line.
     straight_rmse: Option<f64>,
+    /// Error of each value predicted by the one before it.
+    last_rmse: Option<f64>,
     /// On a bound of the search: the series determines no logistic.
     on_bound: bool,
 }
@@ -50,11 +56,14 @@ impl LawReport {
             p0: l.law.p0,
             r: l.law.r,
             offset: l.law.offset,
+            first_m: l.value(0.0),
+            final_m: l.final_value(),
             standard_errors: l.standard_errors,
             r2: l.r2,
             r2_adjusted: l.r2_adjusted,
             loo_rmse: l.loo_rmse,
             straight_rmse: l.straight_rmse,
+            last_rmse: l.last_rmse,
             on_bound: l.form == Form::Logistic && l.law.on_bound(span),
         }
     }
@@ -136,7 +145,8 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;
-    let table = files::extension(&args.input).is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let table = files::extension(&args.input)
+        .is_some_and(|e| ["csv", "tsv"].iter().any(|known| e.eq_ignore_ascii_case(known)));
     let fitted = if table { of_table(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
     let law = &fitted.law;
     let checked = check_law(law);
@@ -208,7 +218,9 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
     }
     let trials = args.leave_one_out.then(|| {
         machine.with_progress("leave one out", |_| {
-            bloom::leave_one_out(&loaded.stages, &spec, &MotionSpec::default(), &compute)
+            let has_stems = loaded.stages.iter().all(|s| s.organs.iter().any(|o| o.name == "stem"));
+            let up = (loaded.is_named_alike && has_stems).then_some(DVec3::Y);
+            bloom::leave_one_out(&loaded.stages, &spec, &MotionSpec::default(), up, &compute)
         })
     });
     Ok(Fitted {
@@ -232,7 +244,18 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
         let input = files::open_bytes(&args.input)?;
         read_growth(input, args.axes.unit).map_err(|e| Failure::at(&args.input, e))
     });
-    let read = read?;
+    let mut read = read?;
+    if read.unit.is_none() && !given.has("unit") {
+        let most = read.rows.iter().map(|r| r.size).fold(0.0, f64::max);
+        read.warnings.push(Warning {
+            code: "unit-taken",
+            message: format!(
+                "no unit is said: sizes were taken for metres, the largest for {most} m. Write a line `# unit: mm`, put the unit \
+                 into the heading (height_cm), or say --unit"
+            ),
+            fields: Vec::new(),
+        });
+    }
     let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for row in read.rows {
@@ -279,28 +302,41 @@ fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
 fn tell_laws(law: &GrowthLaw) {
     for l in &law.laws {
         let mm = |x: f64| format!("{:.3} mm", x * 1e3);
-        let se = |k: usize, unit: f64| {
-            l.standard_errors.map_or(String::new(), |e| format!(" ± {:.3}", e[k] * unit))
-        };
-        let loo = l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {}", mm(e)));
+        let error = |x: Option<f64>| x.map_or_else(|| "unknown".to_owned(), mm);
         let what = format!("{} region {} {}", l.organ, l.region, l.axis.word());
+        let rivals = format!(
+            "each day predicted by the others: {} off, by a straight line {}, by the day before {}",
+            error(l.loo_rmse),
+            error(l.straight_rmse),
+            error(l.last_rmse)
+        );
         if l.is_determined() {
+            let se = |k: usize, unit: f64| {
+                l.standard_errors.map_or_else(String::new, |e| format!(" ± {:.3}", e[k] * unit))
+            };
+            let end = l.final_value().map_or_else(
+                || "no end that these days tell of".to_owned(),
+                |end| format!("{:.3}{} mm at the end", end * 1e3, se(0, 1e3)),
+            );
             say::line(&format!(
-                "{what}: {}, K {:.3}{} mm, p0 {:.3}{} mm, r {:.4}{} a day, R2 {:.3}{loo}, of a straight line {}",
+                "{what}: {}, {:.3}{} mm on day {}, {end}, r {:.4}{} a day, R2 {:.3}; {rivals}",
                 l.form.word(),
-                l.law.k * 1e3,
-                se(0, 1e3),
-                l.law.p0 * 1e3,
+                l.value(0.0) * 1e3,
                 se(1, 1e3),
+                law.first_day,
                 l.law.r,
                 se(2, 1.0),
-                l.r2,
-                l.straight_rmse.map_or("none".into(), mm)
+                l.r2
             ));
         } else {
             let change = (l.value(law.span_days) - l.value(0.0)) * 1e3;
+            let baseline = match l.form {
+                Form::Still => "the last value",
+                _ => "a straight line",
+            };
             say::line(&format!(
-                "{what}: these days determine no law; {:.3} mm and {change:+.3} mm by the last day{loo}",
+                "{what}: {} days determine no law; {baseline} is the best guess: {:.3} mm and {change:+.3} mm by the last day; {rivals}",
+                l.days.len(),
                 l.value(0.0) * 1e3
             ));
         }

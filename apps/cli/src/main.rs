@@ -32,6 +32,8 @@ mod output;
 mod petals;
 mod picture;
 mod placing;
+mod plot;
+mod plot_map;
 mod poses;
 mod presets;
 mod project;
@@ -72,20 +74,12 @@ fn main() -> ExitCode {
         say::error(&format!("internal error, a bug in burgeon: {what}{place}"));
     }));
     let outcome = std::panic::catch_unwind(|| match cli.command {
-<<<<<<< HEAD
-        Command::Sketch(args) => sketch::sketch(&args),
-        Command::Leaf(args) => leaf::leaf(&args),
-        Command::Grow(args) => grow::grow(&args),
-        Command::Scan(args) => scan::scan(&args),
-        Command::Forest(args) => forest::forest(&args),
-        Command::Shape(args) => shape::shape(&args),
-=======
         Command::Sketch(mut args) => args.settle().and_then(|()| sketch::sketch(&args)),
         Command::Leaf(mut args) => args.settle().and_then(|()| leaf::leaf(&args)),
         Command::Grow(mut args) => args.settle().and_then(|()| grow::grow(&args)),
         Command::Scan(mut args) => args.settle().and_then(|()| scan::scan(&args)),
+        Command::Forest(args) => forest::forest(&args),
         Command::Shape(mut args) => args.settle().and_then(|()| shape::shape(&args)),
->>>>>>> whole
         Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),
         Command::Compare(args) => compare::compare(&args),

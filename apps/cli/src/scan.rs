@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use burgeon::formats::{ExportSpec, PngCache, StructureFormat};
 use burgeon::glam::DVec3;
-use burgeon::scan::{FoundTree, ScanTreeError, TreeScanSpec};
+use burgeon::scan::{FoundTree, Interval, ScanTreeError, TreeScanSpec};
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, UpAxis, make_tree_from_scan,
+    ItemReport, Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, UpAxis,
+    make_tree_from_scan,
 };
 use serde::Serialize;
 
@@ -18,7 +19,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{checks, files, grow, levels, picture, report, say};
+use crate::{checks, files, grow, levels, picture, plot, report, say};
 
 /// What became of the points.
 #[derive(Debug, Serialize)]
@@ -31,16 +32,36 @@ struct ScanTally {
     leaves: u64,
     wood: u64,
     other_things: u64,
+    /// Trunks that were seen at breast height.
+    stems: u64,
+    /// Of large pieces beyond gaps that were not bridged.
+    loose: u64,
+    /// The share of the tree's points near its wood or in its leaves, and for each tenth of the height from below.
+    explained: f64,
+    coverage: [Option<f64>; 10],
     bridges: u64,
+    /// A gap wider than usual that was bridged.
+    wide_gap_m: Option<f64>,
     cell_m: f64,
     rings: u64,
     circles: u64,
     pipe_exponent: f64,
+    /// `fitted`, `default` or `bound`.
+    pipe_source: &'static str,
     pipe_scatter: f64,
+    /// Between which values the figures lie, 9 of 10 times.
+    intervals: Intervals,
     /// Where the stem stood, in the axes of the scan, metres.
     foot_m: [f64; 3],
     /// Whether there was a ground.
     ground_found: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Intervals {
+    height_m: [f64; 2],
+    dbh_m: Option<[f64; 2]>,
+    wood_volume_m3: [f64; 2],
 }
 
 #[derive(Debug, Serialize)]
@@ -51,6 +72,50 @@ struct ScanRun {
 }
 
 pub(crate) fn scan(args: &ScanArgs) -> Outcome {
+    if args.all { plot::scan_all(args) } else { scan_one(args) }
+}
+
+/// The options of the search and of the surface, and what was odd in them.
+pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTreeOptions> {
+    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, told)).transpose()?;
+    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
+        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
+    }
+    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
+    Ok(ScanTreeOptions {
+        scan: TreeScanSpec { cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
+        leaves,
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
+    })
+}
+
+/// Files that the options name and that are read.
+pub(crate) fn inputs_of(args: &ScanArgs) -> Vec<&PathBuf> {
+    let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
+    inputs.into_iter().flatten().collect()
+}
+
+/// A cloud near its origin.
+pub(crate) struct Read {
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) axes: ExportSpec,
+    pub(crate) origin: Origin,
+    pub(crate) ms: f64,
+}
+
+pub(crate) fn read(args: &ScanArgs, machine: &Machine, told: &mut Report) -> Outcome<Read> {
+    // Scanners write +Z up.
+    let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
+    let opened = files::open_cloud(&args.input)?;
+    let (cloud, ms) = machine
+        .timed(|| machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, told)));
+    let mut points = cloud?.points;
+    let mut origin = Origin::default();
+    origin.bring(&mut points, &axes, told);
+    Ok(Read { points, axes, origin, ms })
+}
+
+fn scan_one(args: &ScanArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),
@@ -59,9 +124,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         ("--mtg", args.mtg.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
-    let inputs: Vec<&PathBuf> = inputs.into_iter().flatten().collect();
-    let mut outputs = Outputs::new(&outputs, &inputs)?;
+    let mut outputs = Outputs::new(&outputs, &inputs_of(args))?;
     let plan = |path| files::plan_plant(&mut outputs, path, args.surface.export.lod_files());
     let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
@@ -71,21 +134,10 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     args.surface.check_used(&args.given, format, args.png.is_some())?;
     let mut told = Report::default();
-    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
-    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
-        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
-    }
-    // Scanners write +Z up.
-    let axes = files::axes(args.axes.up.unwrap_or(UpAxis::Z), args.axes.unit);
-    let opened = files::open_cloud(&args.input)?;
-    let (cloud, read_ms) = machine.timed(|| {
-        machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, &mut told))
-    });
-    let mut points = cloud?.points;
+    let mut options = options_of(args, &mut told)?;
+    let Read { points, axes, origin, ms: read_ms } = read(args, &machine, &mut told)?;
     outputs.check()?;
-    let mut origin = Origin::default();
-    origin.bring(&mut points, &axes, &mut told);
-    let at = args.at.map(|[a, b]| {
+    options.scan.at = args.at.map(|[a, b]| {
         // The two coordinates that are not up.
         let file = if matches!(args.axes.up, Some(UpAxis::Y)) {
             DVec3::new(a, 0.0, b)
@@ -95,12 +147,6 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
         let p = origin.place(axes.inward(file));
         [p.x, p.z]
     });
-    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
-    let options = ScanTreeOptions {
-        scan: TreeScanSpec { at, cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
-        leaves,
-        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() },
-    };
     let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
     let made = machine
         .with_progress("scan", |_| make_tree_from_scan(&name, &points, &options, seed, &machine.run()));
@@ -110,6 +156,7 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let levels = made.levels(&args.surface.export.levels(format), &machine.run());
     let levels = levels.map_err(|e| failure(&args.input, e.into()))?;
     let stood = offset + found.foot;
+    name_options(&mut made.item, &found, &axes, offset);
     made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
@@ -165,14 +212,56 @@ fn tally(found: &FoundTree, stood: DVec3, axes: &ExportSpec) -> ScanTally {
         leaves: t.leaves as u64,
         wood: t.wood as u64,
         other_things: t.other_things as u64,
+        stems: t.stems as u64,
+        loose: t.loose as u64,
+        explained: t.explained,
+        coverage: t.coverage,
         bridges: t.bridges as u64,
+        wide_gap_m: t.wide_gap_m,
         cell_m: t.cell_m,
         rings: t.rings as u64,
         circles: t.circles as u64,
         pipe_exponent: t.pipe_exponent,
+        pipe_source: t.pipe_source.word(),
         pipe_scatter: t.pipe_scatter,
+        intervals: Intervals {
+            height_m: pair(found.intervals.height_m),
+            dbh_m: found.intervals.dbh_m.map(pair),
+            wood_volume_m3: pair(found.intervals.volume_m3),
+        },
         foot_m: metres.place(stood),
         ground_found: found.ground.is_some(),
+    }
+}
+
+const fn pair(i: Interval) -> [f64; 2] {
+    [i.low, i.high]
+}
+
+/// Names the options that help below the warnings that they help with.
+fn name_options(item: &mut ItemReport, found: &FoundTree, axes: &ExportSpec, offset: DVec3) {
+    let stem = found.other_stems.first().map(|&[x, z]| {
+        let [a, b, c] = axes.place(DVec3::new(x, 0.0, z) + offset);
+        let [a, b] = if axes.up == UpAxis::Y { [a, c] } else { [a, b] };
+        format!("--at {a:.2},{b:.2}")
+    });
+    let gap = found.tally.next_gap_m.map_or(1.0, |g| (10.0 * g + 1.0).ceil() / 10.0);
+    let gap = format!("--gap {gap}");
+    for (said, told) in item.warnings.iter_mut().zip(&item.told) {
+        let options = match told.code {
+            "several-stems" | "scan-others" => {
+                vec![stem.clone().unwrap_or_else(|| "--at A,B".into()), "--all".into()]
+            }
+            "volume-large-for-stem" => vec!["--all".into(), "--at A,B".into()],
+            "scan-loose" | "tree-cut" | "volume-small-for-stem" => vec![gap.clone()],
+            "scan-gap" => vec!["--gap".into()],
+            "scan-unused" => vec![gap.clone(), "--at A,B".into(), "--all".into()],
+            "scan-unexplained" => vec![gap.clone(), "--cell".into()],
+            "tree-small" | "size-small" | "size-large" => vec!["--unit".into()],
+            "scan-lies-down" => vec!["--up".into()],
+            _ => continue,
+        };
+        *said = format!("{said} ({})", options.join(", "));
     }
 }
 
@@ -180,22 +269,34 @@ fn summary(whole: &ScanRun, png: Option<&Path>) -> String {
     let item = &whole.run.items[0];
     let line = report::summary(item, png);
     let Some(m) = &item.plant else { return line };
-    let dbh = m.dbh_m.map_or_else(String::new, |d| format!(", DBH {:.1} cm", 100.0 * d));
+    let i = &whole.scan.intervals;
+    let dbh = m.dbh_m.zip(i.dbh_m).map_or_else(String::new, |(d, [low, high])| {
+        format!(", DBH {:.1} cm ({:.1} to {:.1})", 100.0 * d, 100.0 * low, 100.0 * high)
+    });
     let found = format!(
-        ", {} points: {:.2} m high{dbh}, {:.4} m3 of wood, {:.0} m of branches; ",
+        ", {} points, {:.0} % explained: {:.2} m high ({:.2} to {:.2}){dbh}, {:.4} m3 of wood ({:.4} to {:.4}), {:.0} m of \
+         branches; ",
         say::grouped(whole.scan.points),
+        100.0 * whole.scan.explained,
         m.height_m,
+        i.height_m[0],
+        i.height_m[1],
         m.wood_volume_m3,
+        i.wood_volume_m3[0],
+        i.wood_volume_m3[1],
         m.length_m
     );
     line.replacen("; ", &found, 1)
 }
 
-fn failure(path: &Path, error: ScannedTreeError) -> Failure {
+pub(crate) fn failure(path: &Path, error: ScannedTreeError) -> Failure {
     match error {
         ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
         ScannedTreeError::Scan(e @ ScanTreeError::TooLarge(_)) => {
             Failure::at(path, format_args!("{e}; --unit mm or --unit cm says the unit"))
+        }
+        ScannedTreeError::Scan(e @ ScanTreeError::TooSmall(_)) => {
+            Failure::at(path, format_args!("{e}; --unit m or --unit cm says the unit"))
         }
         ScannedTreeError::Scan(e @ ScanTreeError::NoStem) => Failure::at(
             path,

@@ -108,6 +108,8 @@ pub(crate) struct Loaded {
     pub(crate) axes: ExportSpec,
     /// What was taken off all scans.
     pub(crate) origin: Origin,
+    /// Organs carry names that were found from day to day, not by hand.
+    pub(crate) is_named_alike: bool,
 }
 
 /// How scans are treated.
@@ -307,6 +309,7 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
         mesh: None,
         axes: *axes,
         origin: Origin::default(),
+        is_named_alike: false,
     };
     for entry in &file.stage {
         if !entry.day.is_finite() {
@@ -319,7 +322,8 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
     }
     alike(&mut out, file.split == Split::Auto);
     let by_hand = file.stage.iter().any(|e| e.organ.is_some() || e.seed.is_some());
-    if file.split == Split::Auto && !by_hand {
+    out.is_named_alike = file.split == Split::Auto && !by_hand;
+    if out.is_named_alike {
         odd(&mut out, machine)?;
     }
     Ok(out)
@@ -525,6 +529,7 @@ pub(crate) fn load_files(
         mesh: None,
         axes: *axes,
         origin: Origin::default(),
+        is_named_alike: false,
     };
     let spec = SegmentSpec::default();
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };

@@ -112,8 +112,14 @@ pub(crate) fn tree_of_scan(
 
 /// What became of the points.
 fn tally(found: &FoundTree) -> serde_json::Value {
-    let t = &found.tally;
+    let (t, i) = (&found.tally, &found.intervals);
+    let pair = |i: burgeon::scan::Interval| [i.low, i.high];
     serde_json::json!({
+        "stems": t.stems, "loose": t.loose, "explained": t.explained, "coverage": t.coverage, "wide_gap_m": t.wide_gap_m,
+        "pipe_source": t.pipe_source.word(),
+        "intervals": {
+            "height_m": pair(i.height_m), "dbh_m": i.dbh_m.map(pair), "wood_volume_m3": pair(i.volume_m3),
+        },
         "points": t.points, "ground": t.ground, "noise": t.noise, "others": t.others, "leaves": t.leaves,
         "wood": t.wood, "other_things": t.other_things, "bridges": t.bridges, "cell_m": t.cell_m, "rings": t.rings,
         "circles": t.circles, "pipe_exponent": t.pipe_exponent, "pipe_scatter": t.pipe_scatter,

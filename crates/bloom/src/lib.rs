@@ -70,7 +70,9 @@ pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
 pub use lattice::{Lattice, Weights};
-pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_sizes, fit_stages};
+pub use law::{
+    GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Prediction, Quantity, RegionLaw, Stage, fit_sizes, fit_stages,
+};
 pub use limb::{Limb, joint, stalk, stem, surface_places};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};

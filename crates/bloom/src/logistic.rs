@@ -78,6 +78,8 @@ pub struct Fit {
     pub r2_adjusted: Option<f64>,
     /// Root of the mean square error of each value predicted from the others; `None` below 4 values.
     pub loo_rmse: Option<f64>,
+    /// Each value less its prediction from the others; empty below 4 values.
+    pub left_out: Vec<f64>,
     /// Sum of squared residuals.
     pub sse: f64,
     /// Steps of Levenberg and Marquardt, over all starts.
@@ -160,29 +162,31 @@ pub(crate) fn fit_logistic_while<E: From<FitError>>(
     let n = days.len();
     if n > LEFT_OUT_IN_TURN {
         is_wanted()?;
-        fit.loo_rmse = Some(left_out_by_leverage(days, values, &fit));
+        fit.left_out = left_out_by_leverage(days, values, &fit);
     } else if n >= 4 {
-        let mut sum = 0.0;
         let (mut d, mut v) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for out in 0..n {
             is_wanted()?;
             d.clear();
             v.clear();
             d.extend((0..n).filter(|&i| i != out).map(|i| days[i]));
-            // The same constant as for the whole series: it is no parameter of the fit.
-            v.extend((0..n).filter(|&i| i != out).map(|i| values[i] - fit.law.offset));
-            let error = fit_core(&d, &v).law.value(days[out]) + fit.law.offset - values[out];
-            sum += error * error;
+            v.extend((0..n).filter(|&i| i != out).map(|i| values[i]));
+            // The constant under the curve, too, is that of the others: nothing of a value is in its prediction.
+            let constant = constant_under(&v, offset).unwrap_or(fit.law.offset);
+            v.iter_mut().for_each(|v| *v -= constant);
+            fit.left_out.push(values[out] - constant - fit_core(&d, &v).law.value(days[out]));
         }
+    }
+    if n >= 4 {
+        let sum: f64 = fit.left_out.iter().map(|e| e * e).sum();
         fit.loo_rmse = Some((sum / n as f64).sqrt());
     }
     Ok(fit)
 }
 
 /// Leave-one-out error by the linearised least squares at the fit: a residual over what is free of it (Allen 1974).
-fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> f64 {
+fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> Vec<f64> {
     let Logistic { k, p0, r, offset } = fit.law;
-    let n = days.len() as f64;
     // In the units of the fit, so that the normal matrix is as sound as there.
     let scale_x = days.iter().map(|d| d.abs()).fold(0.0, f64::max).max(1e-300);
     let slopes = |day: f64| {
@@ -213,7 +217,7 @@ fn left_out_by_leverage(days: &[f64], values: &[f64], fit: &Fit) -> f64 {
         let free = 1.0 - leverage;
         if free > 1e-9 { error / free } else { error }
     });
-    (errors.map(|e| e * e).sum::<f64>() / n).sqrt()
+    errors.collect()
 }
 
 /// [`fit_logistic`] without leaving any value out: `loo_rmse` stays `None`.
@@ -234,10 +238,19 @@ pub fn fit_law(days: &[f64], values: &[f64], offset: Offset) -> Result<Fit, FitE
     if let Some(w) = days.windows(2).find(|w| w[1] <= w[0]) {
         return Err(FitError::Order { day: w[1], before: w[0] });
     }
+    let constant = constant_under(values, offset)?;
+    let shifted: Vec<f64> = values.iter().map(|v| v - constant).collect();
+    let mut fit = fit_core(days, &shifted);
+    fit.law.offset = constant;
+    Ok(fit)
+}
+
+/// The constant under the curve of a series.
+fn constant_under(values: &[f64], offset: Offset) -> Result<f64, FitError> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let changes = low <= 0.0 && high >= 0.0;
-    let constant = if !changes || high <= low {
+    Ok(if !changes || high <= low {
         0.0
     } else if offset == Offset::Zero {
         return Err(FitError::Sign);
@@ -245,11 +258,7 @@ pub fn fit_law(days: &[f64], values: &[f64], offset: Offset) -> Result<Fit, FitE
         low - 0.1 * (high - low)
     } else {
         high + 0.1 * (high - low)
-    };
-    let shifted: Vec<f64> = values.iter().map(|v| v - constant).collect();
-    let mut fit = fit_core(days, &shifted);
-    fit.law.offset = constant;
-    Ok(fit)
+    })
 }
 
 /// Days and values scaled to 1, so that limits and steps mean the same for every series.
@@ -429,6 +438,7 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
             r2: 1.0,
             r2_adjusted: adjusted,
             loo_rmse: None,
+            left_out: vec![],
             sse: 0.0,
             steps: 0,
         };
@@ -471,7 +481,17 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
     let Some(end) = end else {
         let law = Logistic { k: mean, p0: mean, r: 0.0, offset: 0.0 };
         let sse = scaled.sst * scale_y * scale_y;
-        return Fit { law, standard_errors: None, r2: 0.0, r2_adjusted: None, loo_rmse: None, sse, steps };
+        let left_out = vec![];
+        return Fit {
+            law,
+            standard_errors: None,
+            r2: 0.0,
+            r2_adjusted: None,
+            loo_rmse: None,
+            left_out,
+            sse,
+            steps,
+        };
     };
     let [k, p0, r] = end.p;
     let r2 = 1.0 - end.sse / scaled.sst;
@@ -487,6 +507,7 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
         r2,
         r2_adjusted: (degrees > 0).then(|| 1.0 - (1.0 - r2) * (n - 1) as f64 / degrees as f64),
         loo_rmse: None,
+        left_out: vec![],
         sse: end.sse * scale_y * scale_y,
         steps,
     }

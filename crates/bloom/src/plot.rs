@@ -10,7 +10,7 @@ const WIDTH: f64 = 300.0;
 const HEIGHT: f64 = 190.0;
 const COLUMNS: usize = 4;
 
-/// All laws as panels of an SVG: measured values as dots, the fit as a line, K, p0, r and R2 beside. Values in mm,
+/// All laws as panels of an SVG: measured values as dots, the fit as a line, first and final value, r and R2 beside. Values in mm,
 /// days in the series' own count.
 ///
 /// ```
@@ -36,6 +36,17 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
     s
 }
 
+/// What a panel says of its law: where it begins and ends, not K and p0 above some constant.
+fn figures(row: &RegionLaw) -> String {
+    let start = row.value(0.0) * 1e3;
+    let form = row.form.word();
+    match row.final_value() {
+        Some(end) => format!("{form}: {start:.2} to {:.2} r {:.3} R2 {:.3}", end * 1e3, row.law.r, row.r2),
+        None if row.is_determined() => format!("{form}: from {start:.2} r {:.3} R2 {:.3}", row.law.r, row.r2),
+        None => format!("not determined ({form})"),
+    }
+}
+
 fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
     let (left, right, top, bottom) = (x0 + 46.0, x0 + WIDTH - 12.0, y0 + 40.0, y0 + HEIGHT - 22.0);
     let curve: Vec<(f64, f64)> = (0..=60)
@@ -57,16 +68,13 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
     let _ = write!(
         s,
         "<g><text x=\"{left:.0}\" y=\"{:.0}\" font-weight=\"bold\">{} {region} {}</text>\n\
-         <text x=\"{left:.0}\" y=\"{:.0}\" fill=\"#555\">K {:.2} p0 {:.2} r {:.3} R2 {:.3}</text>\n\
+         <text x=\"{left:.0}\" y=\"{:.0}\" fill=\"#555\">{}</text>\n\
          <path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#888\"/>\n",
         y0 + 14.0,
         escaped_xml(&row.organ),
         row.axis.word(),
         y0 + 29.0,
-        row.law.k * 1e3,
-        row.law.p0 * 1e3,
-        row.law.r,
-        row.r2
+        figures(row)
     );
     for (v, y) in [(low + pad, bottom - 2.0), (high - pad, top + 8.0)] {
         let _ = writeln!(s, "<text x=\"{:.0}\" y=\"{y:.0}\" text-anchor=\"end\">{v:.2}</text>", left - 4.0);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{
     BloomError, GrowthLaw, Lattice, LawSpec, MotionSpec, RegisterSpec, RigidMotion, Settled, ShapeError,
-    Stage, Weights, compare, fit_stages, register, settle,
+    Stage, Weights, compare, fit_stages, name_alike, register, settle,
 };
 
 /// A way to say what a day looks like.
@@ -63,6 +63,9 @@ pub struct Trial {
 
 /// Leaves each stage out in turn. Nothing of the stage that is left out takes part in anything but the last measurement.
 ///
+/// `up`: organs carry the names that [`name_alike`] found from stage to stage, this way up. Then names that were found by way of
+/// the stage that is left out are found anew. None: they were given by hand.
+///
 /// Below 3 stages there is nothing to leave out: the answer is empty. Cost: some registrations of each organ a day.
 ///
 /// # Errors
@@ -71,6 +74,7 @@ pub fn leave_one_out(
     stages: &[Stage],
     law: &LawSpec,
     spec: &MotionSpec,
+    up: Option<DVec3>,
     run: &Run<'_>,
 ) -> Result<Vec<Trial>, BloomError> {
     let mut out = Vec::new();
@@ -79,7 +83,13 @@ pub fn leave_one_out(
     }
     for k in 0..stages.len() {
         run.cancel.reached(k as f64 / stages.len() as f64);
-        let rest: Vec<Stage> = (0..stages.len()).filter(|&i| i != k).map(|i| stages[i].clone()).collect();
+        let mut rest: Vec<Stage> = (0..stages.len()).filter(|&i| i != k).map(|i| stages[i].clone()).collect();
+        if let Some(up) = up {
+            for later in k.max(1)..rest.len() {
+                let (before, now) = rest.split_at_mut(later);
+                name_alike(&before[later - 1].organs, &mut now[0].organs, up);
+            }
+        }
         out.push(trial(&rest, &stages[k], law, spec, run)?);
     }
     Ok(out)

@@ -175,8 +175,7 @@ fn petals_at(draft: &Draft<'_>, tip: &Tip, taken: &[bool]) -> Vec<usize> {
     let mut k = 0;
     while let Some(&front) = petals.get(k) {
         k += 1;
-        for i in 0..draft.blades.len() {
-            let blade = &draft.blades[i];
+        for (i, blade) in draft.blades.iter().enumerate() {
             let is_near = blade.middle.distance(tip.at) < LIMITS.reach * largest;
             let is_hidden = draft.hidden.contains_key(&blade.stroke);
             if !taken[i]

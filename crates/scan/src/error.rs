@@ -12,6 +12,15 @@ pub enum ScanTreeError {
     /// The cloud is as large as no tree is.
     #[error("the cloud is {0:.0} m high: no tree is. Say its unit (mm or cm), or cut the tree out of it")]
     TooLarge(f64),
+    /// The cloud is as small as no tree is.
+    #[error("the cloud is {} high: no tree is. Say its unit (m or cm)", small(*.0))]
+    TooSmall(f64),
+    /// Seen from the air: crowns, and no stems.
+    #[error(
+        "the cloud looks as if it was scanned from the air: {0:.1} points above each square metre over {1:.0} m, and none \
+         of them show a stem. Trees are found in scans from the ground alone"
+    )]
+    Airborne(f64, f64),
     /// Nothing that stands on the ground goes up as a stem does.
     #[error(
         "nothing in the cloud stands on the ground and goes up as a stem does; check which axis points up and \
@@ -31,6 +40,10 @@ pub enum ScanTreeError {
     Cancelled(#[from] Cancelled),
 }
 
+fn small(height_m: f64) -> String {
+    format!("{:.1} mm", 1e3 * height_m)
+}
+
 /// A place on the ground, to a centimetre.
 fn pair([x, y]: &[f64; 2]) -> String {
     format!("{x:.2},{y:.2}")
@@ -39,6 +52,8 @@ fn pair([x, y]: &[f64; 2]) -> String {
 base::coded!(ScanTreeError {
     Self::TooFew(is, wanted) => "scan-tree-few" { is, wanted },
     Self::TooLarge(height_m) => "scan-tree-large" { height_m },
+    Self::TooSmall(height_m) => "scan-tree-small" { height_m },
+    Self::Airborne(density, wide_m) => "scan-tree-airborne" { density, wide_m },
     Self::NoStem => "scan-tree-no-stem" {},
     Self::NotThere(at, within_m, nearest) => "scan-tree-not-there" {
         x = at[0], z = at[1], within_m, near_x = nearest[0], near_z = nearest[1]

@@ -113,9 +113,27 @@ fn error_of(c: &Circle, noise: f64) -> f64 {
 /// The largest loads that the pipe model is fitted to at first: down to this share.
 const OCTAVES: f64 = 16.0;
 
+/// Slopes b of the pipe model that a fit may have: exponents of 1.25 to 4.
+const SLOPES: [f64; 2] = [0.25, 0.8];
+
+/// Where the exponent of the pipe model comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PipeSource {
+    /// Fitted to circles.
+    Fitted,
+    /// The fit ended on a bound of what is looked at, 1.25 or 4.
+    OnBound,
+    /// Too few circles are sound: that of other trees.
+    #[default]
+    Default,
+}
+
+base::words!(PipeSource { Fitted = "fitted", OnBound = "bound", Default = "default" });
+
 /// The pipe model as measured: `ln r = a + b ln load`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipes {
+    pub(crate) source: PipeSource,
     pub(crate) a: f64,
     pub(crate) b: f64,
     /// Scatter of circles about it.
@@ -147,7 +165,8 @@ impl Pipes {
             .map(|(load, m)| (ops::ln(*load), ops::ln(m.radius), m.error))
             .collect();
         // Without circles: what is usual for trees.
-        let usual = Self { a: ops::ln(0.006), b: 0.42, scatter: 0.4, count: sound.len() };
+        let source = PipeSource::Default;
+        let usual = Self { source, a: ops::ln(0.006), b: 0.42, scatter: 0.4, count: sound.len() };
         if sound.len() < 8 {
             let mut off: Vec<f64> = sound.iter().map(|(l, r, _)| r - usual.b * l).collect();
             base::sort_numbers(&mut off);
@@ -178,8 +197,10 @@ impl Pipes {
             let [w, l, ll, r, lr] = sums;
             let det = w * ll - l * l;
             let b = if det > 1e-9 * w * w { (w * lr - l * r) / det } else { fit.b };
-            let b = b.clamp(0.25, 0.8);
-            fit = Self { a: (r - b * l) / w.max(1e-300), b, ..fit };
+            let source =
+                if b > SLOPES[0] && b < SLOPES[1] { PipeSource::Fitted } else { PipeSource::OnBound };
+            let b = b.clamp(SLOPES[0], SLOPES[1]);
+            fit = Self { source, a: (r - b * l) / w.max(1e-300), b, ..fit };
             fit.scatter = fit.spread(&sound, &weight);
         }
         fit
@@ -194,7 +215,7 @@ impl Pipes {
         for _ in 0..300 {
             let [p, q] = [0; 2].map(|_: u8| few[stream.below(few.len())]);
             let b = (p.1 - q.1) / (p.0 - q.0);
-            if (p.0 - q.0).abs() < 1.0 || !(0.25..0.8).contains(&b) {
+            if (p.0 - q.0).abs() < 1.0 || !(SLOPES[0]..SLOPES[1]).contains(&b) {
                 continue;
             }
             let line = Self { a: p.1 - b * p.0, b, ..usual };
@@ -228,14 +249,23 @@ impl Pipes {
     }
 }
 
-/// Radii along one axis. `below`: the offset of its bearer from the pipe model. Returns radii and offsets.
+/// Radii along an axis.
+pub(crate) struct Smoothed {
+    pub(crate) radii: Vec<f64>,
+    /// Offsets of their logarithms from the pipe model.
+    pub(crate) offsets: Vec<f64>,
+    /// Standard errors of the offsets.
+    pub(crate) errors: Vec<f64>,
+}
+
+/// Radii along one axis. `below`: the offset of its bearer from the pipe model.
 pub(crate) fn smooth(
     loads: &[f64],
     measured: &[Option<Measured>],
     pipes: &Pipes,
     below: Option<f64>,
     step: f64,
-) -> (Vec<f64>, Vec<f64>) {
+) -> Smoothed {
     let n = loads.len();
     let start = pipes.scatter * pipes.scatter;
     let wander = step * step;
@@ -265,10 +295,12 @@ pub(crate) fn smooth(
     for i in (0..n.saturating_sub(1)).rev() {
         let back = variance[i] / ahead_v[i + 1].max(1e-12);
         mean[i] += back * (mean[i + 1] - ahead[i + 1]);
+        variance[i] += back * back * (variance[i + 1] - ahead_v[i + 1]);
     }
     let mut logs: Vec<f64> = (0..n).map(|i| pipes.log_radius(loads[i]) + mean[i]).collect();
     falling(&mut logs);
-    (logs.into_iter().map(ops::exp).collect(), mean)
+    let radii = logs.into_iter().map(ops::exp).collect();
+    Smoothed { radii, offsets: mean, errors: variance.into_iter().map(|v| v.max(0.0).sqrt()).collect() }
 }
 
 /// The nearest sequence that never rises (pool adjacent violators).
@@ -310,13 +342,14 @@ mod tests {
 
     #[test]
     fn what_was_not_measured_follows_the_model_and_outliers_count_little() {
-        let pipes = Pipes { a: ops::ln(0.01), b: 0.5, scatter: 0.2, count: 100 };
+        let source = PipeSource::Fitted;
+        let pipes = Pipes { source, a: ops::ln(0.01), b: 0.5, scatter: 0.2, count: 100 };
         let loads: Vec<f64> = (1..=20).rev().map(f64::from).collect();
         let mut measured: Vec<Option<Measured>> =
             loads.iter().map(|l| Some(at(1.2 * ops::exp(pipes.log_radius(*l)), 0.05))).collect();
         measured[4] = Some(at(1.0, 0.05));
         measured[10..].fill(None);
-        let (r, _) = smooth(&loads, &measured, &pipes, None, 0.03);
+        let r = smooth(&loads, &measured, &pipes, None, 0.03).radii;
         for (r, l) in r.iter().zip(&loads).take(10) {
             assert!((r / ops::exp(pipes.log_radius(*l)) - 1.2).abs() < 0.06, "{r} {l}");
         }

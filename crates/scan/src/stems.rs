@@ -6,8 +6,9 @@ use glam::DVec3;
 use crate::ScanTreeError;
 use crate::ground::Ground;
 use crate::levels::Rings;
+use crate::trunks::Trunk;
 use crate::wanted::{ScanTally, TreeScanSpec};
-use crate::ways::{NONE, Ways};
+use crate::ways::{Bridges, NONE, Ways};
 
 /// Where a tree stands: heights over the ground.
 pub(crate) struct Site<'a> {
@@ -30,7 +31,12 @@ impl<'a> Site<'a> {
         p.y - self.level(p)
     }
 
-    fn level(&self, p: DVec3) -> f64 {
+    /// Whether a point is low enough to touch the ground.
+    pub(crate) fn is_low(&self, p: DVec3) -> bool {
+        self.over(p) < self.contact
+    }
+
+    pub(crate) fn level(&self, p: DVec3) -> f64 {
         self.ground.map_or(self.lowest, |g| g.height(p))
     }
 }
@@ -53,7 +59,17 @@ struct Contact {
     /// Half of the longer side of its box, seen from above.
     half: f64,
     piece: u32,
+    /// A trunk goes up from here.
+    is_trunk: bool,
 }
+
+/// A contact this far from a trunk, beyond its bark, is where that trunk stands, metres.
+const FOOT_OF_TRUNK: f64 = 0.3;
+/// Trunks of one piece that are farther apart are two trees, metres.
+const TWO_TREES: f64 = 1.0;
+
+/// A piece of so many cubes is no dust.
+const LARGE: u32 = 40;
 
 /// What stands on the ground, the chosen tree first.
 pub(crate) struct Stems {
@@ -70,6 +86,7 @@ impl Stems {
         ways: &Ways,
         site: &Site<'_>,
         spec: &TreeScanSpec,
+        trunks: &[Trunk],
         cancel: &CancelToken,
     ) -> Result<Self, ScanTreeError> {
         let (piece, sizes) = ways.pieces(2, |_| true, cancel)?;
@@ -80,6 +97,7 @@ impl Stems {
             let under = site.contact.max(ROOTED * site.height);
             contacts = touching(ways, site, &piece, (0.5 * under, under), cancel)?;
         }
+        stand_on(trunks, &piece, &solid, &mut contacts);
         // How high each piece reaches, and which contact a loose piece above belongs to: the nearest below it.
         let mut top = vec![0.0_f64; sizes.len()];
         for (c, &p) in piece.iter().enumerate() {
@@ -94,7 +112,17 @@ impl Stems {
                 *s = 0.0;
             }
         }
+        let trunk_there = |[x, z]: [f64; 2]| {
+            let away = |t: &&Trunk| (t.middle - DVec3::new(x, t.middle.y, z)).length();
+            trunks.iter().min_by(|a, b| away(a).total_cmp(&away(b))).filter(|t| away(t) <= spec.at_within_m)
+        };
         let best = match spec.at {
+            Some(at) if trunk_there(at).is_some() => {
+                // The stem that is nearest, not the nearest weed.
+                let stands =
+                    trunk_there(at).map(|t| (0..contacts.len()).filter(|&i| stands_on(t, &contacts[i])));
+                stands.into_iter().flatten().max_by(|&a, &b| score[a].total_cmp(&score[b]).then(b.cmp(&a)))
+            }
             Some([x, z]) => {
                 let flat = |k: &Contact| {
                     ((k.middle.x - x) * (k.middle.x - x) + (k.middle.z - z) * (k.middle.z - z)).sqrt()
@@ -125,7 +153,8 @@ impl Stems {
                 feet.push(k);
             } else if same {
                 // A twig that hangs to the ground belongs to the tree; a stem as thick is another's.
-                if k.half > 0.5 * main.half && solid(&k) && away > 1.5 {
+                let is_stem = k.half > 0.5 * main.half && solid(&k) && away > 1.5;
+                if is_stem || (k.is_trunk && away > TWO_TREES) {
                     others.push(k);
                 }
             } else if k.cubes.len() >= 3 {
@@ -135,15 +164,14 @@ impl Stems {
         Ok(Self { piece, sizes, feet, others })
     }
 
-    /// Gives every cube to what it hangs together with: plant 0 is the tree. Gaps up to `gap` are bridged; returns how
-    /// many of the tree.
+    /// Gives every cube to what it hangs together with: plant 0 is the tree. Gaps up to `gap` are bridged.
     pub(crate) fn claim(
         &self,
         site: &Site<'_>,
         ways: &mut Ways,
         gap: f64,
         cancel: &CancelToken,
-    ) -> Result<usize, Cancelled> {
+    ) -> Result<Bridges, Cancelled> {
         let mut front = vec![];
         for (plant, k) in self.feet.iter().map(|k| (0, k)).chain((1..).zip(&self.others)) {
             // From the lowest cubes up.
@@ -157,11 +185,58 @@ impl Stems {
             }
         }
         ways.spread(&front, |_| true, cancel)?;
-        // Dust stays where it is.
+        self.bridge(ways, gap, cancel)
+    }
+
+    /// Bridges gaps up to `gap`. Dust stays where it is.
+    fn bridge(&self, ways: &mut Ways, gap: f64, cancel: &CancelToken) -> Result<Bridges, Cancelled> {
         let sizes = &self.sizes;
         let piece: Vec<u32> =
             self.piece.iter().map(|&p| if sizes[p as usize] >= 4 { p } else { NONE }).collect();
         ways.bridge(gap, &piece, |c| piece[c] != NONE, cancel)
+    }
+
+    /// The points that are the tree's, and those of large pieces that hang together with nothing that stands.
+    pub(crate) fn loose(&self, ways: &Ways) -> [usize; 2] {
+        let mut counts = [0; 2];
+        for c in 0..ways.len() {
+            let is_large = self.sizes[self.piece[c] as usize] >= LARGE;
+            match ways.plant[c] {
+                0 => counts[0] += ways.voxels.rows(c).len(),
+                NONE if is_large => counts[1] += ways.voxels.rows(c).len(),
+                _ => {}
+            }
+        }
+        counts
+    }
+
+    /// Bridges a wider gap to large pieces, then usual ones beyond it: the widest that was bridged.
+    pub(crate) fn reach_over(
+        &self,
+        ways: &mut Ways,
+        (usual, wide): (f64, f64),
+        cancel: &CancelToken,
+    ) -> Result<Bridges, Cancelled> {
+        let large: Vec<u32> =
+            self.piece.iter().map(|&p| if self.sizes[p as usize] >= LARGE { p } else { NONE }).collect();
+        let over = ways.bridge(wide, &large, |c| large[c] != NONE, cancel)?;
+        let more = self.bridge(ways, usual, cancel)?;
+        Ok(Bridges { count: over.count + more.count, longest: over.longest })
+    }
+
+    /// How far the nearest large piece that hangs together with nothing is from the tree; none without one.
+    pub(crate) fn next_gap(&self, ways: &Ways) -> Option<f64> {
+        let places: Vec<DVec3> =
+            (0..ways.len()).filter(|&c| ways.plant[c] == 0).map(|c| ways.means[c]).collect();
+        let tree = geom::KdTree::new(&places);
+        let lost = (0..ways.len())
+            .filter(|&c| ways.plant[c] == NONE && self.sizes[self.piece[c] as usize] >= LARGE)
+            .step_by(7);
+        let distances = lost.filter_map(|c| {
+            let near = tree.nearest(ways.means[c], f64::INFINITY)?;
+            Some(places[near].distance(ways.means[c]))
+        });
+        distances.reduce(f64::min)
     }
 
     pub(crate) fn tell(&self, ways: &Ways, report: &mut Report, tally: &mut ScanTally) {
@@ -207,7 +282,8 @@ fn touching(
 ) -> Result<Vec<Contact>, Cancelled> {
     let over = |c: usize| site.over(ways.means[c]);
     let (contact_of, counts) = ways.pieces(2, |c| over(c) < under, cancel)?;
-    let none = Contact { cubes: vec![], middle: DVec3::ZERO, half: f64::INFINITY, piece: NONE };
+    let none =
+        Contact { cubes: vec![], middle: DVec3::ZERO, half: f64::INFINITY, piece: NONE, is_trunk: false };
     let mut contacts = vec![none; counts.len()];
     for (c, &k) in (0_u32..).zip(&contact_of) {
         if k != NONE {
@@ -227,6 +303,28 @@ fn touching(
         k.half = 0.5 * (b - a).x.max((b - a).z);
     }
     Ok(contacts)
+}
+
+/// Whether a contact is where a trunk stands.
+fn stands_on(trunk: &Trunk, contact: &Contact) -> bool {
+    (contact.middle - trunk.middle).with_y(0.0).length() < trunk.radius + FOOT_OF_TRUNK
+}
+
+/// Marks the contacts that trunks stand on. A trunk whose foot is lost in what grows around it is a contact itself.
+fn stand_on(trunks: &[Trunk], piece: &[u32], solid: &dyn Fn(&Contact) -> bool, contacts: &mut Vec<Contact>) {
+    for trunk in trunks {
+        let mut is_seen = false;
+        for k in contacts.iter_mut().filter(|k| solid(k) && stands_on(trunk, k)) {
+            k.is_trunk = true;
+            is_seen = true;
+        }
+        if !is_seen {
+            let cubes = trunk.cubes.clone();
+            let piece = piece[cubes[0] as usize];
+            let (middle, half) = (trunk.middle, trunk.radius);
+            contacts.push(Contact { cubes, middle, half, piece, is_trunk: true });
+        }
+    }
 }
 
 /// Loose pieces count for the contact that is nearest seen from above.

@@ -53,6 +53,11 @@ pub fn wood_gap(from: &Plant, to: &Plant, step: f64, least_radius_m: f64) -> Opt
     })
 }
 
+/// Places on the surface of wood about `step` metres apart.
+pub(crate) fn surface_places(plant: &Plant, step: f64) -> Vec<DVec3> {
+    places(plant, step, 0.0).0
+}
+
 /// Places on the surface of wood, with their normals.
 fn places(plant: &Plant, step: f64, least: f64) -> (Vec<DVec3>, Vec<DVec3>) {
     let (mut points, mut normals) = (vec![], vec![]);

@@ -8,9 +8,12 @@ use plant::{AxisKind, NodeId, Plant};
 use crate::ScanTreeError;
 use crate::foliage;
 use crate::ground::Ground;
+use crate::intervals::{Intervals, SeenNode};
 use crate::levels::Rings;
-use crate::radii::{Measured, Pipes, measure, smooth};
+use crate::radii::{Measured, Pipes, Smoothed, measure, smooth};
 use crate::stems::{Site, Stems};
+use crate::surface::surface_places;
+use crate::trunks::{Trunk, find_trunks};
 use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 
@@ -25,6 +28,10 @@ pub struct FoundTree {
     pub ground: Option<Ground>,
     /// What became of the points.
     pub tally: ScanTally,
+    /// Between which values its figures lie.
+    pub intervals: Intervals,
+    /// Where other trunks stand that were seen, x and z in the cloud.
+    pub other_stems: Vec<[f64; 2]>,
 }
 
 /// Least points of a tree.
@@ -35,6 +42,12 @@ const RESOLVED: f64 = 1.0;
 const STEEP: f64 = 3.0;
 /// Higher is no tree, metres: the highest is 116.
 const HIGHEST: f64 = 130.0;
+/// Lower is no tree that a scanner resolves, metres: a cloud in metres that is read as one in mm.
+const LOWEST: f64 = 0.15;
+/// A cloud that is wider, metres, has fewer points above a square metre and shows no trunk is one from the air.
+const AIRBORNE: (f64, f64) = (15.0, 500.0);
+/// Where so much of a tree lies beyond a gap, gaps of so much of its height, and of so many metres, are bridged.
+const LOOSE: (f64, f64, f64) = (0.3, 0.15, 2.0);
 
 /// Finds a tree in a cloud: ground and noise go, other things go, ways from the foot make the skeleton, circles and the
 /// pipe model its radii.
@@ -51,45 +64,188 @@ pub fn find_tree(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<FoundTree, ScanTreeError> {
-    let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() <= 1e9).collect();
-    if all.len() < FEWEST {
-        return Err(ScanTreeError::TooFew(all.len(), FEWEST));
+    Scene::read(points, run, report)?.tree(spec, run, report)
+}
+
+/// What stands on the ground.
+pub(crate) struct Scene {
+    /// The points above the ground.
+    pub(crate) above: Vec<DVec3>,
+    pub(crate) ground: Option<Ground>,
+    /// Of the highest point over the ground but for strays, metres.
+    pub(crate) height: f64,
+    /// Usable points, of the ground too.
+    pub(crate) points: usize,
+}
+
+impl Scene {
+    /// Takes the ground away.
+    pub(crate) fn read(points: &[DVec3], run: &Run<'_>, report: &mut Report) -> Result<Self, ScanTreeError> {
+        let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() <= 1e9).collect();
+        if all.len() < FEWEST {
+            return Err(ScanTreeError::TooFew(all.len(), FEWEST));
+        }
+        run.cancel.check()?;
+        let ground = Ground::find(&all);
+        run.cancel.check()?;
+        let (low, high) =
+            all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        if high - low < LOWEST {
+            return Err(ScanTreeError::TooSmall(high - low));
+        }
+        let (above, height) = above_ground(&all, ground.as_ref());
+        if height > HIGHEST {
+            return Err(ScanTreeError::TooLarge(height));
+        }
+        if above.len() < FEWEST {
+            return Err(ScanTreeError::TooFew(above.len(), FEWEST));
+        }
+        warn_of_ground(&all, ground.as_ref(), report);
+        Ok(Self { points: all.len(), above, ground, height })
     }
-    let mut tally = ScanTally { points: all.len(), ..ScanTally::default() };
-    run.cancel.check()?;
-    let ground = Ground::find(&all);
-    run.cancel.check()?;
-    let (above, height) = above_ground(&all, ground.as_ref());
-    if height > HIGHEST {
-        return Err(ScanTreeError::TooLarge(height));
+
+    /// One tree's own points, over a ground that is known.
+    pub(crate) fn of_tree(above: Vec<DVec3>, ground: Option<Ground>) -> Result<Self, ScanTreeError> {
+        if above.len() < FEWEST {
+            return Err(ScanTreeError::TooFew(above.len(), FEWEST));
+        }
+        let lowest = above.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let over = |p: &DVec3| p.y - ground.as_ref().map_or(lowest, |g| g.height(*p));
+        let height = highest(above.iter().map(over), above.len());
+        Ok(Self { points: above.len(), above, ground, height })
     }
-    tally.ground = all.len() - above.len();
-    if above.len() < FEWEST {
-        return Err(ScanTreeError::TooFew(above.len(), FEWEST));
+
+    /// Occupied cubes of what stands on the ground.
+    pub(crate) fn ways(&self, cell_m: Option<f64>, run: &Run<'_>) -> Result<Ways, Cancelled> {
+        run.cancel.check()?;
+        let cell = match cell_m {
+            Some(cell) => cell,
+            None => cell_of(&self.above, self.height, run)?,
+        };
+        Ok(Ways::new(&self.above, cell))
     }
-    run.cancel.check()?;
-    let cell = match spec.cell_m {
-        Some(cell) => cell,
-        None => cell_of(&above, height, run)?,
-    };
-    let mut ways = Ways::new(&above, cell);
-    tally.cell_m = ways.voxels.cell();
-    run.cancel.check()?;
-    warn_of_ground(&all, ground.as_ref(), report);
-    let site = Site::of(&above, ground.as_ref(), height, cell);
-    let stems = Stems::find(&ways, &site, spec, run.cancel)?;
-    let gap = spec.gap_m.unwrap_or((0.04 * height).clamp(0.02 * height.min(5.0), 0.6)).max(4.0 * cell);
-    tally.bridges = stems.claim(&site, &mut ways, gap, run.cancel)?;
-    run.cancel.check()?;
-    stems.tell(&ways, report, &mut tally);
-    let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
-    tally.scattered = foliage::scattered(&ways, mine, run.cancel)?;
-    let in_leaf = tally.scattered > foliage::SCATTERED;
-    let woody = if in_leaf { Some(foliage::wood(&ways, mine, run.cancel)?) } else { None };
-    let is_wood = |c: usize| mine(c) && woody.as_ref().is_none_or(|w| w[c]);
-    let leaves = (0..ways.len()).filter(|&c| mine(c) && !is_wood(c));
-    tally.leaves = leaves.map(|c| ways.voxels.rows(c).len()).sum();
-    run.cancel.check()?;
+
+    pub(crate) fn site(&self, ways: &Ways) -> Site<'_> {
+        Site::of(&self.above, self.ground.as_ref(), self.height, ways.voxels.cell())
+    }
+
+    /// An error if this is a scan from the air.
+    pub(crate) fn check_stems(&self, trunks: &[Trunk]) -> Result<(), ScanTreeError> {
+        let (low, high) =
+            self.above.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
+        let size = high - low;
+        let density = self.above.len() as f64 / (size.x * size.z);
+        let wide = size.x.min(size.z);
+        if trunks.is_empty() && wide > AIRBORNE.0 && density < AIRBORNE.1 {
+            return Err(ScanTreeError::Airborne(density, wide));
+        }
+        Ok(())
+    }
+
+    /// The tree of it, or the one that is wanted.
+    pub(crate) fn tree(
+        self,
+        spec: &TreeScanSpec,
+        run: &Run<'_>,
+        report: &mut Report,
+    ) -> Result<FoundTree, ScanTreeError> {
+        let mut tally =
+            ScanTally { points: self.points, ground: self.points - self.above.len(), ..ScanTally::default() };
+        let mut ways = self.ways(spec.cell_m, run)?;
+        tally.cell_m = ways.voxels.cell();
+        run.cancel.check()?;
+        let site = self.site(&ways);
+        let trunks = find_trunks(&self.above, &ways, &site, spec.noise_m, run.cancel)?;
+        if spec.at.is_none() {
+            self.check_stems(&trunks)?;
+        }
+        tally.stems = trunks.len();
+        let stems = Stems::find(&ways, &site, spec, &trunks, run.cancel)?;
+        self.claim(&stems, &mut ways, spec, &mut tally, (run, report))?;
+        let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
+        tally.scattered = foliage::scattered(&ways, mine, run.cancel)?;
+        let in_leaf = tally.scattered > foliage::SCATTERED;
+        let woody = if in_leaf { Some(foliage::wood(&ways, mine, run.cancel)?) } else { None };
+        let is_wood = |c: usize| mine(c) && woody.as_ref().is_none_or(|w| w[c]);
+        let is_leaf = |c: usize| mine(c) && !is_wood(c);
+        tally.leaves = (0..ways.len()).filter(|&c| is_leaf(c)).map(|c| ways.voxels.rows(c).len()).sum();
+        run.cancel.check()?;
+        warn_of_leaves(in_leaf, &tally, report);
+        let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), is_wood, run.cancel)?;
+        run.cancel.check()?;
+        rings.prune(3.0);
+        tally.rings = rings.rings.iter().filter(|r| r.alive).count();
+        let axes = rings.axes();
+        let mut found = measure(&self.above, &ways, &rings, &axes, spec.noise_m, run)?;
+        centre(&mut rings, &axes, &found);
+        // Along the new middles the sections are truer.
+        found = measure(&self.above, &ways, &rings, &axes, spec.noise_m, run)?;
+        centre(&mut rings, &axes, &found);
+        tally.circles = found.iter().flatten().flatten().count();
+        for ring in rings.rings.iter().filter(|r| r.alive) {
+            tally.wood += ring.cubes.iter().map(|&c| ways.voxels.rows(c as usize).len()).sum::<usize>();
+        }
+        run.cancel.check()?;
+        let foot = stems.foot(&site, &rings);
+        let Wood { plant, pipes, nodes } = wood(&self.above, &ways, &rings, &axes, &found, foot, in_leaf);
+        (tally.pipe_exponent, tally.pipe_scatter) = (1.0 / pipes.b, pipes.scatter);
+        (tally.pipe_source, tally.pipe_circles) = (pipes.source, pipes.count);
+        warn_of_pipes(in_leaf, &tally, report);
+        explain(&mut tally, (&plant, foot), (&ways, &site), is_leaf);
+        debug_assert_eq!(plant.validate().next(), None, "a found tree is sound");
+        let intervals = Intervals::new(&plant, &nodes, &tally, in_leaf);
+        let apart = |t: &&Trunk| (t.middle - foot).with_y(0.0).length() > t.radius + 1.0;
+        let other_stems = trunks.iter().filter(apart).map(|t| [t.middle.x, t.middle.z]).collect();
+        Ok(FoundTree { plant, foot, ground: self.ground, tally, intervals, other_stems })
+    }
+
+    /// Gives the cubes to what stands on the ground; a crown that lies beyond a gap belongs to the stem below it.
+    fn claim(
+        &self,
+        stems: &Stems,
+        ways: &mut Ways,
+        spec: &TreeScanSpec,
+        tally: &mut ScanTally,
+        (run, report): (&Run<'_>, &mut Report),
+    ) -> Result<(), Cancelled> {
+        let site = self.site(ways);
+        let cell = ways.voxels.cell();
+        let usual = spec
+            .gap_m
+            .unwrap_or((0.04 * self.height).clamp(0.02 * self.height.min(5.0), 0.6))
+            .max(4.0 * cell);
+        let bridges = stems.claim(&site, ways, usual, run.cancel)?;
+        tally.bridges = bridges.count;
+        run.cancel.check()?;
+        let [tree, loose] = stems.loose(ways);
+        let (share, by_height, most) = LOOSE;
+        let wide = (by_height * self.height).min(most);
+        if spec.gap_m.is_none() && loose as f64 > share * (tree + loose) as f64 && wide > usual {
+            let over = stems.reach_over(ways, (usual, wide), run.cancel)?;
+            let [_, left] = stems.loose(ways);
+            tally.bridges += over.count;
+            if over.longest > usual && left < loose {
+                tally.wide_gap_m = Some(over.longest);
+                let gap_m = (over.longest * 100.0).round() / 100.0;
+                let percent = (100.0 * (loose - left) as f64 / (tree + loose) as f64).round();
+                base::warn!(
+                    report,
+                    "scan-gap",
+                    { percent = percent, gap_m = gap_m },
+                    "{percent} % of the points lay beyond a gap, which was bridged ({gap_m} m): check that what is on both \
+                     sides of it is one tree, or say which gaps may be bridged"
+                );
+            }
+        }
+        tally.loose = stems.loose(ways)[1];
+        tally.next_gap_m = if tally.loose > 0 { stems.next_gap(ways) } else { None };
+        run.cancel.check()?;
+        stems.tell(ways, report, tally);
+        Ok(())
+    }
+}
+
+fn warn_of_leaves(in_leaf: bool, tally: &ScanTally, report: &mut Report) {
     if in_leaf {
         base::warn!(
             report,
@@ -99,24 +255,9 @@ pub fn find_tree(
              the wood that was seen; a scan without leaves is truer"
         );
     }
-    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), is_wood, run.cancel)?;
-    run.cancel.check()?;
-    rings.prune(3.0);
-    tally.rings = rings.rings.iter().filter(|r| r.alive).count();
-    let axes = rings.axes();
-    let mut found = measure(&above, &ways, &rings, &axes, spec.noise_m, run)?;
-    centre(&mut rings, &axes, &found);
-    // Along the new middles the sections are truer.
-    found = measure(&above, &ways, &rings, &axes, spec.noise_m, run)?;
-    centre(&mut rings, &axes, &found);
-    tally.circles = found.iter().flatten().flatten().count();
-    for ring in rings.rings.iter().filter(|r| r.alive) {
-        tally.wood += ring.cubes.iter().map(|&c| ways.voxels.rows(c as usize).len()).sum::<usize>();
-    }
-    run.cancel.check()?;
-    let foot = stems.foot(&site, &rings);
-    let (plant, pipes) = wood(&above, &ways, &rings, &axes, &found, foot, in_leaf);
-    (tally.pipe_exponent, tally.pipe_scatter) = (1.0 / pipes.b, pipes.scatter);
+}
+
+fn warn_of_pipes(in_leaf: bool, tally: &ScanTally, report: &mut Report) {
     let exponent = tally.pipe_exponent;
     if in_leaf && exponent > STEEP {
         base::warn!(
@@ -127,8 +268,41 @@ pub fn find_tree(
              {exponent:.1}, trees have 1.5 to 3); scan the tree without leaves"
         );
     }
-    debug_assert_eq!(plant.validate().next(), None, "a found tree is sound");
-    Ok(FoundTree { plant, foot, ground, tally })
+}
+
+/// Cubes that are compared with the wood, at most.
+const COMPARED: usize = 30_000;
+
+/// Which share of the points the wood and the leaves explain, and at which height.
+fn explain(
+    tally: &mut ScanTally,
+    (plant, foot): (&Plant, DVec3),
+    (ways, site): (&Ways, &Site<'_>),
+    is_leaf: impl Fn(usize) -> bool,
+) {
+    let cell = ways.voxels.cell();
+    let near = (2.5 * cell).max(0.05);
+    let places = surface_places(plant, near);
+    let wood = geom::KdTree::new(&places);
+    let is_mine = |c: &usize| matches!(ways.plant[*c], 0 | NONE);
+    let mine: Vec<usize> = (0..ways.len()).filter(is_mine).collect();
+    let (mut seen, mut explained) = ([0.0; 10], [0.0; 10]);
+    tally.top_m = mine.iter().map(|&c| site.over(ways.means[c])).fold(0.0, f64::max);
+    for &c in mine.iter().step_by(mine.len() / COMPARED + 1) {
+        let share = site.over(ways.means[c]) / tally.top_m.max(1e-9);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 9")]
+        let tenth = (10.0 * share).clamp(0.0, 9.0) as usize;
+        let points = ways.voxels.rows(c).len() as f64;
+        seen[tenth] += points;
+        if is_leaf(c) || wood.nearest(ways.means[c] - foot, 1.5 * near).is_some() {
+            explained[tenth] += points;
+        }
+    }
+    let all: f64 = seen.iter().sum();
+    tally.explained = if all > 0.0 { explained.iter().sum::<f64>() / all } else { 0.0 };
+    for (to, (seen, explained)) in tally.coverage.iter_mut().zip(seen.iter().zip(explained)) {
+        *to = (*seen > 0.0).then(|| explained / seen);
+    }
 }
 
 /// The points that are no ground, and the height of the highest over it: one in a thousand may be noise.
@@ -137,11 +311,16 @@ fn above_ground(all: &[DVec3], ground: Option<&Ground>) -> (Vec<DVec3>, f64) {
     let over = |p: &DVec3| p.y - ground.map_or(lowest, |g| g.height(*p));
     let thick = ground.map_or(f64::NEG_INFINITY, |g| g.thickness_m.max(0.02));
     let above: Vec<DVec3> = all.iter().copied().filter(|p| over(p) > thick).collect();
-    let mut heights: Vec<f64> = above.iter().step_by(above.len() / 100_000 + 1).map(over).collect();
-    base::sort_numbers(&mut heights);
-    let top = heights.len().saturating_sub(1 + heights.len() / 1000);
-    let height = heights.get(top).copied().unwrap_or(0.0);
+    let height = highest(above.iter().map(over), above.len());
     (above, height)
+}
+
+/// The greatest of so many heights: one in a thousand may be noise.
+fn highest(heights: impl Iterator<Item = f64>, count: usize) -> f64 {
+    let mut few: Vec<f64> = heights.step_by(count / 100_000 + 1).collect();
+    base::sort_numbers(&mut few);
+    let top = few.len().saturating_sub(1 + few.len() / 1000);
+    few.get(top).copied().unwrap_or(0.0)
 }
 
 /// Cubes with three points or more in the mean, as far as the size of the tree allows.
@@ -208,6 +387,13 @@ fn centre(rings: &mut Rings, axes: &[(u32, Vec<u32>)], found: &[Vec<Option<Measu
     }
 }
 
+/// Axes with radii, and how well that of each node is known.
+struct Wood {
+    plant: Plant,
+    pipes: Pipes,
+    nodes: Vec<SeenNode>,
+}
+
 /// Axes with radii.
 fn wood(
     points: &[DVec3],
@@ -217,7 +403,7 @@ fn wood(
     found: &[Vec<Option<Measured>>],
     foot: DVec3,
     in_leaf: bool,
-) -> (Plant, Pipes) {
+) -> Wood {
     let load = |k: u32| rings.rings[k as usize].load;
     let rows: Vec<(f64, Measured)> = axes
         .iter()
@@ -228,6 +414,7 @@ fn wood(
     let least = RESOLVED * ways.voxels.cell();
     let (pipes, from) = Pipes::fit(&rows, least);
     let mut plant = Plant::default();
+    let mut nodes: Vec<SeenNode> = vec![];
     // Of each ring: its node, radius and offset from the pipe model.
     let mut node_of: Vec<Option<NodeId>> = vec![None; rings.rings.len()];
     let mut offset_of = vec![0.0; rings.rings.len()];
@@ -242,7 +429,7 @@ fn wood(
             let thin = load(k) < from || (!in_leaf && m.is_some_and(|m| m.radius < least));
             *m = m.filter(|_| !thin);
         }
-        let (radii, offsets) = smooth(&loads, &found, &pipes, below, 0.06);
+        let Smoothed { radii, offsets, errors } = smooth(&loads, &found, &pipes, below, 0.06);
         run.iter().zip(&offsets).for_each(|(&k, &o)| offset_of[k as usize] = o);
         let course = course(points, ways, rings, run);
         let bearer = (*bearer != NONE).then(|| node_of[*bearer as usize]).flatten();
@@ -280,11 +467,15 @@ fn wood(
         let start = rows.start as usize;
         plant.nodes.radius_m[start..rows.end as usize].copy_from_slice(&thick[..line.len()]);
         let first = line.len() - run.len() - 1;
+        let row_of = |i: usize| i.saturating_sub(first).min(run.len() - 1);
+        nodes.extend(
+            (0..line.len()).map(row_of).map(|i| SeenNode { error: errors[i], is_seen: found[i].is_some() }),
+        );
         for (i, &k) in run.iter().enumerate() {
             node_of[k as usize] = Some(NodeId::new(start + first + i));
         }
     }
-    (plant, pipes)
+    Wood { plant, pipes, nodes }
 }
 
 /// Circles within the wood that bears an axis are the bearer's.

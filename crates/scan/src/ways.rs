@@ -23,6 +23,16 @@ pub(crate) struct Ways {
     pub(crate) parent: Vec<u32>,
     /// The plant that each cube was reached by.
     pub(crate) plant: Vec<u32>,
+    /// How much a metre of way counts for each plant; empty for 1.
+    pub(crate) pace: Vec<f64>,
+}
+
+/// Gaps that were bridged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bridges {
+    pub(crate) count: usize,
+    /// Length of the longest, metres.
+    pub(crate) longest: f64,
 }
 
 impl Ways {
@@ -35,7 +45,19 @@ impl Ways {
             })
             .collect();
         let n = means.len();
-        Self { voxels, means, way: vec![f64::INFINITY; n], parent: vec![NONE; n], plant: vec![NONE; n] }
+        Self {
+            voxels,
+            means,
+            way: vec![f64::INFINITY; n],
+            parent: vec![NONE; n],
+            plant: vec![NONE; n],
+            pace: vec![],
+        }
+    }
+
+    /// How long a way of so many metres is for a plant.
+    fn paced(&self, plant: u32, length: f64) -> f64 {
+        length * self.pace.get(plant as usize).copied().unwrap_or(1.0)
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -103,7 +125,7 @@ impl Ways {
                 if k == c || !open(k) {
                     continue;
                 }
-                let next = way + self.means[c].distance(self.means[k]);
+                let next = way + self.paced(self.plant[c], self.means[c].distance(self.means[k]));
                 if next < self.way[k] {
                     self.way[k] = next;
                     self.parent[k] = at;
@@ -117,15 +139,15 @@ impl Ways {
     }
 
     /// Bridges gaps of at most `gap` from what is reached to the pieces that are not, the shortest of each piece at a
-    /// time, until none is left; the number of bridges.
+    /// time, until none is left.
     pub(crate) fn bridge(
         &mut self,
         gap: f64,
         piece: &[u32],
         open: impl Fn(usize) -> bool,
         cancel: &CancelToken,
-    ) -> Result<usize, Cancelled> {
-        let mut bridges = 0;
+    ) -> Result<Bridges, Cancelled> {
+        let mut bridges = Bridges::default();
         // Each round reaches what is near; pieces behind pieces need several.
         for _ in 0..24 {
             let reached: Vec<u32> = self.rows(|w, c| w.way[c].is_finite() && open(c));
@@ -153,11 +175,13 @@ impl Ways {
             }
             let mut front = vec![];
             for (_, &(length, to, from)) in best.iter() {
-                self.way[to as usize] = self.way[from as usize] + length;
+                self.way[to as usize] =
+                    self.way[from as usize] + self.paced(self.plant[from as usize], length);
                 self.parent[to as usize] = from;
                 self.plant[to as usize] = self.plant[from as usize];
                 front.push(to);
-                bridges += 1;
+                bridges.count += 1;
+                bridges.longest = bridges.longest.max(length);
             }
             self.spread(&front, &open, cancel)?;
         }

@@ -95,8 +95,8 @@ pub use template::{LeafTemplate, TemplateError};
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
     ScanTreeOptions, ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, age_of_height,
-    coarser, guided_methods, make_tree, make_tree_from_scan, method_word, read_tree_spec, scale_to_height,
-    show_obstacles, tree_blade, tree_schema, tree_size,
+    coarser, guided_methods, make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec,
+    scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

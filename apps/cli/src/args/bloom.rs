@@ -28,6 +28,25 @@ pub(crate) enum BloomCommand {
     /// model, a stages file (all its stages are met), a whole flower (`burgeon presets` lists them), or a drawing of
     /// flowers (.svg, .inkml, .json, .burgeon), which then open.
     Run(Box<BloomRunArgs>),
+    /// Say what a law has on any day
+    ///
+    /// Each law gives a value and between which values 9 of 10 new measurements lie on that day.
+    At(Box<BloomAtArgs>),
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon bloom at leaves.law.json --day 12
+  burgeon bloom at leaves.law.json --day 12 --day 20 --json")]
+pub(crate) struct BloomAtArgs {
+    /// The law, of `burgeon bloom fit`.
+    #[arg(value_name = "LAW.json")]
+    pub(crate) input: PathBuf,
+    /// The day, in the count of the stages or of the table; several days: the option again.
+    #[arg(long, value_name = "D", required = true, allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1e6, 1e6))]
+    pub(crate) day: Vec<f64>,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
 }
 
 #[derive(Args, Debug)]
@@ -48,7 +67,8 @@ pub(crate) enum BloomCommand {
   # base = [x, y, z]     # where the organ is attached
   # crop = [[x, y, z], [x, y, z]]
 
-Growth table (CSV): day,size[,organ][,plant], one line a measurement; sizes in --unit, or in that of a line `# unit: mm`.
+Growth table (CSV or TSV): day,size[,organ][,plant], one line a measurement; or a column for each organ or plant, or for each
+day. Days are numbers or dates. Sizes are in --unit, in that of a line `# unit: mm`, or in that of a heading (height_cm).
 
 Examples:
   burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg
@@ -58,7 +78,7 @@ pub(crate) struct FitArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The stages file, or a growth table (.csv).
+    /// The stages file, or a growth table (.csv, .tsv).
     #[arg(value_name = "STAGES.toml|TABLE.csv")]
     pub(crate) input: PathBuf,
     /// The law: .json.

@@ -17,7 +17,7 @@ mod shape;
 mod shared;
 mod sketch;
 
-pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
+pub(crate) use bloom::{BloomAtArgs, BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
 pub(crate) use export::{EXPORT, ExportArgs, FoliageWord, LodFileWord, TreeSurfaceArgs};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};

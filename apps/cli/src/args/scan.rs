@@ -15,6 +15,7 @@ use crate::failure::Outcome;
 #[command(after_long_help = "Examples:
   burgeon scan tree.laz -o tree.glb --qsm tree.csv --mtg tree.mtg --report tree.json
   burgeon scan plot.las --at 12.5,3.0 -o tree.glb           the tree that stands there
+  burgeon scan plot.las --all -o plot/                      each tree, with an inventory and a map
   burgeon scan tree.xyz --unit mm --leaves oak -o oak.glb --png oak.png
   burgeon scan tree.ply --up y -o tree.glb")]
 pub(crate) struct ScanArgs {
@@ -42,6 +43,10 @@ pub(crate) struct ScanArgs {
     /// order [default: the largest thing that stands on the ground].
     #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = place)]
     pub(crate) at: Option<[f64; 2]>,
+    /// Make a tree of each stem: -o names a folder, which gets a model and a table of cylinders of each, an inventory
+    /// (inventory.csv) and a map (map.png). Trees that are there already are kept, if their points and options are the same.
+    #[arg(long, conflicts_with_all = ["at", "png", "qsm", "mtg"], requires = "output")]
+    pub(crate) all: bool,
     /// Edge of the cubes that the cloud is seen in, metres, 0.001 to 1 [default: by the spacing of the points].
     #[arg(long, value_name = "M", value_parser = |s: &str| ranged(s, 0.001, 1.0))]
     pub(crate) cell: Option<f64>,

@@ -1,5 +1,6 @@
-//! `burgeon bloom run`: shapes at any day, whole flowers that open.
+//! `burgeon bloom`: laws, shapes at any day, whole flowers that open.
 
+mod at;
 mod flowers;
 mod scans;
 mod told;
@@ -27,6 +28,7 @@ pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
     match command {
         BloomCommand::Fit(args) => fit::fit(args),
         BloomCommand::Run(args) => run(args),
+        BloomCommand::At(args) => at::tell_days(args),
     }
 }
 

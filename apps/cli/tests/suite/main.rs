@@ -19,6 +19,7 @@ mod limits;
 mod named;
 mod options;
 mod replay;
+mod scans;
 mod shape;
 mod signals;
 mod times;

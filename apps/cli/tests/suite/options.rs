@@ -165,6 +165,7 @@ const USES: &[&[&str]] = &[
     &["render", "box.glb", "-o", "o.png", "--size", "40x30", "--view", "front"],
     &["scan", "stem.xyz", "-o", "o.glb", "--no-textures"],
     &["scan", "stem.xyz", "--qsm", "o.csv"],
+    &["scan", "stem.xyz", "--all", "-o", "folder/", "--no-textures"],
     &["info", "box.obj"],
     &["info", "box.glb"],
     &["info", "rose.svg"],

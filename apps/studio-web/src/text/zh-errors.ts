@@ -290,6 +290,17 @@ export const zhWarnings: Record<string, string> = {
     '地面以上的点有 {value} 不属于这棵树（最多 {bound}）：请把树裁出来，指明它的位置，或允许跨过更大的空隙',
   'scan-radii-unseen':
     '树的截面只有 {value} 显出半径（至少 {bound}）：半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
+  'several-stems': '扫描中有 {value} 根树干（最多 {bound}），只取了一根：请指明所指的树干在哪里，或把每根都做成一棵树',
+  'scan-loose': '这棵树的点有 {value} 在空隙之外，未计入（最多 {bound}）：请允许跨过更大的空隙，或裁去不属于这棵树的部分',
+  'scan-unexplained':
+    '这棵树的点只有 {value} 在木质部附近或属于叶（至少 {bound}）：请允许跨过更大的空隙，减小立方体，或扫描得更密',
+  'tree-cut': '树的高度只有其点云的 {value}（至少 {bound}）：树顶未计入，请允许跨过更大的空隙，或指明树干的位置',
+  'volume-small-for-stem':
+    '木材体积是同高同胸径圆柱的 {value} 倍（至少 {bound}）：缺了大部分，或胸径有误，请允许跨过更大的空隙，或从更多侧扫描',
+  'volume-large-for-stem':
+    '木材体积是同高同胸径圆柱的 {value} 倍（最多 {bound}）：树枝太粗，或其中有几棵树，请靠近或在无叶时扫描，或把每根树干都做成一棵树',
+  'pipe-exponent-default':
+    '只找到 {value} 个可靠的圆（至少 {bound}）：管道模型的指数取自其他树，树枝的半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
   'pipe-exponent-on-bound':
     '管道模型的指数是 {value}，在拟合的边界上（{bound}）：细枝的半径和体积不可信，请靠近或在无叶时扫描',
   'one-organ': '一个器官占了所有点的 {value}（最多 {bound}）：器官没有分开，请手工标注',

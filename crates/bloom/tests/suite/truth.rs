@@ -78,7 +78,8 @@ fn a_day_that_is_left_out_is_nearer_to_the_model_than_to_its_rivals() {
     let law = preset("lily").unwrap().own_law();
     let days: Vec<f64> = [0.0, 0.25, 0.5, 0.75, 1.0].iter().map(|d| d * law.span_days).collect();
     let trials =
-        leave_one_out(&stages(&days, &law, 1e-4), &LawSpec::default(), &MotionSpec::default(), &run).unwrap();
+        leave_one_out(&stages(&days, &law, 1e-4), &LawSpec::default(), &MotionSpec::default(), None, &run)
+            .unwrap();
     let (mut sums, mut between) = ([[0.0; 2]; 4], 0);
     for t in &trials {
         println!("day {:.2}{}", t.day, if t.extrapolated { ", extrapolated" } else { "" });
@@ -113,6 +114,7 @@ fn regions(rates: [f64; 3], determined: bool) -> GrowthLaw {
         law: Logistic { k: 1.0, p0: 0.05, r, offset: 0.0 },
         determined: Some(determined),
         straight_rmse: None,
+        last_rmse: None,
         standard_errors: None,
         r2: 1.0,
         r2_adjusted: None,

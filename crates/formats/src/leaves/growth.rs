@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use base::{Unit, Warning};
+use base::{Unit, Warning, ops};
 
 use super::LeafFileError;
 use super::fields::Fields;
@@ -27,68 +27,99 @@ pub struct GrowthEntry {
 /// What was in a growth table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadGrowth {
-    /// The measurements, in the order of the file.
+    /// The measurements, in the order of the file; of a wide table line by line.
     pub rows: Vec<GrowthEntry>,
+    /// The unit that the file says, in a heading or in a line `# unit: mm`.
+    pub unit: Option<Unit>,
     /// What was odd and what was done about it.
     pub warnings: Vec<Warning>,
 }
 
 /// Names that a column may have; the first is the one that messages use.
-const DAY: [&str; 4] = ["day", "age", "time", "days"];
+const DAY: [&str; 5] = ["day", "age", "time", "days", "date"];
 const SIZE: [&str; 7] = ["size", "length", "height", "width", "circumference", "diameter", "value"];
 const ORGAN: [&str; 2] = ["organ", "leaf"];
 const PLANT: [&str; 4] = ["plant", "tree", "id", "subject"];
+/// Cells in which nothing was measured.
+const MISSING: [&str; 4] = ["", "na", "nan", "-"];
 
 /// Reads a growth table: `day,size[,organ][,plant]`, one line a measurement.
 ///
-/// The first line names the columns, in any order; `day` may also be called age or time, `size` length, height, width,
-/// circumference, diameter or value, `plant` tree or id. Other columns are left out with a warning. Fields are separated
-/// as in [`read_marks`](crate::read_marks). A line `# unit: mm` wins over `unit`. Lines without a size are left out: a
-/// day on which nothing was measured.
+/// The first line names the columns, in any order; `day` may also be called age, time or date, `size` length, height, width,
+/// circumference, diameter or value, `plant` tree or id. A heading may have its unit (`height_cm`, `Height (cm)`), which wins
+/// over a line `# unit: mm`, which wins over `unit`. Days are numbers or dates (2024-03-05, 05.03.2024), which count from the first
+/// one. Without a column of sizes a table is wide: each column besides the day is an organ or a plant, or each column is a day
+/// (`plant,0,3,7`) and each line an organ or a plant. Other columns are left out with a warning. Fields are separated as in
+/// [`read_marks`](crate::read_marks). Cells without a size are left out: a day on which nothing was measured; and so are empty
+/// lines, also those that spreadsheets pad with separators.
 ///
 /// # Errors
 /// [`LeafFileError`] with the line, for columns that are missing or there twice, numbers that are none, and sizes that
 /// are negative.
-pub fn read_growth(input: impl Read, mut unit: Unit) -> Result<ReadGrowth, LeafFileError> {
+pub fn read_growth(input: impl Read, unit: Unit) -> Result<ReadGrowth, LeafFileError> {
     let text = super::text(input)?;
-    let mut columns: Option<(Fields, [Option<usize>; 4])> = None;
-    let mut out = ReadGrowth { rows: vec![], warnings: vec![] };
-    let mut empty = 0;
+    let mut header: Option<Header> = None;
+    let mut out = ReadGrowth { rows: vec![], unit: None, warnings: vec![] };
+    let mut found = Found::default();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
         let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
-        if let Some(comment) = line.strip_prefix('#') {
-            unit = unit_of(comment).map_err(placed)?.unwrap_or(unit);
-        } else if !line.is_empty() {
-            let Some((fields, columns)) = &columns else {
-                let fields = Fields::of_header(line);
-                columns = Some((fields, header(&fields.split(line), &mut out.warnings).map_err(placed)?));
+        let bare = line.trim_matches(|c: char| [',', ';', '\t', '"', ' '].contains(&c));
+        if let Some(comment) = bare.strip_prefix('#') {
+            out.unit = unit_of(comment).map_err(placed)?.or(out.unit);
+        } else if !bare.is_empty() {
+            let Some(header) = &header else {
+                header = Some(Header::read(line, &mut out.warnings).map_err(placed)?);
                 continue;
             };
-            match entry(fields, columns, line).map_err(placed)? {
-                Some(row) => out.rows.push(row),
-                None => empty += 1,
-            }
-            if out.rows.len() > MOST {
+            header.add(line, &mut found).map_err(placed)?;
+            if found.rows.len() > MOST {
                 let (what, limit, advice) = ("the number of measurements", MOST as u64, "split the table");
                 return Err(placed(FileFault::TooMuch { what, limit, advice }));
             }
         }
     }
-    if out.rows.is_empty() {
+    if found.rows.is_empty() {
         return Err(LeafFileError::new(Place::File, FileFault::Empty));
     }
-    if empty > 0 {
-        let message = format!("{empty} lines have no size: they were left out");
+    if found.empty > 0 {
+        let message = format!("{} places have no size: they were left out", found.empty);
         out.warnings.push(Warning { code: "size-missing", message, fields: Vec::new() });
     }
-    let metres = match unit {
-        Unit::Metre => 1.0,
-        Unit::Centimetre => 0.01,
-        Unit::Millimetre => 0.001,
-    };
-    out.rows.iter_mut().for_each(|r| r.size *= metres);
+    let own = found.rows.iter().find_map(|r| r.unit);
+    out.unit = own.or(out.unit);
+    let fallback = out.unit.filter(|_| own.is_none()).unwrap_or(unit);
+    let first = found.dates.then(|| found.rows.iter().map(|r| r.entry.day).fold(f64::INFINITY, f64::min));
+    if let Some(first) = first {
+        let message = format!("days count from the first date, {}", date_of(first));
+        out.warnings.push(Warning { code: "days-from-dates", message, fields: Vec::new() });
+    }
+    out.rows.extend(found.rows.into_iter().map(|Row { mut entry, unit }| {
+        entry.size *= match unit.unwrap_or(fallback) {
+            Unit::Metre => 1.0,
+            Unit::Centimetre => 0.01,
+            Unit::Millimetre => 0.001,
+        };
+        entry.day -= first.unwrap_or(0.0);
+        entry
+    }));
     Ok(out)
+}
+
+/// Measurements as they stand in the file.
+#[derive(Default)]
+struct Found {
+    rows: Vec<Row>,
+    /// Cells without a size.
+    empty: usize,
+    /// Days are dates, and all of them are.
+    dates: bool,
+    numbers: bool,
+}
+
+struct Row {
+    entry: GrowthEntry,
+    unit: Option<Unit>,
 }
 
 fn unit_of(comment: &str) -> Result<Option<Unit>, FileFault> {
@@ -102,59 +133,251 @@ fn unit_of(comment: &str) -> Result<Option<Unit>, FileFault> {
     Unit::from_word(&word).map(Some).ok_or_else(unknown)
 }
 
-fn header(fields: &[&str], warnings: &mut Vec<Warning>) -> Result<[Option<usize>; 4], FileFault> {
-    let names: [&[&str]; 4] = [&DAY, &SIZE, &ORGAN, &PLANT];
-    let mut columns = [None; 4];
-    let mut others = Vec::new();
-    for (k, field) in fields.iter().enumerate() {
-        let word = field.trim_matches('"').to_ascii_lowercase();
-        match names.iter().position(|n| n.contains(&word.as_str())) {
-            Some(slot) if columns[slot].replace(k).is_some() => {
-                let what = format!("the column `{}` is there twice", names[slot][0]);
-                return Err(FileFault::malformed(what, "rename or remove one of them"));
-            }
-            Some(_) => {}
-            None => others.push(base::brief(field.trim_matches('"'))),
-        }
-    }
-    for (slot, name) in [(0, "day"), (1, "size")] {
-        if columns[slot].is_none() {
-            let what = format!("there is no column `{name}`");
-            return Err(FileFault::malformed(what, "begin with a line of names: day,size,organ,plant"));
-        }
-    }
-    if !others.is_empty() {
-        let message = format!("the columns {} were left out", others.join(", "));
-        warnings.push(Warning { code: "column-unknown", message, fields: Vec::new() });
-    }
-    Ok(columns)
+/// What a column holds.
+#[derive(Clone, Debug, PartialEq)]
+enum Column {
+    Day,
+    Size(Option<Unit>),
+    Organ,
+    Plant,
+    /// Sizes of one organ or plant.
+    Series(String, Option<Unit>),
+    /// Sizes on one day.
+    OnDay(Moment),
+    Other,
 }
 
-fn entry(
-    fields: &Fields,
-    columns: &[Option<usize>; 4],
-    line: &str,
-) -> Result<Option<GrowthEntry>, FileFault> {
-    let cells = fields.row(line)?;
-    let cell = |slot: usize| {
-        columns[slot].and_then(|k: usize| cells.get(k)).map_or("", |c| c.trim_matches('"').trim())
-    };
-    let number = |slot: usize, name: &str| {
-        fields.number(cell(slot)).ok_or_else(|| {
-            let what = format!("the {name} `{}` is no number", cell(slot));
-            FileFault::malformed(what, "give a number, or leave the line out")
+/// A day as it is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moment {
+    Number(f64),
+    Date(f64),
+}
+
+struct Header {
+    fields: Fields,
+    columns: Vec<Column>,
+}
+
+/// A heading without its unit, in small letters, and that unit: `height_cm`, `Height (cm)`, `height [cm]`.
+fn without_unit(heading: &str) -> (String, Option<Unit>) {
+    let word = heading.to_ascii_lowercase();
+    let bare = word.trim_end_matches([')', ']']).trim_end();
+    let split = bare.rfind(['_', '(', '[', ' ']).map(|at| bare.split_at(at));
+    let found = split.and_then(|(name, end)| {
+        let unit = Unit::from_word(end.trim_matches(['_', '(', '[', ' ']))?;
+        Some((name.trim_end_matches(['_', '(', '[', ' ']).to_owned(), Some(unit)))
+    });
+    found.unwrap_or((word, None))
+}
+
+impl Header {
+    fn read(line: &str, warnings: &mut Vec<Warning>) -> Result<Self, FileFault> {
+        let fields = Fields::of_header(line);
+        let mut columns: Vec<Column> = Vec::new();
+        let names: Vec<&str> = fields.split(line).iter().map(|f| f.trim_matches('"').trim()).collect();
+        for name in &names {
+            let (word, unit) = without_unit(name);
+            let is = |known: &[&str]| known.contains(&word.as_str());
+            columns.push(match () {
+                () if is(&DAY) => Column::Day,
+                () if is(&SIZE) => Column::Size(unit),
+                () if is(&ORGAN) => Column::Organ,
+                () if is(&PLANT) => Column::Plant,
+                () => Column::Other,
+            });
+        }
+        let kinds: [(&str, fn(&Column) -> bool); 4] = [
+            ("day", |c| *c == Column::Day),
+            ("size", |c| matches!(c, Column::Size(_))),
+            ("organ", |c| *c == Column::Organ),
+            ("plant", |c| *c == Column::Plant),
+        ];
+        for (name, is) in kinds {
+            if columns.iter().filter(|c| is(c)).count() > 1 {
+                let what = format!("the column `{name}` is there twice");
+                return Err(FileFault::malformed(what, "rename or remove one of them"));
+            }
+        }
+        let [has_day, has_size] = [kinds[0].1, kinds[1].1].map(|is| columns.iter().any(is));
+        if !has_size {
+            widen(&names, &mut columns, has_day, warnings);
+        }
+        let is_wide = columns.iter().any(|c| matches!(c, Column::Series(..) | Column::OnDay(_)));
+        for (name, is_there) in [("day", has_day), ("size", has_size)] {
+            if !is_there && !is_wide {
+                let what = format!("there is no column `{name}`");
+                return Err(FileFault::malformed(what, "begin with a line of names: day,size,organ,plant"));
+            }
+        }
+        let others: Vec<String> = names
+            .iter()
+            .zip(&columns)
+            .filter(|(name, c)| **c == Column::Other && !name.is_empty())
+            .map(|(name, _)| base::brief(name).to_string())
+            .collect();
+        if !others.is_empty() {
+            let message = format!("the columns {} were left out", others.join(", "));
+            warnings.push(Warning { code: "column-unknown", message, fields: Vec::new() });
+        }
+        Ok(Self { fields, columns })
+    }
+
+    /// Adds what a line has.
+    fn add(&self, line: &str, found: &mut Found) -> Result<(), FileFault> {
+        let cells: Vec<&str> = self.fields.row(line)?.iter().map(|c| c.trim_matches('"').trim()).collect();
+        let cell = |wanted: &Column| {
+            let at = self.columns.iter().position(|c| c == wanted);
+            at.and_then(|k| cells.get(k)).copied().unwrap_or("")
+        };
+        let name = |wanted: &Column| -> String { cell(wanted).chars().take(200).collect() };
+        let own =
+            if self.columns.contains(&Column::Day) { Some(self.moment(cell(&Column::Day))?) } else { None };
+        for (column, text) in self.columns.iter().zip(&cells) {
+            let (day, series, unit) = match column {
+                Column::Size(unit) => (own, None, *unit),
+                Column::Series(name, unit) => (own, Some(name), *unit),
+                Column::OnDay(day) => (Some(*day), None, None),
+                _ => continue,
+            };
+            let Some(day) = day else { continue };
+            if MISSING.contains(&text.to_ascii_lowercase().as_str()) {
+                found.empty += 1;
+                continue;
+            }
+            let size = self.fields.number(text).ok_or_else(|| {
+                let what = format!("the size `{text}` is no number");
+                FileFault::malformed(what, "give a number, or leave the line out")
+            })?;
+            if size < 0.0 {
+                return Err(FileFault::malformed(
+                    format!("the size {size} is negative"),
+                    "a size is 0 or more",
+                ));
+            }
+            let day = found.day(day)?;
+            let organ = series.cloned().unwrap_or_else(|| name(&Column::Organ));
+            found
+                .rows
+                .push(Row { entry: GrowthEntry { day, size, organ, plant: name(&Column::Plant) }, unit });
+        }
+        Ok(())
+    }
+
+    fn moment(&self, text: &str) -> Result<Moment, FileFault> {
+        let number = self.fields.number(text).map(Moment::Number);
+        number.or_else(|| date(text).map(Moment::Date)).ok_or_else(|| {
+            let what = format!("the day `{text}` is no number and no date");
+            FileFault::malformed(what, "give a number of days, or a date such as 2024-03-05")
         })
+    }
+}
+
+impl Found {
+    fn day(&mut self, day: Moment) -> Result<f64, FileFault> {
+        let day = match day {
+            Moment::Number(day) => {
+                self.numbers = true;
+                day
+            }
+            Moment::Date(day) => {
+                self.dates = true;
+                day
+            }
+        };
+        if self.dates && self.numbers {
+            let what = "some days are dates and some are numbers";
+            return Err(FileFault::malformed(what.to_owned(), "write all days in one way"));
+        }
+        Ok(day)
+    }
+}
+
+/// Columns of a table without a column of sizes: series beside a day, or days.
+fn widen(names: &[&str], columns: &mut [Column], has_day: bool, warnings: &mut Vec<Warning>) {
+    let unknown = |c: &Column| *c == Column::Other;
+    let wide: Vec<Option<Column>> = names
+        .iter()
+        .zip(columns.iter())
+        .map(|(name, column)| {
+            if !unknown(column) || name.is_empty() {
+                return None;
+            }
+            if has_day {
+                let (word, unit) = without_unit(name);
+                // As it is written, but for the unit.
+                let own = unit.map_or(*name, |_| name.get(..word.len()).unwrap_or(name));
+                return Some(Column::Series(own.chars().take(200).collect(), unit));
+            }
+            day_heading(name).map(Column::OnDay)
+        })
+        .collect();
+    let has_unit = wide.iter().flatten().any(|c| matches!(c, Column::Series(_, Some(_))));
+    // One column by another name is no wide table: it may be anything.
+    if wide.iter().flatten().count() < 2 && !has_unit {
+        return;
+    }
+    let told: Vec<String> = names
+        .iter()
+        .zip(&wide)
+        .filter(|(_, w)| w.is_some())
+        .map(|(n, _)| base::brief(n).to_string())
+        .collect();
+    let what = if has_day { "organs or plants" } else { "days" };
+    let message = format!("no column is called size: the columns {} were taken for {what}", told.join(", "));
+    warnings.push(Warning { code: "table-wide", message, fields: Vec::new() });
+    for (column, wide) in columns.iter_mut().zip(wide) {
+        if let Some(wide) = wide {
+            *column = wide;
+        }
+    }
+}
+
+/// A heading that is a day: `7`, `day 7`, `d7`, `2024-03-05`.
+fn day_heading(name: &str) -> Option<Moment> {
+    let word = name.to_ascii_lowercase();
+    let bare = ["days", "day", "d"].into_iter().find_map(|w| word.strip_prefix(w)).unwrap_or(&word);
+    let number = bare.trim_matches([' ', '_', '-', '.']).parse().ok().filter(|x: &f64| x.abs() < 1e9);
+    number.map(Moment::Number).or_else(|| date(name).map(Moment::Date))
+}
+
+/// Days since 1 March of the year 0 of a date: 2024-03-05, 2024/03/05 or 05.03.2024, also with a time behind it.
+fn date(text: &str) -> Option<f64> {
+    let head = text.split(['T', ' ']).next()?;
+    let part = |sep: char| -> Option<[u32; 3]> {
+        let parts: Vec<u32> = head.split(sep).map(|p| p.parse().ok()).collect::<Option<_>>()?;
+        parts.try_into().ok()
     };
-    let day = number(0, "day")?;
-    if ["", "na", "nan", "-"].contains(&cell(1).to_ascii_lowercase().as_str()) {
-        return Ok(None);
+    let [year, month, day] = match (part('-').or_else(|| part('/')), part('.')) {
+        (Some(ymd), _) => ymd,
+        (None, Some([d, m, y])) => [y, m, d],
+        _ => return None,
+    };
+    let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let days = [31, if is_leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let last = *days.get((month as usize).checked_sub(1)?)?;
+    if !(1000..=9999).contains(&year) || !(1..=last).contains(&day) {
+        return None;
     }
-    let size = number(1, "size")?;
-    if size < 0.0 {
-        return Err(FileFault::malformed(format!("the size {size} is negative"), "a size is 0 or more"));
+    // A year that begins in March has its odd day at the end.
+    let (y, m) = if month < 3 { (year - 1, month + 9) } else { (year, month - 3) };
+    Some(f64::from(365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1))
+}
+
+/// The date of a day that [`date`] gave.
+fn date_of(day: f64) -> String {
+    let day = ops::whole(day);
+    // The year whose first of March is the last one before.
+    let mut y = day / 366;
+    let first = |y: u32| 365 * y + y / 4 - y / 100 + y / 400;
+    while first(y + 1) <= day {
+        y += 1;
     }
-    let name = |slot: usize| cell(slot).chars().take(200).collect();
-    Ok(Some(GrowthEntry { day, size, organ: name(2), plant: name(3) }))
+    let rest = day - first(y);
+    let m = (5 * rest + 2) / 153;
+    let d = rest - (153 * m + 2) / 5 + 1;
+    let (year, month) = if m >= 10 { (y + 1, m - 9) } else { (y, m + 3) };
+    format!("{year:04}-{month:02}-{d:02}")
 }
 
 #[cfg(test)]
@@ -182,13 +405,52 @@ mod tests {
             ("day,size\n", "empty"),
             ("day,colour\n1,2\n", "no column `size`"),
             ("day,size,length\n1,2,3\n", "`size` is there twice"),
-            ("day,size\n1,2\nx,2\n", "line 3: the day `x` is no number"),
+            ("day,size\n1,2\nx,2\n", "line 3: the day `x` is no number and no date"),
             ("day,size\n1,-2\n", "negative"),
             ("day,size\n1,2,3\n", "3 fields"),
             ("# unit: ell\nday,size\n1,2\n", "`unit: ell`"),
         ] {
             let e = read(text).unwrap_err();
             assert!(e.contains(want), "{e:?} should say {want:?}");
+        }
+    }
+
+    #[test]
+    fn tables_of_spreadsheets_are_read_as_they_are_saved() {
+        let t = read(
+            "\u{feff}\"# unit: mm\",,,\nDate,Height (cm),Plant,\n,,,\n2024-02-27,1.5,a,\n01.03.2024,2,a,\n",
+        )
+        .unwrap();
+        assert_eq!(t.unit, Some(Unit::Centimetre));
+        assert_eq!(t.rows.iter().map(|r| r.day).collect::<Vec<_>>(), [0.0, 3.0], "2024 is a leap year");
+        assert!((t.rows[0].size - 0.015).abs() < 1e-15 && t.rows[1].plant == "a", "{:?}", t.rows);
+        assert!(t.warnings.iter().any(|w| w.message.contains("2024-02-27")), "{:?}", t.warnings);
+        // 3/5/2024 is May or March.
+        assert!(read("date,size\n3/5/2024,1\n").unwrap_err().contains("no date"));
+        assert!(read("date,size\n2024-03-05,1\n7,2\n").unwrap_err().contains("one way"));
+        let t = read("day\theight_mm\n1\t2\n").unwrap();
+        assert!((t.rows[0].size - 0.002).abs() < 1e-15);
+    }
+
+    #[test]
+    fn wide_tables_have_a_series_in_each_column_or_a_day() {
+        let t = read("day,leaf-1,leaf-2_cm\n0,1,10\n3,2,\n").unwrap();
+        let rows: Vec<(f64, f64, &str)> = t.rows.iter().map(|r| (r.day, r.size, r.organ.as_str())).collect();
+        assert_eq!(rows, [(0.0, 1.0, "leaf-1"), (0.0, 0.1, "leaf-2"), (3.0, 2.0, "leaf-1")]);
+        let t = read("# unit: cm\nplant,day 0,day 7\na,1,2\nb,3,NA\n").unwrap();
+        let rows: Vec<(f64, f64, &str)> = t.rows.iter().map(|r| (r.day, r.size, r.plant.as_str())).collect();
+        assert_eq!(rows, [(0.0, 0.01, "a"), (7.0, 0.02, "a"), (0.0, 0.03, "b")]);
+        assert!(t.warnings.iter().any(|w| w.code == "table-wide"), "{:?}", t.warnings);
+    }
+
+    #[test]
+    fn dates_come_back_from_their_days() {
+        for text in ["2000-02-29", "1999-12-31", "2024-01-01", "2024-03-01", "1900-02-28", "2100-03-01"] {
+            assert_eq!(date_of(date(text).unwrap()), text);
+        }
+        assert_eq!(date("2024-03-01").unwrap() - date("2024-02-28").unwrap(), 2.0);
+        for text in ["2023-02-29", "2024-13-01", "2024-00-10", "12024-01-01", "2024-01", "a-b-c"] {
+            assert_eq!(date(text), None, "{text}");
         }
     }
 }

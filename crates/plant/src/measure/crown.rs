@@ -3,7 +3,7 @@
 use base::ops;
 use glam::{DVec2, DVec3};
 
-use crate::{Blade, NeedleMap, OrganKind, Plant, Shape};
+use crate::{AxisKind, Blade, NeedleMap, OrganKind, Plant, Shape};
 
 pub(super) struct Crown {
     pub(super) height_m: f64,
@@ -18,11 +18,12 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let live = live_axes(plant, has_leaves);
     let base_m = base(plant, shoot, &live);
     let mut points = Vec::new();
-    let mut height_m = 0.0_f64;
+    let foot = foot(plant);
+    let mut top = foot;
     for (i, axis) in plant.axes.iter().enumerate().filter(|(i, _)| shoot[*i]) {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         let line = &plant.nodes.position[rows];
-        height_m = line.iter().fold(height_m, |h, p| h.max(p.y));
+        top = line.iter().fold(top, |h, p| h.max(p.y));
         if axis.bearer.is_some() {
             points.extend(line.iter().filter(|_| live[i]));
         } else if let Some(base) = base_m {
@@ -32,7 +33,7 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let margins: Vec<Vec<DVec3>> = plant.shapes.iter().map(margin).collect();
     for organ in plant.organs.iter().filter(|o| o.kind != OrganKind::Pot) {
         let places = margins[organ.shape.index()].iter().map(|&p| organ.frame.place(p, organ.scale));
-        height_m = places.fold(height_m, |h, p| h.max(p.y));
+        top = places.fold(top, |h, p| h.max(p.y));
     }
     leaves_outside(plant, &margins, &mut points);
     let hull = geom::convex_hull3(&points);
@@ -41,7 +42,15 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(p.x, p.z)).collect();
     let projection_m2 = geom::signed_area(&geom::convex_hull(&flat)).abs();
     let volume_m3 = hull.map_or(0.0, |h| h.volume());
-    Crown { height_m, base_m, volume_m3, projection_m2 }
+    let base_m = base_m.map(|base| base - foot);
+    Crown { height_m: top - foot, base_m, volume_m3, projection_m2 }
+}
+
+/// The height of the lowest foot: where an axis that nothing bears begins, but for roots; 0 without one.
+fn foot(plant: &Plant) -> f64 {
+    let free = plant.axes.iter().filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
+    let feet = free.filter_map(|a| plant.nodes.position.get(a.nodes.start as usize).map(|p| p.y));
+    feet.reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Adds to `points` those of the leaves that the hull of all of them may need: most leaves lie deep inside a crown.
@@ -92,7 +101,7 @@ fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
         .axes
         .iter()
         .zip(live)
-        .filter(|(a, live)| **live && !matches!(a.kind, crate::AxisKind::Root | crate::AxisKind::Stub));
+        .filter(|(a, live)| **live && !matches!(a.kind, AxisKind::Root | AxisKind::Stub));
     let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
     let bearers = axes.filter_map(|(a, _)| a.bearer).chain(leaves.filter_map(|o| o.bearer));
     let heights = bearers.filter(|b| on_main(*b)).map(|b| plant.nodes.position[b.index()].y);

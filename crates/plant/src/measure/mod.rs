@@ -16,11 +16,12 @@ pub use wood::OrderMeasures;
 /// What can be measured on any plant: metres, square and cubic metres, degrees.
 ///
 /// The *shoot* is every trunk, branch, twig and stem: roots and leaf stalks do not count. Heights are above the
-/// ground, y = 0. `docs/measures.md` gives each definition with its source.
+/// lowest foot of an axis that nothing bears, or above y = 0 where there is none: a plant in the coordinates of a scanner is
+/// as high as at the origin. `docs/measures.md` gives each definition with its source.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Measures {
-    /// The highest point of shoot or organ, metres; 0 for a plant without either.
+    /// The highest point of shoot or organ above the foot, metres; 0 for a plant without either.
     pub height_m: f64,
     /// Axes that stand on the ground.
     pub stems: usize,

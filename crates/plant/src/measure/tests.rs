@@ -353,3 +353,19 @@ proptest! {
         prop_assert!(m.strahler.streams.iter().all(|n| *n > 0));
     }
 }
+
+#[test]
+fn a_plant_in_the_coordinates_of_a_scanner_is_as_high_as_at_the_origin() {
+    let plant = |foot: DVec3| {
+        let mut p = Plant::default();
+        let stem = axis(&mut p, None, &[foot, foot + DVec3::Y * 2.0], &[0.1; 2]);
+        let at = node(&p, stem, 1);
+        let blade = square(&mut p, 0.2, Lift::Tilt { slope: DVec2::new(0.75, 0.0) });
+        leaf(&mut p, at, blade, DVec3::X, 1.0);
+        p.measure()
+    };
+    let (here, there) = (plant(DVec3::ZERO), plant(DVec3::new(4.0, -317.25, 2.0)));
+    assert!((here.height_m - there.height_m).abs() < 1e-9, "{} {}", here.height_m, there.height_m);
+    assert!((here.crown_base_m.unwrap() - there.crown_base_m.unwrap()).abs() < 1e-9);
+    assert!(there.dbh_m.is_some());
+}

@@ -4,7 +4,7 @@ use base::{Draw, Executor, Report, Run, Seed, ops};
 use glam::DVec3;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 use plant::{AxisKind, NodeId, Plant};
-use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_tree, scan, wood_gap, wood_mesh};
+use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_plot, find_tree, scan, wood_gap, wood_mesh};
 
 /// Jobs in the other order.
 struct Backwards;
@@ -12,6 +12,13 @@ impl Executor for Backwards {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
         (0..n).rev().for_each(job);
     }
+}
+
+/// The same as large, radii too.
+fn scaled(mut p: Plant, by: f64) -> Plant {
+    p.nodes.position.iter_mut().for_each(|q| *q *= by);
+    p.nodes.radius_m.iter_mut().for_each(|r| *r *= by);
+    p
 }
 
 /// A trunk of 6 m with ten boughs of a metre or two, each with three twigs. Radii follow the pipe model with n = 2.
@@ -252,4 +259,154 @@ fn scans_that_are_no_good_say_so() {
     let mirrored: Vec<DVec3> = points.iter().map(|p| DVec3::new(-p.x, p.y, p.z)).collect();
     let volume = find(&mirrored).0.unwrap().plant.measure().wood_volume_m3;
     assert!((volume / truth.measure().wood_volume_m3 - 1.0).abs() < 0.05, "{volume}");
+}
+
+/// Points of the tree on its slope, less those between two heights over the ground.
+fn with_gap(points: &[DVec3], from: f64, to: f64) -> Vec<DVec3> {
+    points.iter().copied().filter(|p| !(from..to).contains(&(p.y - 0.06 * p.x))).collect()
+}
+
+#[test]
+fn a_crown_beyond_a_gap_belongs_to_its_trunk_and_it_is_told() {
+    let truth = tree();
+    let points = with_gap(&cloud(&[wood_mesh(&truth), ground()]), 0.9, 1.5);
+    let mut report = Report::default();
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut report).unwrap();
+    assert!(report.warnings.iter().any(|w| w.code == "scan-gap"), "{:?}", report.warnings);
+    assert!(found.tally.wide_gap_m.is_some_and(|g| (0.5..0.75).contains(&g)), "{:?}", found.tally);
+    let (a, b) = (truth.measure(), found.plant.measure());
+    assert!((b.height_m / a.height_m - 1.0).abs() < 0.02, "{} {}", b.height_m, a.height_m);
+    assert!(
+        (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.08,
+        "{} {}",
+        b.wood_volume_m3,
+        a.wood_volume_m3
+    );
+    // Who says which gaps may be bridged gets no wider ones, and is told what was left out.
+    let spec = TreeScanSpec { gap_m: Some(0.2), ..TreeScanSpec::default() };
+    let found = find_tree(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    let t = found.tally;
+    assert!(t.loose > 2 * t.wood && t.explained < 0.5, "{t:?}");
+    assert!(t.next_gap_m.is_some_and(|g| (0.5..0.75).contains(&g)), "{t:?}");
+    assert!(t.coverage[0].is_some_and(|c| c > 0.9) && t.coverage[8].is_some_and(|c| c < 0.1), "{t:?}");
+}
+
+#[test]
+fn trunks_are_counted_and_the_stem_at_a_place_is_taken_and_not_a_weed() {
+    let truth = tree();
+    let other = moved(tree(), DVec3::new(2.2, 0.1, 0.8));
+    // A weed between the two, nearer to the place that is said.
+    let mut weed = Plant::default();
+    weed.add_axis(AxisKind::Stem, None, 0, &[DVec3::new(1.9, 0.0, 0.2), DVec3::new(1.9, 0.8, 0.2)], None);
+    weed.nodes.radius_m.fill(0.03);
+    let points = cloud(&[wood_mesh(&truth), wood_mesh(&other), wood_mesh(&weed), ground()]);
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!((found.tally.stems, found.other_stems.len()), (2, 1), "{:?}", found.other_stems);
+    let spec = TreeScanSpec { at: Some([2.0, 0.4]), ..TreeScanSpec::default() };
+    let found = find_tree(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert!((found.foot - DVec3::new(2.2, 0.1, 0.8)).with_y(0.0).length() < 0.1, "{:?}", found.foot);
+    let (a, b) = (truth.measure(), found.plant.measure());
+    assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{} {}", b.height_m, a.height_m);
+}
+
+#[test]
+fn scans_from_the_air_and_in_another_unit_are_refused() {
+    let mut s = Seed::new(6).stream(Draw::Test);
+    let mut points: Vec<DVec3> = (0..20_000)
+        .map(|_| DVec3::new(s.range(-30.0, 30.0), s.range(0.0, 0.1), s.range(-30.0, 30.0)))
+        .collect();
+    for k in 0..36 {
+        let middle = DVec3::new(f64::from(k % 6) * 10.0 - 25.0, 12.0, f64::from(k / 6) * 10.0 - 25.0);
+        points.extend((0..400).map(|_| middle + DVec3::new(s.normal(), 2.0 * s.normal(), s.normal()) * 1.2));
+    }
+    let fault = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default());
+    assert!(matches!(fault, Err(ScanTreeError::Airborne(density, _)) if density < 10.0), "{fault:?}");
+    let truth = tree();
+    let small: Vec<DVec3> = cloud(&[wood_mesh(&truth), ground()]).iter().map(|p| *p * 0.001).collect();
+    let fault = find_tree(&small, &TreeScanSpec::default(), &Run::plain(), &mut Report::default());
+    assert!(matches!(fault, Err(ScanTreeError::TooSmall(_))), "{fault:?}");
+}
+
+#[test]
+fn figures_lie_in_their_intervals() {
+    let truth = tree();
+    let points = cloud(&[wood_mesh(&truth), ground()]);
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+    let (a, i) = (truth.measure(), found.intervals);
+    let holds = |i: scan::Interval, x: f64| i.low <= x && x <= i.high;
+    assert!(holds(i.height_m, a.height_m) && i.dbh_m.is_some_and(|d| holds(d, a.dbh_m.unwrap())), "{i:?}");
+    assert!(holds(i.volume_m3, a.wood_volume_m3), "{i:?} {}", a.wood_volume_m3);
+    // They are no wider than they are of use.
+    assert!(i.volume_m3.high < 1.4 * i.volume_m3.low && i.height_m.high < 1.05 * i.height_m.low, "{i:?}");
+}
+
+#[test]
+fn the_trees_of_a_plot_are_found_and_their_points_shared() {
+    let truth = tree();
+    // Two equal trees whose crowns touch, 2.4 m apart, a third, undergrowth and a person.
+    let places = [DVec3::ZERO, DVec3::new(2.4, 0.14, 0.0), DVec3::new(-0.3, 0.0, -2.4)];
+    let mut meshes: Vec<TriMesh> = places.iter().map(|&p| wood_mesh(&moved(tree(), p))).collect();
+    for (at, top, radius) in [(DVec3::new(1.2, 0.0, 0.5), 0.5, 0.02), (DVec3::new(-2.0, -0.2, 1.5), 1.6, 0.2)]
+    {
+        let mut low = Plant::default();
+        low.add_axis(AxisKind::Stem, None, 0, &[at, at + DVec3::Y * top], None);
+        low.nodes.radius_m.fill(radius);
+        meshes.push(wood_mesh(&low));
+    }
+    meshes.push(ground());
+    let points = cloud(&meshes);
+    let spec = TreeScanSpec::default();
+    let plot = find_plot(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!(plot.trees.len(), 3, "{:?}", plot.trees);
+    let owned: usize = plot.trees.iter().map(|t| t.points).sum();
+    assert_eq!(owned + plot.others + plot.loose + plot.ground_points, plot.points);
+    assert!(plot.others > 500, "the person: {}", plot.others);
+    let a = truth.measure();
+    for (k, tree) in plot.trees.iter().enumerate() {
+        let trunk = DVec3::new(tree.place[0], 0.0, tree.place[1]);
+        let at = places.iter().find(|p| (**p - trunk).with_y(0.0).length() < 0.15);
+        assert!(at.is_some(), "{tree:?}");
+        let found = plot.find_tree(k, &spec, &Run::plain(), &mut Report::default()).unwrap();
+        let b = found.plant.measure();
+        assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{k}: {} {}", b.height_m, a.height_m);
+        assert!((b.dbh_m.unwrap() / a.dbh_m.unwrap() - 1.0).abs() < 0.08, "{k}: {:?} {:?}", b.dbh_m, a.dbh_m);
+        assert!(
+            (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.15,
+            "{k}: {} {}",
+            b.wood_volume_m3,
+            a.wood_volume_m3
+        );
+    }
+    // The same, whichever point comes first.
+    let turned: Vec<DVec3> = points.iter().rev().copied().collect();
+    let again = find_plot(&turned, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    let counts = |p: &scan::Plot| p.trees.iter().map(|t| t.points).collect::<Vec<_>>();
+    assert_eq!(counts(&again), counts(&plot));
+}
+
+/// A bough of the larger tree touches the trunk of the smaller: it takes neither its top nor its boughs.
+#[test]
+fn a_bough_that_touches_a_smaller_tree_does_not_take_its_top() {
+    let (large, small) = (scaled(tree(), 1.4), scaled(tree(), 0.8));
+    // The first bough leaves the trunk along +x at 2.5 m, and ends 2.6 m away.
+    let at = DVec3::new(1.7, 0.1, 0.05);
+    let points = cloud(&[wood_mesh(&large), wood_mesh(&moved(small.clone(), at)), ground()]);
+    let spec = TreeScanSpec::default();
+    let plot = find_plot(&points, &spec, &Run::plain(), &mut Report::default()).unwrap();
+    assert_eq!(plot.trees.len(), 2, "{:?}", plot.trees);
+    for (k, truth) in [large, small].iter().enumerate() {
+        let found = plot.find_tree(k, &spec, &Run::plain(), &mut Report::default()).unwrap();
+        let (a, b) = (truth.measure(), found.plant.measure());
+        println!(
+            "{k}: height {} of {}, volume {} of {}",
+            b.height_m, a.height_m, b.wood_volume_m3, a.wood_volume_m3
+        );
+        assert!((b.height_m / a.height_m - 1.0).abs() < 0.03, "{k}: {} {}", b.height_m, a.height_m);
+        assert!(
+            (b.wood_volume_m3 / a.wood_volume_m3 - 1.0).abs() < 0.2,
+            "{k}: {} {}",
+            b.wood_volume_m3,
+            a.wood_volume_m3
+        );
+    }
 }

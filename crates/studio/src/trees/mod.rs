@@ -48,7 +48,7 @@ pub use height::{HeightError, age_of_height};
 pub use lod::coarser;
 use lod::keep_out;
 pub use presets::{PRESETS, Preset};
-pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
+pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;
 
 /// How a tree is meshed. Not saved with it.

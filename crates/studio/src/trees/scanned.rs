@@ -5,7 +5,7 @@ use formats::ExportSpec;
 use glam::DVec3;
 use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
 use plant::BladeForm;
-use scan::{FoundTree, ScanTreeError, TreeScanSpec, find_tree};
+use scan::{FoundTree, Plot, ScanTreeError, TreeScanSpec, find_tree};
 use skin::SkinSpec;
 
 use super::evaluate::skinned;
@@ -96,8 +96,33 @@ pub fn make_tree_from_scan(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<(MadePlant, FoundTree), ScannedTreeError> {
+    let is_placed = options.scan.at.is_some();
+    made(name, (options, is_placed), seed, run, |r| find_tree(points, &options.scan, run, r))
+}
+
+/// The same of one tree of a plot.
+///
+/// # Errors
+/// [`ScannedTreeError`].
+pub fn make_tree_of_plot(
+    name: &str,
+    (plot, tree): (&Plot, usize),
+    options: &ScanTreeOptions,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<(MadePlant, FoundTree), ScannedTreeError> {
+    made(name, (options, true), seed, run, |r| plot.find_tree(tree, &options.scan, run, r))
+}
+
+fn made(
+    name: &str,
+    (options, is_placed): (&ScanTreeOptions, bool),
+    seed: Seed,
+    run: &Run<'_>,
+    find: impl FnOnce(&mut Report) -> Result<FoundTree, ScanTreeError>,
+) -> Result<(MadePlant, FoundTree), ScannedTreeError> {
     let mut report = Report::default();
-    let found = report.stage("structure", run.clock, |r| find_tree(points, &options.scan, run, r))?;
+    let found = report.stage("structure", run.clock, find)?;
     let mut plant = found.plant.clone();
     plant.name = name.into();
     let look = options.leaves.as_ref().map_or_else(Look::default, |s| s.look.clone());
@@ -117,7 +142,6 @@ pub fn make_tree_from_scan(
     let form = options.leaves.as_ref().map_or_else(BladeForm::default, |s| s.blade.form);
     let from = (dressed(options.skin.clone(), &look, form), look, None);
     let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
-    let is_placed = options.scan.at.is_some();
     let mut made = MadePlant::untold(plant, (model, from.0), (vec![], &[]), &report)
         .check(|r| check_scan(&found.plant, &found.tally, is_placed, r))
         .told();

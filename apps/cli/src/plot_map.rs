@@ -1,0 +1,108 @@
+//! The map of a plot: its trees seen from above, each in a colour of its own, with its number.
+
+use burgeon::render::Picture;
+use burgeon::scan::Plot;
+
+/// Pixels of the longer side, and of a margin.
+const LONG: f64 = 1200.0;
+const MARGIN: f64 = 20.0;
+/// Colours of neighbours, told apart by people who see red and green alike, too (Okabe and Ito 2008, lightened).
+const COLOURS: [[u8; 3]; 7] = [
+    [120, 190, 235],
+    [240, 190, 90],
+    [90, 190, 160],
+    [235, 225, 110],
+    [110, 160, 210],
+    [230, 150, 100],
+    [215, 165, 195],
+];
+/// What is no tree's.
+const OTHER: [u8; 3] = [205, 205, 205];
+const DARK: [u8; 3] = [40, 40, 40];
+
+/// Digits of 3 x 5 pixels, rows from above, the leftmost pixel in the highest bit.
+const DIGITS: [[u8; 5]; 10] = [
+    [7, 5, 5, 5, 7],
+    [2, 6, 2, 2, 7],
+    [7, 1, 7, 4, 7],
+    [7, 1, 7, 1, 7],
+    [5, 5, 7, 1, 1],
+    [7, 4, 7, 1, 7],
+    [7, 4, 7, 5, 7],
+    [7, 1, 1, 1, 1],
+    [7, 5, 7, 5, 7],
+    [7, 5, 7, 1, 7],
+];
+/// Pixels of a pixel of a digit.
+const DOT: i64 = 3;
+
+struct Map {
+    picture: Picture,
+    low: [f64; 2],
+    scale: f64,
+}
+
+impl Map {
+    /// x to the right, and +Z of the plot (which is -Y of a scan with +Z up) downwards: as a map has north at its top.
+    fn pixel(&self, [x, z]: [f64; 2]) -> [i64; 2] {
+        #[expect(clippy::cast_possible_truncation, reason = "a picture of some thousand pixels")]
+        let at = |v: f64, low: f64| ((v - low) * self.scale + MARGIN) as i64;
+        [at(x, self.low[0]), at(z, self.low[1])]
+    }
+
+    fn dot(&mut self, [x, y]: [i64; 2], colour: [u8; 3]) {
+        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
+        if x >= self.picture.width || y >= self.picture.height {
+            return;
+        }
+        let at = 4 * (y as usize * self.picture.width as usize + x as usize);
+        self.picture.pixels[at..at + 3].copy_from_slice(&colour);
+    }
+
+    fn number(&mut self, [x, y]: [i64; 2], number: usize) {
+        for (k, digit) in (0_i64..).zip(number.to_string().bytes()) {
+            let rows = DIGITS[usize::from(digit - b'0')];
+            for (row, bits) in (0_i64..).zip(rows) {
+                for column in (0..3_i64).filter(|c| bits >> (2 - c) & 1 == 1) {
+                    let corner = [x + DOT * (4 * k + column), y + DOT * row];
+                    for i in 0..DOT * DOT {
+                        self.dot([corner[0] + i % DOT, corner[1] + i / DOT], DARK);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The map of a plot.
+pub(crate) fn map_of(plot: &Plot) -> Picture {
+    let none = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let (low, high) = plot
+        .owned()
+        .fold(none, |(a, b), (p, _)| ([a[0].min(p.x), a[1].min(p.z)], [b[0].max(p.x), b[1].max(p.z)]));
+    let size = [0, 1].map(|k| (high[k] - low[k]).max(1e-3));
+    let scale = LONG / size[0].max(size[1]);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1240")]
+    let [width, height] = size.map(|s| (s * scale + 2.0 * MARGIN).max(1.0) as u32);
+    let mut map = Map { picture: Picture::filled(width, height, [255; 4]), low, scale };
+    // Trees over what is none.
+    for is_tree in [false, true] {
+        for (p, owner) in plot.owned().filter(|(_, owner)| owner.is_some() == is_tree) {
+            let colour = owner.map_or(OTHER, |o| COLOURS[o % COLOURS.len()]);
+            let at = map.pixel([p.x, p.z]);
+            map.dot(at, colour);
+        }
+    }
+    for (k, tree) in plot.trees.iter().enumerate() {
+        let [x, y] = map.pixel(tree.place);
+        #[expect(clippy::cast_possible_truncation, reason = "some pixels")]
+        let r = (tree.radius_m * scale).max(3.0) as i64;
+        for dy in -r..=r {
+            for dx in (-r..=r).filter(|dx| dx * dx + dy * dy <= r * r) {
+                map.dot([x + dx, y + dy], DARK);
+            }
+        }
+        map.number([x + r + 3, y - 2 * DOT], k + 1);
+    }
+    map.picture
+}

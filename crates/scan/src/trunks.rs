@@ -1,0 +1,172 @@
+//! Trunks: what is round, stands upright and goes on from near the ground to above a person's head.
+//!
+//! A trunk is seen in slices below and above breast height, so that neither undergrowth at its foot nor a crown that
+//! touches the next one hides how many trees there are.
+
+use base::{CancelToken, Cancelled, Draw, Seed};
+use glam::{DVec2, DVec3};
+
+use crate::circle::fit_circle;
+use crate::stems::Site;
+use crate::ways::{NONE, Ways};
+
+/// A trunk that was seen.
+#[derive(Clone, Debug)]
+pub(crate) struct Trunk {
+    /// Its middle in its lowest slice.
+    pub(crate) middle: DVec3,
+    pub(crate) radius: f64,
+    /// Its cubes in all slices.
+    pub(crate) cubes: Vec<u32>,
+}
+
+/// Where slices are and what is a trunk in them.
+struct TrunkLimits {
+    /// Lower end of the lowest slice and thickness of each, metres, of a tree of [`Self::tall_m`].
+    lowest_m: f64,
+    slice_m: f64,
+    slices: usize,
+    /// Slices of lower trees are as much lower.
+    tall_m: f64,
+    /// Slices that a trunk is seen in, of which one is among the upper two: a person reaches no higher.
+    seen: usize,
+    /// No trunk is thicker.
+    radius_most_m: f64,
+    /// The shares of a circle's circumference that has points, of the points on it, and of those inside.
+    covered: f64,
+    share: f64,
+    inside: f64,
+    /// Middles of one trunk in two slices are at most so far apart, and its radii have at most this ratio.
+    lean_m: f64,
+    ratio: f64,
+    /// Trunks with less wood-free space between them are one tree that forks near the ground.
+    apart_m: f64,
+}
+
+const TRUNKS: TrunkLimits = TrunkLimits {
+    lowest_m: 0.3,
+    slice_m: 0.4,
+    slices: 6,
+    tall_m: 6.0,
+    seen: 4,
+    radius_most_m: 1.5,
+    covered: 0.3,
+    share: 0.4,
+    inside: 0.15,
+    lean_m: 0.15,
+    ratio: 2.0,
+    apart_m: 0.5,
+};
+
+/// What may be a trunk in one slice.
+struct Disc {
+    slice: usize,
+    middle: DVec3,
+    radius: f64,
+    cubes: Vec<u32>,
+}
+
+/// All trunks, the thickest first. Cost: linear.
+pub(crate) fn find_trunks(
+    points: &[DVec3],
+    ways: &Ways,
+    site: &Site<'_>,
+    noise: f64,
+    cancel: &CancelToken,
+) -> Result<Vec<Trunk>, Cancelled> {
+    let scale = (site.height / TRUNKS.tall_m).min(1.0);
+    let mut discs: Vec<Disc> = vec![];
+    for slice in 0..TRUNKS.slices {
+        let from = scale * (TRUNKS.lowest_m + TRUNKS.slice_m * slice as f64);
+        let range = from..from + scale * TRUNKS.slice_m;
+        let is_in = |c: usize| range.contains(&site.over(ways.means[c]));
+        let (piece, sizes) = ways.pieces(2, is_in, cancel)?;
+        let mut cubes: Vec<Vec<u32>> = sizes.iter().map(|_| vec![]).collect();
+        for (c, &p) in (0_u32..).zip(&piece) {
+            if p != NONE {
+                cubes[p as usize].push(c);
+            }
+        }
+        discs.extend(cubes.into_iter().filter_map(|cubes| disc(points, ways, slice, cubes, noise)));
+    }
+    Ok(joined(discs, scale))
+}
+
+/// A round piece of a slice.
+fn disc(points: &[DVec3], ways: &Ways, slice: usize, cubes: Vec<u32>, noise: f64) -> Option<Disc> {
+    let cell = ways.voxels.cell();
+    let mean = cubes.iter().map(|&c| ways.means[c as usize]).sum::<DVec3>() / cubes.len() as f64;
+    let rows: Vec<u32> = cubes.iter().flat_map(|&c| ways.voxels.rows(c as usize)).copied().collect();
+    let flat: Vec<DVec2> = rows
+        .iter()
+        .step_by(rows.len() / 400 + 1)
+        .map(|&i| points[i as usize] - mean)
+        .map(|d| DVec2::new(d.x, d.z))
+        .collect();
+    let wide = flat.iter().map(|p| p.length()).fold(0.0, f64::max);
+    if cubes.len() < 3 || flat.len() < 6 {
+        return None;
+    }
+    // What is a few cubes across is round as far as can be seen.
+    if wide < 2.0 * cell {
+        return Some(Disc { slice, middle: mean, radius: 0.7 * wide, cubes });
+    }
+    let mut stream = Seed::new(u64::from(cubes[0])).stream(Draw::Sampling);
+    let circle = fit_circle(&flat, noise.max(0.5 * cell), wide.min(TRUNKS.radius_most_m), &mut stream)?;
+    let is_round =
+        circle.covered >= TRUNKS.covered && circle.share >= TRUNKS.share && circle.inside <= TRUNKS.inside;
+    if !is_round {
+        return None;
+    }
+    let middle = mean + DVec3::new(circle.centre.x, 0.0, circle.centre.y);
+    // Branches and undergrowth that touch the trunk are not its cubes.
+    let near = circle.radius + 2.0 * cell + noise;
+    let on = |c: &u32| {
+        let d = ways.means[*c as usize] - middle;
+        DVec2::new(d.x, d.z).length() < near
+    };
+    let cubes: Vec<u32> = cubes.into_iter().filter(on).collect();
+    (!cubes.is_empty()).then_some(Disc { slice, middle, radius: circle.radius, cubes })
+}
+
+/// Discs above one another are a trunk.
+fn joined(discs: Vec<Disc>, scale: f64) -> Vec<Trunk> {
+    let mut runs: Vec<Vec<Disc>> = vec![];
+    for disc in discs {
+        let fits = |run: &Vec<Disc>| {
+            let last = &run[run.len() - 1];
+            let steps = disc.slice - last.slice;
+            let off = (disc.middle - last.middle).with_y(0.0).length();
+            let ratio = (disc.radius / last.radius).max(last.radius / disc.radius);
+            (1..=2).contains(&steps) && off < TRUNKS.lean_m * scale * steps as f64 && ratio < TRUNKS.ratio
+        };
+        match runs.iter().position(fits) {
+            Some(run) => runs[run].push(disc),
+            None => runs.push(vec![disc]),
+        }
+    }
+    let mut trunks: Vec<Trunk> = vec![];
+    for run in runs {
+        let top = run[run.len() - 1].slice;
+        if run.len() < TRUNKS.seen || top + 2 < TRUNKS.slices {
+            continue;
+        }
+        let mut radii: Vec<f64> = run.iter().map(|d| d.radius).collect();
+        base::sort_numbers(&mut radii);
+        let (middle, radius) = (run[0].middle, radii[radii.len() / 2]);
+        trunks.push(Trunk { middle, radius, cubes: run.into_iter().flat_map(|d| d.cubes).collect() });
+    }
+    base::sort_by(&mut trunks, |a, b| b.radius.total_cmp(&a.radius).then(a.middle.x.total_cmp(&b.middle.x)));
+    let mut kept: Vec<Trunk> = vec![];
+    for trunk in trunks {
+        let near = |k: &&mut Trunk| {
+            let free = (k.middle - trunk.middle).with_y(0.0).length() - k.radius - trunk.radius;
+            free < TRUNKS.apart_m * scale
+        };
+        match kept.iter_mut().find(near) {
+            Some(one) => one.cubes.extend(trunk.cubes),
+            None => kept.push(trunk),
+        }
+    }
+    kept
+}
