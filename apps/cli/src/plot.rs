@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use burgeon::formats::PngCache;
 use burgeon::glam::DVec3;
 use burgeon::scan::{FoundTree, Plot, find_plot};
 use burgeon::{
@@ -12,11 +13,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::args::{ScanArgs, Seen};
 use crate::failure::{Failure, Outcome};
+use crate::levels::{self, Form, Whole};
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::plot_map::map_of;
 use crate::scan::{Read, failure, inputs_of, options_of, read};
-use crate::{checks, files, levels, picture, report, say};
+use crate::{checks, files, picture, report, say};
 
 /// A row of the inventory, which is also what lies beside each tree, so that a run that was stopped goes on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -82,7 +84,7 @@ pub(crate) fn scan_all(args: &ScanArgs) -> Outcome {
     let format = Some(files::plant_writable(Path::new("tree.glb"))?);
     args.given.check_picture(false, &args.picture)?;
     args.given.check_surface(Seen::new(format, None, &args.common))?;
-    args.surface.check_used(&args.given, format)?;
+    args.surface.check_used(&args.given, format, false)?;
     args.given.refuse(&["lods"], "single trees", "--all makes a model of each tree")?;
     outputs.folder(folder)?;
     let mut told = Report::default();
@@ -201,22 +203,17 @@ impl Making<'_> {
             .with_progress(name, |_| make_tree_of_plot(name, (&self.plot, k), &self.options, seed, &run));
         let offset = self.read.origin.offset_m.unwrap_or_default();
         let (made, found) = made.map_err(|e| failure(Path::new(name), e.in_scan(&self.read.axes, offset)))?;
+        let path = self.file(name, "glb");
+        let format = files::plant_writable(&path)?;
+        let levels = made.levels(&self.args.surface.export.levels(Some(format)), &run);
+        let levels = levels.map_err(|e| failure(Path::new(name), e.into()))?;
         let mut items = vec![made.item];
         checks::accept(&items, &self.args.checks)?;
         let row = self.row(k, name, made_from, &found, &items[0]);
         let mut own = outputs.of_one();
-        let path = self.file(name, "glb");
-        let format = files::plant_writable(&path)?;
-        let goal = (path.as_path(), format, levels::Form::of(&self.args.surface));
-        levels::write(
-            &mut own,
-            goal,
-            (&made.plant, &made.model),
-            &[],
-            &self.args.axes,
-            &mut items,
-            self.machine,
-        )?;
+        let form = Form::new(&path, format, &self.args.surface.export, &self.args.axes);
+        let whole = Whole { plant: &made.plant, model: made.model, levels };
+        levels::write(&mut own, &form, whole, &mut items, &mut PngCache::new(), self.machine)?;
         files::write_qsm(&mut own, &self.file(name, "csv"), &made.plant, &self.args.axes)?;
         let text = serde_json::to_string_pretty(&row)
             .map_err(|e| Failure::Bug(format!("a row cannot be written as JSON: {e}")))?;

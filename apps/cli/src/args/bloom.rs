@@ -270,7 +270,7 @@ impl BloomCommand {
     /// Sets what the engine of `--for` wants.
     pub(crate) fn settle(&mut self) -> Outcome {
         match self {
-            Self::Fit(_) => Ok(()),
+            Self::Fit(_) | Self::At(_) => Ok(()),
             Self::Run(args) => args.settle(),
         }
     }

@@ -8,8 +8,8 @@ use burgeon::glam::DVec3;
 use burgeon::skin::SkinSpec;
 use clap::Args;
 
+use super::export::FoliageWord;
 use super::given::Given;
-use super::grow::FoliageWord;
 use super::shared::{CommonArgs, PackWord, of, ranged, seed, whole};
 
 #[derive(Args, Debug)]

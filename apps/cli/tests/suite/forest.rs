@@ -100,7 +100,7 @@ fn walk(node: &Value, above: Option<(&[f64], f64)>, seen: &mut Vec<String>) {
     let numbers = node["boundingVolume"]["box"].as_array().unwrap();
     let own: Vec<f64> = numbers.iter().map(|x| x.as_f64().unwrap()).collect();
     let error = node["geometricError"].as_f64().unwrap();
-    assert_eq!(own.len(), 12);
+    assert_eq!(own.len(), 12, "a box has twelve numbers");
     if let Some((outer, most)) = above {
         for k in 0..3 {
             let reach = (own[k] - outer[k]).abs() + own[3 + 4 * k];

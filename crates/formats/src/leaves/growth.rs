@@ -8,6 +8,9 @@ use super::LeafFileError;
 use super::fields::Fields;
 use crate::error::{FileFault, Place};
 
+/// Whether a column is of one kind.
+type IsColumn = fn(&Column) -> bool;
+
 /// More measurements than anybody types.
 const MOST: usize = 200_000;
 
@@ -187,7 +190,7 @@ impl Header {
                 () => Column::Other,
             });
         }
-        let kinds: [(&str, fn(&Column) -> bool); 4] = [
+        let kinds: [(&str, IsColumn); 4] = [
             ("day", |c| *c == Column::Day),
             ("size", |c| matches!(c, Column::Size(_))),
             ("organ", |c| *c == Column::Organ),

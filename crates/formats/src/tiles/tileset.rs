@@ -23,7 +23,7 @@ pub struct TileNode {
     /// Its file, from that of the tileset.
     pub content: String,
     /// Those that take its place.
-    pub children: Vec<TileNode>,
+    pub children: Vec<Self>,
 }
 
 impl TileNode {

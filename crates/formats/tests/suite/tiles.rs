@@ -91,18 +91,28 @@ fn at(row: &Value, key: &str) -> usize {
 /// What the extensions' texts ask for; the rows of the table that copies name, in their order.
 fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
     let (root, bin) = document(glb);
-    assert_eq!(u32::from_le_bytes(glb[8..12].try_into().unwrap()) as usize, glb.len());
+    assert_eq!(
+        u32::from_le_bytes(glb[8..12].try_into().unwrap()) as usize,
+        glb.len(),
+        "the length in the header"
+    );
     let list = |name: &str| root[name].as_array().cloned().unwrap_or_default();
     let (views, accessors, buffers) = (list("bufferViews"), list("accessors"), list("buffers"));
-    assert!(buffers[0].get("uri").is_none() && at(&buffers[0], "byteLength") == bin.len());
+    assert!(
+        buffers[0].get("uri").is_none() && at(&buffers[0], "byteLength") == bin.len(),
+        "the first buffer is the file's own"
+    );
     for view in &views {
         let end = |v: &Value| v["byteOffset"].as_u64().unwrap_or(0) + v["byteLength"].as_u64().unwrap();
         let buffer = |v: &Value| &buffers[at(v, "buffer")];
         assert!(end(view) <= buffer(view)["byteLength"].as_u64().unwrap(), "{view}");
         let packed = &view["extensions"]["EXT_meshopt_compression"];
-        assert!(packed.is_null() || end(packed) <= buffer(packed)["byteLength"].as_u64().unwrap());
+        assert!(
+            packed.is_null() || end(packed) <= buffer(packed)["byteLength"].as_u64().unwrap(),
+            "{packed}"
+        );
     }
-    assert!(accessors.iter().all(|a| at(a, "bufferView") < views.len()));
+    assert!(accessors.iter().all(|a| at(a, "bufferView") < views.len()), "views of accessors");
     for (name, key, of) in [("textures", "source", "images"), ("nodes", "mesh", "meshes")] {
         assert!(
             list(name).iter().all(|row| row.get(key).is_none() || at(row, key) < list(of).len()),
@@ -112,7 +122,11 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
     let metadata = &root["extensions"]["EXT_structural_metadata"];
     let table = &metadata["propertyTables"][0];
     let count = at(table, "count");
-    assert_eq!(metadata["schema"]["enums"]["species"]["values"].as_array().unwrap().len(), species.len());
+    assert_eq!(
+        metadata["schema"]["enums"]["species"]["values"].as_array().unwrap().len(),
+        species.len(),
+        "species"
+    );
     let class = &metadata["schema"]["classes"]["tree"]["properties"];
     for (name, property) in table["properties"].as_object().unwrap() {
         let view = &views[at(property, "values")];
@@ -136,7 +150,8 @@ fn check_tile(glb: &[u8], species: &[String]) -> Vec<usize> {
         let features = &node["extensions"]["EXT_instance_features"]["featureIds"][0];
         assert_eq!(
             (at(features, "featureCount"), at(features, "propertyTable"), at(features, "attribute")),
-            (count, 0, 0)
+            (count, 0, 0),
+            "features of copies"
         );
         named.push(counts[0]);
     }

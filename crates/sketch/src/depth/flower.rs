@@ -54,11 +54,6 @@ impl Corolla {
         Cone { half_angle, ..self.fit.cone }
     }
 
-    /// Length of a generator from the apex to the rim.
-    fn slant(&self) -> f64 {
-        (self.fit.height * self.fit.height + self.fit.radius * self.fit.radius).sqrt()
-    }
-
     fn cot(&self) -> f64 {
         let (s, c) = ops::sin_cos(self.fit.cone.half_angle);
         if s > 1e-9 { (c / s).clamp(0.0, 6.0) } else { 6.0 }

@@ -179,7 +179,7 @@ pub enum NurseryError {
         /// Its name in the stand.
         species: String,
         /// Why.
-        error: TreeError,
+        error: Box<TreeError>,
     },
     /// The stand names more species than there are specs.
     #[error("the stand has {species} species, and {specs} specs were given")]
@@ -204,7 +204,7 @@ impl NurseryError {
     fn of(species: &str, error: TreeError) -> Self {
         match error {
             TreeError::Cancelled(c) => Self::Stopped(Stopped::Cancelled(c)),
-            error => Self::Species { species: species.to_owned(), error },
+            error => Self::Species { species: species.to_owned(), error: Box::new(error) },
         }
     }
 }

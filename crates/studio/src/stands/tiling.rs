@@ -104,7 +104,7 @@ impl Tiling {
     /// # Errors
     /// [`TilingError`].
     pub fn new(stand: &Stand, spec: TilingSpec) -> Result<Self, TilingError> {
-        let count = u32::try_from(stand.trees.len()).map_err(|_| TilingError::TooMany)?;
+        let Ok(count) = u32::try_from(stand.trees.len()) else { return Err(TilingError::TooMany) };
         if count == 0 {
             return Err(TilingError::Empty);
         }

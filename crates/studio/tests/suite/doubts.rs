@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::missing;
+use burgeon::bloom;
 use burgeon::formats::{DrawingFormat, read_drawings};
 use burgeon::ink::{self, Drawing};
 use burgeon::reading::{self, Kind, UNLIKE_A_PLANT};
@@ -85,7 +86,7 @@ fn flowers_that_come_with_the_program_are_plausible_on_every_day() {
     let coarse = SkinSpec { detail: 0.2, ..SkinSpec::default() };
     let options = FlowerOptions { skin: coarse, ..FlowerOptions::default() };
     for word in FlowerSpec::PRESETS {
-        let spec = burgeon::bloom::preset(word).unwrap_or_else(|| panic!("{word} is no preset"));
+        let spec = bloom::preset(word).unwrap_or_else(|| panic!("{word} is no preset"));
         for day in [0.0, spec.opening_days, spec.opening_days + spec.wilting_days] {
             let made =
                 make_flower(&spec.name, &spec, (day, &spec.own_law()), &options, Seed::new(1), &Run::plain());

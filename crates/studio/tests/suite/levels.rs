@@ -141,8 +141,7 @@ fn holds_of(first: usize) {
 fn cards_and_shoots_keep_the_foliage_too() {
     let options = TreeOptions {
         skin: SkinSpec { texture_size: 128, foliage: FoliageStyle::ByLevel, ..SkinSpec::default() },
-        levels: LevelSpec { lods: 3, ..LevelSpec::default() },
-        impostor: Some(256),
+        levels: LevelSpec { lods: 3, impostor: Some(256), ..LevelSpec::default() },
         ..TreeOptions::default()
     };
     let faults: Vec<String> =
