@@ -1,6 +1,5 @@
 //! `burgeon scan --all`: each tree of a plot, with an inventory and a map.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use burgeon::formats::PngCache;
@@ -18,7 +17,7 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::plot_map::map_of;
 use crate::scan::{Read, failure, inputs_of, options_of, read};
-use crate::{checks, files, picture, report, say};
+use crate::{checks, files, inputs, picture, report, say};
 
 /// A row of the inventory, which is also what lies beside each tree, so that a run that was stopped goes on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -85,7 +84,8 @@ pub(crate) fn scan_all(args: &ScanArgs) -> Outcome {
     args.given.check_picture(false, &args.picture)?;
     args.given.check_surface(Seen::new(format, None, &args.common))?;
     args.surface.check_used(&args.given, format, false)?;
-    args.given.refuse(&["lods"], "single trees", "--all makes a model of each tree")?;
+    let one = ["lods", "instances", "triangles", "megabytes", "impostor"];
+    args.given.refuse(&one, "single trees", "--all makes a model of each tree")?;
     outputs.folder(folder)?;
     let mut told = Report::default();
     let options = options_of(args, &mut told)?;
@@ -277,7 +277,7 @@ impl Making<'_> {
 
     /// A tree of an earlier run, if it is whole and of the same.
     fn kept(&self, name: &str, made_from: &str) -> Option<Row> {
-        let row: Row = serde_json::from_slice(&fs::read(self.file(name, "json")).ok()?).ok()?;
+        let row: Row = serde_json::from_slice(&inputs::read_own(&self.file(name, "json")).ok()?).ok()?;
         let is_whole = ["glb", "csv"].iter().all(|e| self.file(name, e).is_file());
         (row.made_from == made_from && is_whole).then_some(row)
     }

@@ -26,6 +26,8 @@ struct ProfileLimits {
     few: usize,
     /// They are wider than this share of their length: narrow leaves cover one another at the tips of grasses.
     slenderness: f64,
+    /// A stem that leads up ends higher than this share of the height of all blades: what stands lower is a tuft of leaves.
+    lowest: f64,
     /// The stem is longer than this share of the largest, and ends at nothing else within this distance.
     stem: f64,
     free: f64,
@@ -51,6 +53,7 @@ const LIMITS: ProfileLimits = ProfileLimits {
     behind_few: 4.5,
     few: 4,
     slenderness: 0.33,
+    lowest: 0.15,
     stem: 0.5,
     free: 0.02,
     fewest_hidden: 2,
@@ -134,8 +137,16 @@ fn is_flower(draft: &Draft<'_>, tip: &Tip, petals: &[usize]) -> bool {
     gap > behind
         && base::median(widths).is_some_and(|s| s > LIMITS.slenderness)
         && tip.length > LIMITS.stem * largest
+        && !is_at_ground(draft, tip)
         && !stands_along(draft, tip.at, largest)
         && is_free(draft, tip, largest)
+}
+
+/// Whether the end of a stem that leads up is where the plant begins.
+fn is_at_ground(draft: &Draft<'_>, tip: &Tip) -> bool {
+    let heights = || draft.blades.iter().flat_map(|b| &b.outline).map(|p| p.y);
+    let (low, high) = heights().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+    tip.way.y > 0.0 && tip.at.y < low + LIMITS.lowest * (high - low)
 }
 
 /// Whether no other stem ends or passes at the end of this one.

@@ -4,7 +4,7 @@
 //! `docs/limits.md`.
 
 use base::{Bound, Check, Report, Severity, ops};
-use bloom::{GrowthLaw, Quantity};
+use bloom::{GrowthLaw, Quantity, RegionLaw};
 use glam::DVec3;
 use growth::{Method, TreeSpec};
 use ink::Ink;
@@ -632,7 +632,11 @@ pub fn check_law(law: &GrowthLaw) -> Report {
     if all == 0 {
         return report;
     }
-    let undetermined = law.laws.iter().filter(|l| !l.is_determined()).count();
+    // A size that stays what it was tells of no growth, however well a law follows it.
+    let is_still = |values: &[f64]| values.windows(2).all(|w| w[0] == w[1]);
+    let tells_nothing =
+        |l: &&RegionLaw| !l.is_determined() || (l.axis == Quantity::Size && is_still(&l.values));
+    let undetermined = law.laws.iter().filter(tells_nothing).count();
     Test {
         name: "laws-undetermined",
         value: undetermined as f64 / all as f64,

@@ -187,7 +187,7 @@ impl Fitted {
 pub enum AllowanceError {
     /// Even its coarsest level has more triangles.
     #[error(
-        "the plant has at least {least} triangles, at its coarsest level; allow as many, or lower --detail"
+        "the plant has at least {least} triangles, at its coarsest level; allow as many, or make it coarser"
     )]
     Triangles {
         /// Those of the coarsest level.

@@ -1,7 +1,7 @@
 //! The folder of a tileset: its files come to be one after another, and those that are there already stay.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,7 @@ use burgeon::Digest;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, Outcome};
+use crate::inputs;
 use crate::output::Outputs;
 
 /// Every file of a finished tileset with its digest.
@@ -147,7 +148,7 @@ impl Folder {
         let known = self.files.get(file).or_else(|| self.known.get(file))?.clone();
         let mut bytes = Vec::new();
         // Not an input: it may be written over.
-        File::open(self.path.join(file)).ok()?.take(known.bytes + 1).read_to_end(&mut bytes).ok()?;
+        inputs::open_own(&self.path.join(file)).ok()?.take(known.bytes + 1).read_to_end(&mut bytes).ok()?;
         if Entry::of(file, &bytes) != known {
             return None;
         }
@@ -303,7 +304,7 @@ fn is_below(file: &str) -> bool {
 
 /// A small file, if it is there.
 fn read(path: &Path) -> Outcome<Option<Vec<u8>>> {
-    let file = match File::open(path) {
+    let file = match inputs::open_own(path) {
         Ok(file) => file,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(Failure::io(path, "read", &e)),

@@ -120,7 +120,11 @@ fn kept(plan: &Plan, (variant, level): (u32, u32), usd: bool, folder: &mut Folde
         }
     }
     if usd {
-        folder.keep(&format!("models/{stem}.usda"))?;
+        let text = folder.keep(&format!("models/{stem}.usda"))?;
+        // Names of files stand between two of these signs.
+        for name in std::str::from_utf8(&text).ok()?.split('@').skip(1).step_by(2) {
+            folder.keep(&format!("models/{}", name.trim_start_matches("./")))?;
+        }
     }
     Some(text)
 }

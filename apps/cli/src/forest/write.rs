@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
 use std::io::{self, Write};
 
 use burgeon::forest::{Figure, Tree};
@@ -19,6 +18,7 @@ use super::models::{self, Models};
 use super::{Plan, failed_to_write};
 use crate::args::ForestArgs;
 use crate::failure::{Failure, Outcome};
+use crate::inputs;
 use crate::machine::{Machine, Progress};
 use crate::output::Outputs;
 
@@ -163,7 +163,7 @@ impl Writer<'_> {
         let groups: Vec<Group<'_>> = groups.collect::<Outcome<_>>()?;
         let open = |uri: &str| {
             let file = decode_uri(uri).unwrap_or_else(|| uri.to_owned());
-            fs::read(folder.path(&file)).map_err(WriteError::Io)
+            inputs::read_own(&folder.path(&file)).map_err(WriteError::Io)
         };
         write(folder, outputs, "forest.glb", |out| {
             let (table, packing) = (self.table(shown), Some(self.plan.packing));

@@ -26,18 +26,18 @@ const LIGHT: &[&str] = &[
     "--impostor",
     "128",
     "--variants",
-    "2",
+    "1",
     "--tile-trees",
-    "6",
+    "4",
 ];
-const TREES: usize = 40;
+const TREES: usize = 16;
 
 fn inventory(at: &Path) {
     let mut text = "x,y,species,height_m,dbh_cm,crown_width_m\n".to_owned();
     for k in 0..TREES {
         let (x, y) = (7.0 * (k % 8) as f64 + 0.3, 6.5 * (k / 8) as f64);
-        let species = if k % 5 == 0 { "hazel" } else { "birch" };
-        let height = if k % 5 == 0 { 4.0 } else { 9.0 + 0.3 * (k % 11) as f64 };
+        let species = if k % 5 == 0 { "reed" } else { "hazel" };
+        let height = if k % 5 == 0 { 2.0 } else { 3.5 + 0.1 * (k % 11) as f64 };
         writeln!(text, "{x},{y},{species},{height},{},{}", 9 + k % 7, 0.42 * height).unwrap();
     }
     fs::write(at.join("trees.csv"), text).unwrap();
@@ -178,7 +178,7 @@ fn a_forest_is_whole_alone_carried_on_and_repaired() {
     fs::remove_file(at.join("all").join(&seen[0])).unwrap();
     let again = forest(&at, &["-o", "all", "--map", "plan.png", "--glb", "--usd"]);
     assert_eq!(again["forest"]["written"], 2);
-    assert_eq!(files(&at.join("all")), whole);
+    assert!(files(&at.join("all")) == whole, "the same files");
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn a_forest_that_was_killed_is_carried_on() {
     // What is there is not said to be whole, unless it is.
     assert!(at.join("again/tileset.json").exists() != journal.exists());
     forest(&at, &["-o", "again"]);
-    assert_eq!(files(&at.join("again")), whole);
+    assert!(files(&at.join("again")) == whole, "the same files");
 
     // Another forest in its place leaves nothing of the first.
     let text = fs::read_to_string(at.join("trees.csv")).unwrap();
@@ -213,7 +213,7 @@ fn a_forest_that_was_killed_is_carried_on() {
     fs::write(at.join("trees.csv"), few.join("\n")).unwrap();
     forest(&at, &["-o", "again"]);
     forest(&at, &["-o", "fresh"]);
-    assert_eq!(files(&at.join("again")), files(&at.join("fresh")));
+    assert!(files(&at.join("again")) == files(&at.join("fresh")), "the same files");
 }
 
 #[test]

@@ -151,9 +151,13 @@ fn starting(dir: &Path) -> Duration {
 fn interrupt(dir: &Path, args: &[&str], whole: &BTreeMap<String, u64>, (after, signal): (Duration, Signal)) {
     let what = format!("{args:?}, {signal} after {after:?}");
     let mut child = start(dir, args);
+    // Somebody reads what it says: more than a pipe holds would keep it waiting.
+    let mut said = child.stdout.take().unwrap();
+    let reader = std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
     std::thread::sleep(after);
     kill(Pid::from_raw(child.id().try_into().unwrap()), signal).unwrap();
     let (status, time) = ended(&mut child);
+    reader.join().unwrap().unwrap();
     let limit = SOON + 10 * starting(dir);
     assert!(time < limit, "{what}: ended after {time:?}, not {limit:?}");
     let mut said = String::new();

@@ -154,7 +154,7 @@ impl Misfits {
                 "forest-stems-off",
                 { trees = trees },
                 "the stems of {trees} of {all} trees are more than a quarter too thick or too thin, up to {most:.2} m, as one plant \
-                 stands for many trees: raise --variants"
+                 stands for many trees: grow more variants"
             );
         }
         if self.clipped > 0 {
