@@ -17,7 +17,7 @@ use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{engines, picture, say};
+use crate::{picture, say};
 
 /// A plant as it was made.
 pub(crate) struct Whole<'a> {
@@ -185,7 +185,7 @@ pub(crate) fn write(
         let Whole { plant, model, levels } = &mut whole;
         let rest = levels.copies.iter_mut().map(|(rest, _)| rest);
         let all = levels.lods.iter_mut().chain(rest).chain([&mut *model]);
-        all.for_each(|model| engines::name_after(&plant.name, model));
+        all.for_each(|model| name_after(&plant.name, model));
     }
     if let Some(report) = export.report().filter(|_| !machine.quiet) {
         say::line(&format!("for {}: {}", report.name, report.set.join(", ")));
@@ -244,4 +244,15 @@ fn swaying(
         }
     }
     Ok(report.warnings)
+}
+
+/// Names parts and materials after the plant: `oak_bark`, and not `bark` as those of all others.
+fn name_after(plant: &str, model: &mut Model) {
+    let stem = burgeon::formats::file_name(plant, "plant").to_lowercase();
+    for material in &mut model.materials {
+        material.name = format!("{stem}_{}", material.name);
+    }
+    for part in &mut model.parts {
+        part.name = format!("{stem}_{}", part.name);
+    }
 }

@@ -10,7 +10,6 @@ mod curve;
 mod disk;
 mod draft;
 mod edits;
-mod engines;
 mod failure;
 mod files;
 mod fit;
@@ -77,6 +76,7 @@ fn main() -> ExitCode {
         Command::Sketch(mut args) => args.settle().and_then(|()| sketch::sketch(&args)),
         Command::Leaf(mut args) => args.settle().and_then(|()| leaf::leaf(&args)),
         Command::Grow(mut args) => args.settle().and_then(|()| grow::grow(&args)),
+        Command::Scan(mut args) if args.all => args.settle().and_then(|()| plot::scan_all(&args)),
         Command::Scan(mut args) => args.settle().and_then(|()| scan::scan(&args)),
         Command::Forest(args) => forest::forest(&args),
         Command::Shape(mut args) => args.settle().and_then(|()| shape::shape(&args)),

@@ -19,7 +19,7 @@ use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{checks, files, grow, levels, picture, plot, report, say};
+use crate::{checks, files, grow, levels, picture, report, say};
 
 /// What became of the points.
 #[derive(Debug, Serialize)]
@@ -71,10 +71,6 @@ struct ScanRun {
     scan: ScanTally,
 }
 
-pub(crate) fn scan(args: &ScanArgs) -> Outcome {
-    if args.all { plot::scan_all(args) } else { scan_one(args) }
-}
-
 /// The options of the search and of the surface, and what was odd in them.
 pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTreeOptions> {
     let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, told)).transpose()?;
@@ -115,7 +111,7 @@ pub(crate) fn read(args: &ScanArgs, machine: &Machine, told: &mut Report) -> Out
     Ok(Read { points, axes, origin, ms })
 }
 
-fn scan_one(args: &ScanArgs) -> Outcome {
+pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),

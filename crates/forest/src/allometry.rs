@@ -17,7 +17,7 @@ const COVER_POWER: f64 = 1.6;
 
 /// What the forms of growth of species have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum FunctionalGroup {
     /// Trees with broad leaves.
     Broadleaf,
     /// Trees with needles or scales.
@@ -30,7 +30,7 @@ pub enum Group {
     Herb,
 }
 
-impl Group {
+impl FunctionalGroup {
     /// Deviation of the logarithm of height about the curve. By stands and free-standing trees, which differ by a factor of
     /// two at one diameter.
     const fn height_deviation(self) -> f64 {
@@ -176,7 +176,7 @@ pub struct Allometry {
     /// Other names, in lower case.
     pub names: &'static [&'static str],
     /// Its form of growth.
-    pub group: Group,
+    pub group: FunctionalGroup,
     /// Height of old plants, metres.
     pub top_m: f64,
     pub(crate) stem: Option<Stem>,

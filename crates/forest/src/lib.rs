@@ -22,7 +22,7 @@ mod species;
 mod stand;
 mod stand_csv;
 
-pub use allometry::{Allometry, BREAST_M, Figures, Group, Measured, Predicted, Setting};
+pub use allometry::{Allometry, BREAST_M, Figures, FunctionalGroup, Measured, Predicted, Setting};
 pub use ground::{Ground, GroundError, GroundMesh, HeightMap, MapScale, Mask};
 pub use growing::{ForestError, GrownStand, Site, StandYear, grow_stand, grow_stand_on};
 pub use inventory::{

@@ -13,7 +13,7 @@
 //! The columns `crown` of Hasenauer are published; the others are general forms ([`Allometry`](crate::Allometry)) with
 //! figures chosen by us, and have the wide intervals of their group.
 
-use crate::allometry::{Allometry, Crown, Group, Stem};
+use crate::allometry::{Allometry, Crown, FunctionalGroup, Stem};
 
 /// A row for a tree.
 macro_rules! tree {
@@ -21,7 +21,7 @@ macro_rules! tree {
      free $free:literal, stand $stand:literal, dbh_50 $dbh_50:literal, crown $crown:expr, light $light:literal,
      life $life:literal, spread $spread:literal) => {
         Allometry {
-            preset: $preset, latin: $latin, names: &[$($name),*], group: Group::$group, top_m: $top,
+            preset: $preset, latin: $latin, names: &[$($name),*], group: FunctionalGroup::$group, top_m: $top,
             stem: Some(Stem { thick_m: $thick, free: $free, stand: $stand, dbh_50_m: $dbh_50, crown: $crown }),
             width_of_height: 0.0, light: $light, life_years: $life, spread_m: $spread,
         }
@@ -33,7 +33,7 @@ macro_rules! clump {
     ($preset:literal, $latin:literal, [$($name:literal),*], $group:ident, top $top:literal, wide $wide:literal,
      light $light:literal, life $life:literal, spread $spread:literal) => {
         Allometry {
-            preset: $preset, latin: $latin, names: &[$($name),*], group: Group::$group, top_m: $top, stem: None,
+            preset: $preset, latin: $latin, names: &[$($name),*], group: FunctionalGroup::$group, top_m: $top, stem: None,
             width_of_height: $wide, light: $light, life_years: $life, spread_m: $spread,
         }
     };

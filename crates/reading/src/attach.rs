@@ -8,8 +8,8 @@ use plant::AxisKind;
 
 use crate::blade::{LENS, Sheetlet, found_midrib, midrib, tip};
 use crate::branches::{Line, oriented};
-use crate::draft::Draft;
-use crate::flowers::{FlowerDraft, whorls};
+use crate::draft::{Draft, FlowerDraft};
+use crate::flowers::whorls;
 use crate::kept::{alike, same_bits};
 use crate::near::Near;
 use crate::overlap::layers;

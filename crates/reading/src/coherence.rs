@@ -11,8 +11,7 @@ use glam::DVec2;
 
 use crate::blade::Sheetlet;
 use crate::branches::Line;
-use crate::draft::Draft;
-use crate::flowers::FlowerDraft;
+use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
 use crate::thresholds::WELL_SHORT;
 

@@ -70,6 +70,16 @@ impl RegionDraft {
     }
 }
 
+/// A flower before its petals are read.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FlowerDraft {
+    pub(crate) centre: DVec2,
+    /// Blades of the draft with their roots.
+    pub(crate) petals: Vec<usize>,
+    pub(crate) disc: Option<DiscReading>,
+    pub(crate) stamens: Vec<Vec<DVec2>>,
+}
+
 /// A stem with leaves, or petals, on its way that were drawn in one go.
 #[derive(Clone, Debug)]
 pub(crate) struct OneGo {

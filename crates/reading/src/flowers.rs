@@ -18,7 +18,7 @@ use crate::body;
 use crate::coherence;
 use crate::contour::{neck, width_at};
 use crate::corolla::{Core, is_cup, split, visits, winding};
-use crate::draft::Draft;
+use crate::draft::{Draft, FlowerDraft};
 use crate::near::Near;
 use crate::rings::Ring;
 use crate::thresholds::{FEWEST_PETALS, ROUNDING, SAME_PLACE, STOPPED_SHORT, WELL_SHORT};
@@ -88,16 +88,6 @@ const MOST_PETALS: usize = 300;
 /// of that one's half angle.
 const INNER: f64 = 0.72;
 const IN_FRONT: f64 = 0.8;
-
-/// A flower before its petals are read.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FlowerDraft {
-    pub(crate) centre: DVec2,
-    /// Blades of the draft with their roots.
-    pub(crate) petals: Vec<usize>,
-    pub(crate) disc: Option<DiscReading>,
-    pub(crate) stamens: Vec<Vec<DVec2>>,
-}
 
 /// Discs of the draft: middle and mean radius of each disc stroke.
 pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {

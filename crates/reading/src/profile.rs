@@ -8,8 +8,7 @@ use glam::DVec2;
 use crate::blade::Sheetlet;
 use crate::coherence::stands_along;
 use crate::contour::width_at;
-use crate::draft::Draft;
-use crate::flowers::FlowerDraft;
+use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
 use crate::thresholds::FEWEST_PETALS;
 

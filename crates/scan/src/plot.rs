@@ -6,9 +6,9 @@ use glam::DVec3;
 use crate::ScanTreeError;
 use crate::circle::fit_circle;
 use crate::ground::Ground;
-use crate::stems::Site;
+use crate::stems::{Site, Trunk};
 use crate::tree::{FoundTree, Scene};
-use crate::trunks::{Trunk, find_trunks};
+use crate::trunks::find_trunks;
 use crate::wanted::TreeScanSpec;
 use crate::ways::{NONE, Ways};
 

@@ -6,9 +6,18 @@ use glam::DVec3;
 use crate::ScanTreeError;
 use crate::ground::Ground;
 use crate::levels::Rings;
-use crate::trunks::Trunk;
 use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{Bridges, NONE, Ways};
+
+/// A trunk that was seen.
+#[derive(Clone, Debug)]
+pub(crate) struct Trunk {
+    /// Its middle in its lowest slice.
+    pub(crate) middle: DVec3,
+    pub(crate) radius: f64,
+    /// Its cubes in all slices.
+    pub(crate) cubes: Vec<u32>,
+}
 
 /// Where a tree stands: heights over the ground.
 pub(crate) struct Site<'a> {

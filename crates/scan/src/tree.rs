@@ -11,9 +11,9 @@ use crate::ground::Ground;
 use crate::intervals::{Intervals, SeenNode};
 use crate::levels::Rings;
 use crate::radii::{Measured, Pipes, Smoothed, measure, smooth};
-use crate::stems::{Site, Stems};
+use crate::stems::{Site, Stems, Trunk};
 use crate::surface::surface_places;
-use crate::trunks::{Trunk, find_trunks};
+use crate::trunks::find_trunks;
 use crate::wanted::{ScanTally, TreeScanSpec};
 use crate::ways::{NONE, Ways};
 

@@ -7,18 +7,8 @@ use base::{CancelToken, Cancelled, Draw, Seed};
 use glam::{DVec2, DVec3};
 
 use crate::circle::fit_circle;
-use crate::stems::Site;
+use crate::stems::{Site, Trunk};
 use crate::ways::{NONE, Ways};
-
-/// A trunk that was seen.
-#[derive(Clone, Debug)]
-pub(crate) struct Trunk {
-    /// Its middle in its lowest slice.
-    pub(crate) middle: DVec3,
-    pub(crate) radius: f64,
-    /// Its cubes in all slices.
-    pub(crate) cubes: Vec<u32>,
-}
 
 /// Where slices are and what is a trunk in them.
 struct TrunkLimits {

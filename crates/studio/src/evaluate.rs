@@ -17,12 +17,12 @@ use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
 use crate::checks::{Sketched, check_plant, check_sketch};
 use crate::levels::{LaidOut, LevelSpec, Levels, level_of};
+use crate::lod::coarser;
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
-use crate::trees::coarser;
 
 /// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
 /// the viewer.

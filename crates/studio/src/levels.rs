@@ -9,7 +9,7 @@ use mesh::{Copies, Model, Texture};
 use plant::{AxisKind, OrganKind, Plant};
 use skin::{Layout, SkinSpec};
 
-use crate::trees::coarser;
+use crate::lod::coarser;
 
 /// A model, and the plant that it is of with what of it lies where in the model.
 pub(crate) type LaidOut = (Model, (Plant, Layout));

@@ -26,6 +26,7 @@ mod flowers;
 mod leaf_blade;
 mod leaves;
 mod levels;
+mod lod;
 mod made;
 mod make;
 mod motion;
@@ -61,6 +62,7 @@ pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
+pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, colour_points, motion_model};
@@ -95,7 +97,7 @@ pub use template::{LeafTemplate, TemplateError};
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
     ScanTreeOptions, ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, age_of_height,
-    coarser, guided_methods, make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec,
+    guided_methods, make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec,
     scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;

@@ -8,8 +8,8 @@ use clap::{Args, Subcommand, ValueEnum};
 use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
+use super::settings::Settings;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, ViewWord, ranged, size};
-use crate::engines::Settings;
 use crate::failure::Outcome;
 
 /// The two commands.

@@ -5,10 +5,10 @@ use burgeon::skin::{FoliageStyle, SolidSpec};
 use burgeon::{EngineReport, LevelSpec};
 use clap::{Args, ValueEnum};
 
+use super::engine::Engine;
 use super::given::Given;
 use super::plant_format::PlantFormat;
 use super::shared::{PackWord, SkinArgs, ranged};
-use crate::engines::Engine;
 use crate::failure::Outcome;
 
 /// What is written of a plant, whatever made it.

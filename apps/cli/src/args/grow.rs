@@ -10,8 +10,8 @@ use clap::{Args, ValueEnum};
 use super::export::TreeSurfaceArgs;
 use super::given::Given;
 use super::lists;
+use super::settings;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, seed};
-use crate::engines;
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
@@ -161,6 +161,6 @@ impl GrowArgs {
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
-        engines::settle(&self.given, set, self.output.as_deref())
+        settings::settle(&self.given, set, self.output.as_deref())
     }
 }

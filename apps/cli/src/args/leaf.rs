@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
+use super::settings::Settings;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, of, ranged, whole};
-use crate::engines::Settings;
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]

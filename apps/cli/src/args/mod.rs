@@ -2,6 +2,7 @@
 
 mod bloom;
 mod compare;
+mod engine;
 mod export;
 mod files;
 mod forest;
@@ -13,13 +14,14 @@ mod plant_format;
 mod presets;
 mod replay;
 mod scan;
+mod settings;
 mod shape;
 mod shared;
 mod sketch;
 
 pub(crate) use bloom::{BloomAtArgs, BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
-pub(crate) use export::{EXPORT, ExportArgs, FoliageWord, LodFileWord, TreeSurfaceArgs};
+pub(crate) use export::{EXPORT, ExportArgs, FoliageWord, TreeSurfaceArgs};
 pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
 pub(crate) use forest::{ForestArgs, GroundArgs};
 pub(crate) use given::{Given, Seen};

@@ -11,8 +11,8 @@ use super::export::ExportArgs;
 use super::given::Given;
 use super::lists;
 use super::plant_format::PlantFormatWord;
+use super::settings;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, SkinArgs, of, seed};
-use crate::engines;
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
@@ -219,6 +219,6 @@ impl SketchArgs {
     pub(crate) fn settle(&mut self) -> Outcome {
         let surface = &mut self.surface;
         let set = (&mut surface.export, &mut surface.skin, &mut self.axes);
-        engines::settle(&self.given, set, self.output.as_deref())
+        settings::settle(&self.given, set, self.output.as_deref())
     }
 }

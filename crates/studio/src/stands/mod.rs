@@ -13,8 +13,10 @@ mod map;
 mod nursery;
 mod placed;
 mod tiling;
+mod variant;
 
 pub use map::{SPECIES_COLOURS, stand_map};
-pub use nursery::{Nursery, NurseryError, NurseryLook, NurserySpec, Variant};
+pub use nursery::{Nursery, NurseryError, NurseryLook, NurserySpec};
 pub use placed::{LIMITS, Misfits, Placed, ScaleLimits};
 pub use tiling::{StandTile, TileId, Tiling, TilingError, TilingSpec};
+pub use variant::Variant;

@@ -2,30 +2,19 @@
 
 use base::{Report, Run, Seed, Stopped, map_until_cancelled, ops};
 use forest::{Stand, Tree};
-use glam::DVec3;
 use growth::TreeSpec;
 use mesh::Model;
-use plant::{OrganKind, Plant};
 
 use super::placed::{Placed, place};
+use super::variant::{BREAST_M, Variant};
 use crate::trees::{TreeError, TreeOptions, grow_plant, mesh_plant};
 
 /// Ages at which a species is grown, as shares of the years of its spec: a tree gets the one whose height is nearest to its own.
 const AGES: [f64; 4] = [1.0, 0.5, 0.25, 0.12];
-/// Stems are measured up to this height, metres, in so many steps: 1.3 m of the smallest scale that a plant may have.
-const STEM_M: f64 = 4.0;
-const STEM_STEPS: usize = 80;
-/// Breast height, metres.
-const BREAST_M: f64 = 1.3;
 /// Views along a side of an atlas, and the height in pixels for which the first coarser level is made; each further one is for half
 /// of it.
 const VIEWS: u32 = 8;
 const PIXELS: u32 = 192;
-/// How much thinner or thicker than it grew the stem of a variant may be made.
-const THINNEST: f64 = 0.4;
-const THICKEST: f64 = 2.5;
-/// A stem that is less often as thick as the thinnest twig has no taper that could change.
-const TAPERED: f64 = 1.5;
 
 /// Which plants are grown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,114 +49,6 @@ impl NurseryLook {
     pub fn levels(&self) -> u32 {
         self.lods.saturating_sub(self.finest) + 1 + u32::from(self.impostor.is_some())
     }
-}
-
-/// A plant that stands for trees of a species.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Variant {
-    /// Row of [`Stand::species`].
-    pub species: u16,
-    /// Row of the ages at which the species is grown, 0 for the oldest.
-    pub age: u8,
-    /// Among those of its species and age, from 0.
-    pub number: u32,
-    /// Metres.
-    pub height_m: f64,
-    /// Mean diameter of the crown, metres.
-    pub crown_width_m: f64,
-    /// How far the middle of the leaves lies from the foot, metres, horizontally.
-    pub lean_m: DVec3,
-    /// The exponent by which radii are changed: `r' = r_min (r / r_min)^n`.
-    pub thicker: f64,
-    /// Radii of each stem at even heights from 0 to [`STEM_M`], metres, as they grew; 0 above its tip.
-    stems: Vec<Vec<f64>>,
-    /// The thinnest shoot, metres.
-    thinnest_m: f64,
-}
-
-impl Variant {
-    /// The diameter of its stems at a height, metres: of several the quadratic sum. 0 above their tips.
-    pub fn diameter_m(&self, height_m: f64) -> f64 {
-        let at = (height_m / STEM_M).clamp(0.0, 1.0) * (STEM_STEPS - 1) as f64;
-        let row = ops::whole(at) as usize;
-        let share = at - row as f64;
-        let radius = |stem: &Vec<f64>| {
-            let (a, b) = (stem.get(row).copied(), stem.get(row + 1).copied());
-            let (a, b) = (a.unwrap_or(0.0), b.or(a).unwrap_or(0.0));
-            if a > 0.0 && b > 0.0 {
-                thickened(ops::lerp(a, b, share), self.thinnest_m, self.thicker)
-            } else {
-                0.0
-            }
-        };
-        let squares = self.stems.iter().map(|s| 4.0 * radius(s) * radius(s)).sum::<f64>();
-        squares.sqrt()
-    }
-
-    fn of(plant: &Plant, (species, age, number): (u16, u8, u32)) -> Self {
-        let measures = plant.measure();
-        let (low, high) = plant.extent().unwrap_or_default();
-        let across = 0.5 * (high.x - low.x + high.z - low.z);
-        let hull = 2.0 * (measures.crown_projection_m2 / core::f64::consts::PI).sqrt();
-        let shoot = plant.shoot();
-        let standing = plant.axes.iter().zip(&shoot).filter(|(a, s)| **s && a.bearer.is_none());
-        let stems = standing.map(|(axis, _)| {
-            let rows = axis.nodes.start as usize..axis.nodes.end as usize;
-            stem_radii(&plant.nodes.position[rows.clone()], &plant.nodes.radius_m[rows])
-        });
-        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
-        let (sum, n) = leaves.fold((DVec3::ZERO, 0_u32), |(sum, n), o| (sum + o.frame.origin, n + 1));
-        Self {
-            species,
-            age,
-            number,
-            height_m: measures.height_m.max(0.01),
-            crown_width_m: if hull > 0.0 { hull } else { across.max(0.01) },
-            lean_m: (sum / f64::from(n.max(1))).with_y(0.0),
-            thicker: 1.0,
-            stems: stems.collect(),
-            thinnest_m: thinnest(plant, &shoot),
-        }
-    }
-
-    /// Lets the stem become so many times as thick at breast height.
-    fn thicken(&mut self, times: f64) {
-        let breast = self.diameter_m(BREAST_M) / 2.0;
-        if breast > TAPERED * self.thinnest_m && self.thinnest_m > 0.0 {
-            let times = times.clamp(THINNEST, THICKEST);
-            self.thicker = (1.0 + ops::ln(times) / ops::ln(breast / self.thinnest_m)).max(0.0);
-        }
-    }
-}
-
-fn thickened(radius: f64, thinnest: f64, exponent: f64) -> f64 {
-    if radius > thinnest && thinnest > 0.0 {
-        thinnest * ops::powf(radius / thinnest, exponent)
-    } else {
-        radius
-    }
-}
-
-fn thinnest(plant: &Plant, shoot: &[bool]) -> f64 {
-    let own = plant.nodes.radius_m.iter().zip(&plant.nodes.axis);
-    let own = own.filter(|(r, a)| **r > 0.0 && shoot.get(a.index()).copied().unwrap_or(false));
-    own.map(|(r, _)| *r).reduce(f64::min).unwrap_or(0.0)
-}
-
-/// The radius where a stem first passes each height above its foot.
-fn stem_radii(points: &[DVec3], radii: &[f64]) -> Vec<f64> {
-    let foot = points.first().map_or(0.0, |p| p.y);
-    let mut out = Vec::with_capacity(STEM_STEPS);
-    for step in 0..STEM_STEPS {
-        let level = foot + STEM_M * step as f64 / (STEM_STEPS - 1) as f64;
-        let passing =
-            points.windows(2).zip(radii.windows(2)).find(|(p, _)| p[0].y <= level && p[1].y >= level);
-        out.push(passing.map_or(0.0, |(p, r)| {
-            let rise = p[1].y - p[0].y;
-            if rise > 0.0 { ops::lerp(r[0], r[1], (level - p[0].y) / rise) } else { r[0] }
-        }));
-    }
-    out
 }
 
 /// Why a plant of a stand was not made.
@@ -342,7 +223,7 @@ impl Nursery {
         let shoot = plant.shoot();
         for (radius, axis) in plant.nodes.radius_m.iter_mut().zip(&plant.nodes.axis) {
             if shoot.get(axis.index()).copied().unwrap_or(false) {
-                *radius = thickened(*radius, v.thinnest_m, v.thicker);
+                *radius = v.thickened(*radius);
             }
         }
         let options = TreeOptions { skin: look.skin.clone(), ..TreeOptions::default() };

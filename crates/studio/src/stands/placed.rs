@@ -5,7 +5,7 @@ use forest::Tree;
 use formats::Instance;
 use glam::{DQuat, DVec3};
 
-use super::nursery::Variant;
+use super::variant::Variant;
 
 /// How far a plant may be scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]

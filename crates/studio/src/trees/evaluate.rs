@@ -11,9 +11,10 @@ use skin::{FoliageStyle, Layout, SkinSpec, SurfacePictures};
 
 use super::blossom::add_blossom;
 use super::look::{dressed, paint, tint};
-use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
+use super::{Inside, OddMesh, TreeError, TreeOptions, scale_to_height, tree_blade};
 use crate::checks::{check_plant, check_tree};
 use crate::levels::LaidOut;
+use crate::lod::{coarser, keep_out};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;

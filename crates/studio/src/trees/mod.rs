@@ -10,7 +10,6 @@
 //! | `presets` | the species that come with the program |
 //! | `scanned` | trees of laser scans |
 //! | `scenery` | obstacles in a picture |
-//! | `lod` | coarser copies for far away |
 //! | `compare` | one oak by three methods |
 
 mod blade;
@@ -19,7 +18,6 @@ mod compare;
 mod evaluate;
 mod file;
 mod height;
-mod lod;
 mod look;
 mod presets;
 mod scanned;
@@ -45,8 +43,6 @@ pub use evaluate::TreeEvaluator;
 pub(crate) use evaluate::{grow_plant, mesh_plant};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use height::{HeightError, age_of_height};
-pub use lod::coarser;
-use lod::keep_out;
 pub use presets::{PRESETS, Preset};
 pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;

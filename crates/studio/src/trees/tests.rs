@@ -1,6 +1,7 @@
 //! Trees end to end.
 
 use super::*;
+use crate::lod::coarser;
 use base::{CancelToken, Executor};
 use glam::{DVec2, DVec3};
 

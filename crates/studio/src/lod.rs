@@ -138,7 +138,7 @@ fn larger(plant: &Plant, places: &Places, halvings: u32) -> f64 {
 
 /// Gives leaves of a coarser copy of `plant` that may enter an obstacle their own size again, in which they grew beside
 /// it; or, where they are drawn too wide for that too, a smaller one. `own`: how `plant` is skinned.
-pub(super) fn keep_out(
+pub(crate) fn keep_out(
     copy: &mut Plant,
     (skin, own): (&SkinSpec, &SkinSpec),
     plant: &Plant,
