@@ -18,7 +18,7 @@ const TAPERED: f64 = 1.5;
 /// A plant that stands for trees of a species.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
-    /// Row of [`Stand::species`].
+    /// Row of [`forest::Stand::species`].
     pub species: u16,
     /// Row of the ages at which the species is grown, 0 for the oldest.
     pub age: u8,
