@@ -15,6 +15,9 @@ use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
 use crate::thresholds::WELL_SHORT;
 
+/// What the rest of a plant says is asked of drawings of so many strokes.
+pub(crate) const FEWEST_STROKES: usize = 10;
+
 /// When flowers are leaves.
 struct CoherenceLimits {
     /// Blades are alike if neither has more than this many times the area of the other,

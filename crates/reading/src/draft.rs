@@ -619,7 +619,7 @@ impl<'a> Draft<'a> {
             let size = *high - *low;
             let middle = low.y.midpoint(high.y);
             let beside = points.iter().filter(|p| p.y < middle).count() as f64;
-            beside < BESIDE_A_POT * points.len() as f64 && size.y < TALLEST_POT * size.x
+            beside <= BESIDE_A_POT * points.len() as f64 && size.y < TALLEST_POT * size.x
         };
         let pots: Vec<usize> =
             self.pot_groups().into_iter().filter(is_pot).flat_map(|(.., rows)| rows).collect();

@@ -316,13 +316,19 @@ pub(crate) fn gather(
     }
     rosettes(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     adopt(draft, usual, &mut flowers, &mut roots, &mut taken);
-    for i in coherence::dissolve(draft, &mut flowers, usual) {
-        roots[i] = draft.blades[i].root;
+    // A drawing of few strokes is still growing: it has no rest that could tell.
+    let is_many = draft.ink.strokes.len() >= coherence::FEWEST_STROKES;
+    if is_many {
+        for i in coherence::dissolve(draft, &mut flowers, usual) {
+            roots[i] = draft.blades[i].root;
+        }
     }
     profile::gather(draft, &mut flowers, &mut roots, &mut taken);
     let roots: Vec<DVec2> =
         roots.iter().zip(&draft.blades).map(|(r, b)| r.unwrap_or_else(|| bearers.root_of(b))).collect();
-    profile::bells(draft, &mut flowers, &roots, &taken);
+    if is_many {
+        profile::bells(draft, &mut flowers, &roots, &taken);
+    }
     for f in &mut flowers {
         if f.disc.is_none() && !f.petals.is_empty() {
             f.centre = mean(f.petals.iter().map(|&i| roots[i]));

@@ -218,7 +218,7 @@ fn bytes(mesh: &TriMesh) -> u64 {
         + 2 * mesh.uvs.len()
         + 3 * mesh.colors.len()
         + 4 * mesh.wind.len()
-        + 3 * mesh.pivots.len();
+        + 4 * mesh.pivots.len();
     let corner = if mesh.positions.len() < 65_536 { 2 } else { 4 };
     (4 * floats + 3 * corner * mesh.triangles.len()) as u64
 }

@@ -260,6 +260,10 @@ export const zhWords: Record<string, string> = {
 
 /** What was not as one might expect of a plant, by its code; the core's own words follow, with its numbers. */
 export const zhWarnings: Record<string, string> = {
+  'forest-stems-off':
+    '{trees} 棵树的茎与所给的直径相差四分之一以上，因为一株植物代表许多棵树：请为每个树种多生成几株',
+  'forest-scale-clipped':
+    '{trees} 棵树对其树种来说过细、过宽、过小或过大，只缩放到看起来合理的程度（偏差最大的是第 {row} 行）：请检查其测量值，或改用习性相近的树种',
   'nothing-made':
     '植物里没有任何枝条或器官（{value}，至少应有 {bound}）：请画出或测量一根茎或一片叶，给生长留出空间和点，或撤销删去一切的修改',
   'size-large': '植物大到 {value}（最多 {bound}）：请检查输入的单位，或设定高度',
@@ -290,11 +294,14 @@ export const zhWarnings: Record<string, string> = {
     '地面以上的点有 {value} 不属于这棵树（最多 {bound}）：请把树裁出来，指明它的位置，或允许跨过更大的空隙',
   'scan-radii-unseen':
     '树的截面只有 {value} 显出半径（至少 {bound}）：半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
-  'several-stems': '扫描中有 {value} 根树干（最多 {bound}），只取了一根：请指明所指的树干在哪里，或把每根都做成一棵树',
-  'scan-loose': '这棵树的点有 {value} 在空隙之外，未计入（最多 {bound}）：请允许跨过更大的空隙，或裁去不属于这棵树的部分',
+  'several-stems':
+    '扫描中有 {value} 根树干（最多 {bound}），只取了一根：请指明所指的树干在哪里，或把每根都做成一棵树',
+  'scan-loose':
+    '这棵树的点有 {value} 在空隙之外，未计入（最多 {bound}）：请允许跨过更大的空隙，或裁去不属于这棵树的部分',
   'scan-unexplained':
     '这棵树的点只有 {value} 在木质部附近或属于叶（至少 {bound}）：请允许跨过更大的空隙，减小立方体，或扫描得更密',
-  'tree-cut': '树的高度只有其点云的 {value}（至少 {bound}）：树顶未计入，请允许跨过更大的空隙，或指明树干的位置',
+  'tree-cut':
+    '树的高度只有其点云的 {value}（至少 {bound}）：树顶未计入，请允许跨过更大的空隙，或指明树干的位置',
   'volume-small-for-stem':
     '木材体积是同高同胸径圆柱的 {value} 倍（至少 {bound}）：缺了大部分，或胸径有误，请允许跨过更大的空隙，或从更多侧扫描',
   'volume-large-for-stem':

@@ -165,7 +165,7 @@ impl Misfits {
                 { trees = clipped, row = worst_row },
                 "{clipped} trees are too slender, too wide, too small or too large for their species, and were drawn only as far \
                  from it as looks right (height up to {height_error_max_m:.2} m off, crown up to {crown_error_max_m:.2} m; most in \
-                 row {worst_row}): check their measures, or name a species or a spec of that habit"
+                 row {worst_row}): check their measures, or name a species of that habit"
             );
         }
     }
