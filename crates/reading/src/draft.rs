@@ -607,7 +607,10 @@ impl<'a> Draft<'a> {
     /// or they are no pot's shape.
     fn doubt_pots(&mut self) {
         let said = self.of_class(StrokeClass::Pot);
-        if said.is_empty() || said.iter().any(|&k| self.settled[k] || self.said[k].source == Source::User) {
+        let is_said = |k: &usize| {
+            self.settled[*k] || self.said[*k].source == Source::User || self.said[*k].shown.is_some()
+        };
+        if said.is_empty() || said.iter().any(is_said) {
             return;
         }
         let points: Vec<DVec2> = (0..self.class.len())

@@ -651,10 +651,16 @@ fn by_structure(
     };
     let sides: Vec<usize> = tubes.iter().flat_map(|t| t.sides).collect();
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
+    // What was shown departs for clear evidence only.
+    let is_new = classes.iter().all(|c| c.shown.is_none());
     let margin = match by_user {
         true => 0.0,
         // A solid with so many strokes inside is a glance at a drawing of many organs.
-        false if count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit) => {
+        false
+            if is_new
+                && count >= structure::LIMITS.many_strokes
+                && Kind::of(reading).is_like(Kind::Fruit) =>
+        {
             -structure::LIMITS.solid_of_many
         }
         false => structure::LIMITS.clearly_better,
@@ -675,7 +681,12 @@ fn as_likely(
 ) -> Option<(Reading, Report, Kind)> {
     let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
     // One solid explains little of what lies in it, whatever it scores.
-    if likely.is_like(Kind::Fruit) || likely.is_like(Kind::of(structural)) || !asked.is_free(ink, classes) {
+    let is_shown = classes.iter().any(|c| c.shown.is_some());
+    if is_shown
+        || likely.is_like(Kind::Fruit)
+        || likely.is_like(Kind::of(structural))
+        || !asked.is_free(ink, classes)
+    {
         return None;
     }
     let (tried, said) = taken_for(asked, likely, ink, classes);
