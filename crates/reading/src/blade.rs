@@ -153,6 +153,16 @@ impl Sheetlet {
     pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         nearest_on_ring(&self.outline, p)
     }
+
+    /// Whether one of some `places` points of its outline is nearer than `reach` to the other one's.
+    pub(crate) fn touches(&self, other: &Self, reach: f64, places: usize) -> bool {
+        // No point of an outline is farther from its middle than its size.
+        if self.middle.distance(other.middle) > self.size + other.size + reach {
+            return false;
+        }
+        let stride = self.outline.len().div_ceil(places).max(1);
+        self.outline.iter().step_by(stride).any(|&p| other.nearest(p).1 < reach)
+    }
 }
 
 /// A leaf or petal drawn as one line is half as wide as this share of its length.

@@ -1,6 +1,5 @@
-//! What the rest of the plant says of blades that were gathered to flowers, and of those that were not.
+//! Flowers taken apart whose petals are leaves by the rest of the plant: blades that are alike are of one kind.
 //!
-//! What is alike is of one kind.
 //! A cluster of roots is a flower (He and Cheng 2021, section 4.1). So is the end of a pinnate leaf, where the last leaflets
 //! begin in one place, and the rosette at the foot of a stem. The rest of the plant tells them apart: leaflets are like all the
 //! others, and a rosette lies where a stem begins.
@@ -15,7 +14,7 @@ use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
 use crate::thresholds::WELL_SHORT;
 
-/// What the rest of a plant says is asked of drawings of so many strokes.
+/// A drawing of fewer strokes is still growing: the rest of its plant cannot decide yet.
 pub(crate) const FEWEST_STROKES: usize = 10;
 
 /// When flowers are leaves.
@@ -263,7 +262,7 @@ fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower:
     let is_open = || widest_gap(directions(draft, flower)) > LIMITS.ring;
     let is_surrounded = || {
         let touched = |&&i: &&usize| {
-            !is_petal[i] && flower.petals.iter().any(|&p| touches(&draft.blades[i], &draft.blades[p]))
+            !is_petal[i] && flower.petals.iter().any(|&p| touch(&draft.blades[i], &draft.blades[p]))
         };
         alike.iter().filter(touched).count() >= flower.petals.len()
     };
@@ -277,11 +276,6 @@ fn median_petal(forms: &[Form], flower: &FlowerDraft) -> Option<usize> {
     petals.get(petals.len() / 2).copied()
 }
 
-fn touches(a: &Sheetlet, b: &Sheetlet) -> bool {
-    let reach = LIMITS.touching * a.size.min(b.size);
-    if a.middle.distance(b.middle) > a.size + b.size + reach {
-        return false;
-    }
-    let stride = a.outline.len().div_ceil(LIMITS.places).max(1);
-    a.outline.iter().step_by(stride).any(|&p| b.nearest(p).1 < reach)
+fn touch(a: &Sheetlet, b: &Sheetlet) -> bool {
+    a.touches(b, LIMITS.touching * a.size.min(b.size), LIMITS.places)
 }

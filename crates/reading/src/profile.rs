@@ -193,19 +193,17 @@ fn petals_at(draft: &Draft<'_>, tip: &Tip, taken: &[bool]) -> Vec<usize> {
                 && is_near
                 && is_beyond(blade)
                 && !petals.contains(&i)
-                && touches(blade, &draft.blades[front])
+                && blade.touches(
+                    &draft.blades[front],
+                    LIMITS.touching * draft.blades[front].size,
+                    LIMITS.places,
+                )
             {
                 petals.push(i);
             }
         }
     }
     petals
-}
-
-fn touches(a: &Sheetlet, b: &Sheetlet) -> bool {
-    let reach = LIMITS.touching * b.size;
-    let stride = a.outline.len().div_ceil(LIMITS.places).max(1);
-    a.outline.iter().step_by(stride).any(|&p| b.nearest(p).1 < reach)
 }
 
 /// Makes a flower of each outline that is a bell, where several are alike. `roots`: where blades are attached.

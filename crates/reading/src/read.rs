@@ -335,7 +335,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none()
         && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| share_of(&scores, k))
     {
-        if let Some((tried, again, likely)) = as_likely(asked, (ink, classes), &found.reading, &scores) {
+        if let Some((tried, again, likely)) = as_likely(asked, (ink, classes), &found, &scores) {
             (reading, said, kind, taken) = (tried, again, likely, Some(likely));
         } else {
             kind = Kind::of(&found.reading);
@@ -601,6 +601,8 @@ struct Structural {
     said: Report,
     /// What the structure says of the drawing's own strokes; nothing where some were cut anew.
     says: Option<Structure>,
+    /// The facts of the drawing's strokes.
+    sheet: Sheet,
 }
 
 /// A plant by the structure of its strokes, where that explains the drawing clearly better than another reading does.
@@ -653,32 +655,28 @@ fn by_structure(
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
     // What was shown departs for clear evidence only.
     let is_new = classes.iter().all(|c| c.shown.is_none());
-    let margin = match by_user {
-        true => 0.0,
-        // A solid with so many strokes inside is a glance at a drawing of many organs.
-        false
-            if is_new
-                && count >= structure::LIMITS.many_strokes
-                && Kind::of(reading).is_like(Kind::Fruit) =>
-        {
-            -structure::LIMITS.solid_of_many
-        }
-        false => structure::LIMITS.clearly_better,
+    // A solid with so many strokes inside is a glance at a drawing of many organs.
+    let is_solid_of_many =
+        is_new && count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit);
+    let margin = if by_user {
+        0.0
+    } else if is_solid_of_many {
+        -structure::LIMITS.solid_of_many
+    } else {
+        structure::LIMITS.clearly_better
     };
-    (score(&tried, &[]) >= score(reading, &sides) + margin).then_some(Structural {
-        reading: tried,
-        said: report,
-        says,
-    })
+    let is_better = score(&tried, &[]) >= score(reading, &sides) + margin;
+    is_better.then_some(Structural { reading: tried, said: report, says, sheet })
 }
 
 /// The reading as the kind that is likelier than all others together, where that explains as much as one by structure does.
 fn as_likely(
     asked: &Asked<'_>,
     (ink, classes): (&Ink, &[Classified]),
-    structural: &Reading,
+    found: &Structural,
     scores: &[Scored],
 ) -> Option<(Reading, Report, Kind)> {
+    let structural = &found.reading;
     let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
     // One solid explains little of what lies in it, whatever it scores.
     let is_shown = classes.iter().any(|c| c.shown.is_some());
@@ -690,8 +688,7 @@ fn as_likely(
         return None;
     }
     let (tried, said) = taken_for(asked, likely, ink, classes);
-    let sheet = Sheet::new(ink);
-    let score = |r: &Reading| structure::score(ink, &sheet, r, &[]);
+    let score = |r: &Reading| structure::score(ink, &found.sheet, r, &[]);
     // Crowns that became leaves explain as much, and less well.
     let keeps_crowns = structural.regions.is_empty() || !tried.regions.is_empty();
     let is_as_good = is_built(likely, &tried) && keeps_crowns && score(&tried) >= score(structural);
