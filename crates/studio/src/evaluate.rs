@@ -16,7 +16,7 @@ use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, Layout, SkinSpec, SurfacePictures, Traced};
 
 use crate::checks::{Sketched, check_plant, check_sketch};
-use crate::levels::{LaidOut, LevelSpec, Levels, level_of};
+use crate::levels::{LaidOut, LevelSpec, Levels, levels_of};
 use crate::lod::coarser;
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -470,8 +470,13 @@ impl Evaluator {
     /// # Errors
     /// [`Stopped`].
     pub fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<Option<LaidOut>, Stopped> {
+        Ok(self.laid_out_to(level.max(1), run)?.pop())
+    }
+
+    /// Coarser copies of the levels 1 to `count`; none before an update.
+    fn laid_out_to(&self, count: u32, run: &Run<'_>) -> Result<Vec<LaidOut>, Stopped> {
         let (Some(plant), Some(model), Some(made)) = (self.plant(), &self.model, &self.plant) else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         let (skin, photo) = &model.from;
         let traced = photo.as_ref().and_then(|photo| self.traced(photo));
@@ -483,7 +488,7 @@ impl Evaluator {
             leaf.inspect(|leaf| leaf.dress(&mut model, &skin.worn));
             Ok((model, layout))
         };
-        level_of(plant, (skin, &model.value), level, mesh).map(Some)
+        levels_of(plant, (skin, &model.value), count, mesh)
     }
 
     fn item(&self, name: &str, stages: Vec<Stage>, run: &Run<'_>) -> ItemReport {
@@ -634,8 +639,8 @@ pub fn make_levels_from_sketch(
     let finest = evaluator.model().zip(evaluator.plant()).zip(evaluator.layout());
     let levels = match finest {
         Some(((model, plant), layout)) => {
-            let at = |level| evaluator.laid_out_at(level, run).map_err(MakeError::from);
-            Levels::new(levels, (model, plant, layout), at, run)?
+            let mut coarser = evaluator.laid_out_to(levels.lods, run)?.into_iter();
+            Levels::new(levels, (model, plant, layout), |_| Ok::<_, MakeError>(coarser.next()), run)?
         }
         None => Levels::default(),
     };

@@ -41,7 +41,7 @@ impl Levels {
     pub(crate) fn new<E: From<Cancelled>>(
         spec: &LevelSpec,
         (model, plant, layout): (&Model, &Plant, &Layout),
-        at: impl Fn(u32) -> Result<Option<LaidOut>, E>,
+        mut at: impl FnMut(u32) -> Result<Option<LaidOut>, E>,
         run: &Run<'_>,
     ) -> Result<Self, E> {
         let mut levels = Self::default();
@@ -86,12 +86,23 @@ pub(crate) fn level_of(
     level: u32,
     mesh: impl Fn(&Plant, &SkinSpec) -> Result<(Model, Layout), Stopped>,
 ) -> Result<LaidOut, Stopped> {
-    let mut last = Coarse { most: fine.triangle_count() / 2, detail: 1.0 };
+    let mut last = Coarse::of_finest(fine);
     let mut made = next_level((plant, skin, fine), 1, &mut last, &mesh)?;
     for at in 2..=level.min(6) {
         made = next_level((plant, skin, fine), at, &mut last, &mesh)?;
     }
     Ok(made)
+}
+
+/// Levels 1 to `count` (at most 6) as [`level_of`] makes each. Cost: that of meshing each once.
+pub(crate) fn levels_of(
+    plant: &Plant,
+    (skin, fine): (&SkinSpec, &Model),
+    count: u32,
+    mesh: impl Fn(&Plant, &SkinSpec) -> Result<(Model, Layout), Stopped>,
+) -> Result<Vec<LaidOut>, Stopped> {
+    let mut last = Coarse::of_finest(fine);
+    (1..=count.min(6)).map(|level| next_level((plant, skin, fine), level, &mut last, &mesh)).collect()
 }
 
 /// What a level leaves to the next.
@@ -100,6 +111,12 @@ struct Coarse {
     most: usize,
     /// How much coarser than by rule its parts are: a factor of their fineness.
     detail: f64,
+}
+
+impl Coarse {
+    fn of_finest(fine: &Model) -> Self {
+        Self { most: fine.triangle_count() / 2, detail: 1.0 }
+    }
 }
 
 fn next_level(

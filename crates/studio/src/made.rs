@@ -8,7 +8,7 @@ use reading::Reading;
 use skin::{Layout, SkinSpec, SurfacePictures};
 
 use crate::checks::check_plant;
-use crate::levels::{LaidOut, LevelSpec, Levels, level_of};
+use crate::levels::{LaidOut, LevelSpec, Levels, level_of, levels_of};
 use crate::report::{CheckReport, Counts, ItemReport, TimingsMs};
 use crate::shaping::EditReport;
 
@@ -47,11 +47,7 @@ impl MadePlant {
     /// # Errors
     /// [`Stopped`].
     pub fn at_level(&self, level: u32, run: &Run<'_>) -> Result<Model, Stopped> {
-        Ok(self.laid_out_at(level, run)?.0)
-    }
-
-    fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<LaidOut, Stopped> {
-        coarse(&self.plant, &self.skin, &self.model, level, run)
+        Ok(coarse(&self.plant, &self.skin, &self.model, level, run)?.0)
     }
 
     /// Coarser copies and the like.
@@ -59,8 +55,7 @@ impl MadePlant {
     /// # Errors
     /// [`Stopped`].
     pub fn levels(&self, spec: &LevelSpec, run: &Run<'_>) -> Result<Levels, Stopped> {
-        let at = |level| self.laid_out_at(level, run).map(Some);
-        Levels::new(spec, (&self.model, &self.plant, &self.layout), at, run)
+        coarser_copies(spec, (&self.model, &self.plant, &self.layout), &self.skin, run)
     }
 
     /// With an entry that tells counts, times, warnings, and what became of the edits that were asked for; [`Self::told`]
@@ -112,6 +107,20 @@ pub(crate) fn digest(model: &Model) -> String {
     let mut digest = Digest::new();
     digest.add(model);
     digest.hex()
+}
+
+/// The levels of a plant without pictures of its own.
+pub(crate) fn coarser_copies(
+    spec: &LevelSpec,
+    (model, plant, layout): (&Model, &Plant, &Layout),
+    skin: &SkinSpec,
+    run: &Run<'_>,
+) -> Result<Levels, Stopped> {
+    let levels = levels_of(plant, (skin, model), spec.lods, |plant, skin| {
+        skin::skin_laid_out(plant, skin, SurfacePictures::default(), None, run)
+    })?;
+    let mut levels = levels.into_iter();
+    Levels::new(spec, (model, plant, layout), |_| Ok(levels.next()), run)
 }
 
 /// [`level_of`] a plant without pictures of its own.

@@ -12,7 +12,7 @@ use skin::{KeptShapes, Layout, PetalColor, SkinSpec, SurfacePictures};
 
 use crate::evaluate::make_from_sketch;
 use crate::levels::{LaidOut, LevelSpec, Levels};
-use crate::made::coarse;
+use crate::made::{coarse, coarser_copies};
 use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
 
@@ -156,8 +156,7 @@ impl OpeningPlant {
     /// # Errors
     /// [`Stopped`].
     pub fn levels(&self, open: &OpenedPlant, spec: &LevelSpec, run: &Run<'_>) -> Result<Levels, Stopped> {
-        let at = |level| self.coarse((&open.plant, &open.model), level, run).map(Some);
-        Levels::new(spec, (&open.model, &open.plant, &open.layout), at, run)
+        coarser_copies(spec, (&open.model, &open.plant, &open.layout), &self.steady(), run)
     }
 
     /// A level of a plant of one day that this made, and of its model.

@@ -83,7 +83,7 @@ impl Variant {
         }
     }
 
-    /// What becomes of a radius, metres.
+    /// A radius after thickening, metres.
     pub(super) fn thickened(&self, radius: f64) -> f64 {
         thickened(radius, self.thinnest_m, self.thicker)
     }
