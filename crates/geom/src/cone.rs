@@ -48,6 +48,17 @@ pub enum ConeSheet {
     Far,
 }
 
+impl ConeSheet {
+    /// The other sheet.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Near => Self::Far,
+            Self::Far => Self::Near,
+        }
+    }
+}
+
 /// Where the view ray through a point meets the whole cone, relative to the apex.
 struct RayHits {
     lower: f64,

@@ -27,6 +27,14 @@ const LEAST_DEPTH: f64 = 0.8;
 /// Radius of the inside of a bell, a share of that of its outside; and the largest slope of its axis out of the drawing.
 const INSIDE: f64 = 0.93;
 const LEAN: f64 = 0.35;
+/// How wide the fan of petals of a flower in profile is, radians: from nearly closed to flat.
+const PROFILE_FAN: [f64; 2] = [0.25, 3.0];
+/// So few tips show no ellipse of a rim.
+const FEW_TIPS: usize = 4;
+/// Petals at the flanks lie so much of the distance of others before those behind them.
+const AT_FLANKS: f64 = 0.2;
+/// Keys of petals that the drawing does not show.
+const BEHIND: u64 = 1 << 32;
 /// Distance in depth of neighbouring petals, share of a petal's length: less would flicker.
 const APART: f64 = 0.015;
 
@@ -52,6 +60,11 @@ impl Corolla {
         let steep = ops::powf(STEEPER, f64::from(whorl.min(8)));
         let half_angle = (self.fit.cone.half_angle * steep).max(0.2).min(self.fit.cone.half_angle);
         Cone { half_angle, ..self.fit.cone }
+    }
+
+    /// Whether its axis lies in the plane of the drawing.
+    const fn is_in_profile(&self) -> bool {
+        self.fit.cone.axis.z.abs() < SIDEWAYS
     }
 
     fn cot(&self) -> f64 {
@@ -139,7 +152,8 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
             && f.height.is_finite()
     };
     let z = if facing { 1.0 } else { -1.0 };
-    let mut fit = flower_cone(centre, &tips, facing).filter(sound).unwrap_or_else(|| {
+    let fitted = cone_in_profile(centre, &tips).or_else(|| flower_cone(centre, &tips, facing));
+    let mut fit = fitted.filter(sound).unwrap_or_else(|| {
         // One or two petals tell nothing: open, facing the viewer.
         let (sin, cos) = ops::sin_cos(OPEN);
         let cone = Cone { apex: DVec3::ZERO, axis: DVec3::Z * z, half_angle: OPEN };
@@ -162,6 +176,28 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     corolla.fit = fit;
     corolla.rim = rim;
     corolla
+}
+
+/// The cone of a flower that is seen from the side: its petals fan out to one side of its centre. It opens along the middle of
+/// the fan, in the plane of the drawing. `None` where petals stand all round, or where their tips show the ellipse of a rim.
+fn cone_in_profile(centre: DVec2, tips: &[DVec2]) -> Option<FlowerCone> {
+    let ways: Vec<DVec2> = tips.iter().map(|t| *t - centre).collect();
+    let middle = ways.iter().filter_map(|w| w.try_normalize()).sum::<DVec2>().try_normalize()?;
+    let mut fan: Vec<(f64, DVec2)> =
+        ways.iter().map(|w| (ops::atan2(middle.perp_dot(*w), middle.dot(*w)), *w)).collect();
+    base::sort_by(&mut fan, |a, b| a.0.total_cmp(&b.0));
+    let (first, last) = (fan.first()?.0, fan.last()?.0);
+    let is_arc = fan.windows(3).all(|w| (w[1].1 - w[0].1).perp_dot(w[2].1 - w[1].1) > 0.0);
+    if !(PROFILE_FAN[0]..PROFILE_FAN[1]).contains(&(last - first)) || (fan.len() > FEW_TIPS && !is_arc) {
+        return None;
+    }
+    let axis = middle.rotate(base::turn::direction((first + last) / 2.0));
+    // As deep as it is wide: where petals in the middle are as long as those at the flanks, they bend inwards.
+    let height = ways.iter().map(|w| axis.dot(*w)).fold(0.0, f64::max);
+    let radius = ways.iter().map(|w| axis.perp_dot(*w).abs()).fold(0.0, f64::max);
+    let cone =
+        Cone { apex: centre.extend(0.0), axis: axis.extend(0.0), half_angle: ops::atan2(radius, height) };
+    Some(FlowerCone { cone, height, radius, rho: 0.0 })
 }
 
 /// What the organs of one flower have in common.
@@ -222,12 +258,12 @@ impl Organs<'_, '_> {
             petals.iter().map(|p| p.2.tip.distance(flower.centre) * s).sum::<f64>() / count.max(1) as f64;
         let height =
             corolla.fit.height * if ring == 0 { 1.0 } else { (reach / corolla.reach).clamp(0.1, 1.0) };
-        for (rank, &(_, i, petal)) in petals.iter().enumerate() {
+        for (rank, &(angle, i, petal)) in petals.iter().enumerate() {
             let tip = corolla.centre + (petal.tip - flower.centre) * s;
             // What the drawing says, or every other one.
             let even = rank.abs_diff(front).is_multiple_of(2);
             let even = petal.front.map_or(even, |f| f >= 0.0);
-            let sheet = if corolla.fit.cone.axis.z.abs() < SIDEWAYS {
+            let sheet = if corolla.is_in_profile() {
                 if even { ConeSheet::Near } else { ConeSheet::Far }
             } else {
                 cone.sheet_for_tip(tip, height)
@@ -235,10 +271,20 @@ impl Organs<'_, '_> {
             let last_odd = count % 2 == 1 && count > 1 && rank + 1 == count;
             let by_turns = if last_odd { 2.0 } else { f64::from(u8::from(!even)) };
             let step = petal.front.map_or(by_turns, |f| 1.0 + sane(f, 1.0) * corolla.facing);
-            let lift = step * APART * corolla.petal;
+            let mut lift = step * APART * corolla.petal;
+            if corolla.is_in_profile() {
+                // Petals at the flanks meet those behind them.
+                let out = (1.0 - angle.abs() / cone.half_angle).max(AT_FLANKS);
+                lift *= if sheet == ConeSheet::Near { out } else { -out } * corolla.facing;
+            }
             let rank = flower.petals[..i].iter().filter(|p| p.source == petal.source).count();
             let key = key_of(Part::Petal, petal.source, rank as u64, self.key);
             self.petal(flower, petal, corolla, (cone, sheet), lift, key);
+            // The half of the corolla that the drawing does not show.
+            if corolla.is_in_profile() {
+                let key = key_of(Part::Petal, petal.source, rank as u64 + BEHIND, self.key);
+                self.petal(flower, petal, corolla, (cone, sheet.opposite()), -lift, key);
+            }
         }
     }
 
@@ -295,11 +341,7 @@ impl Organs<'_, '_> {
             let to = |v: DVec3| DVec3::new(v.dot(frame.right), v.dot(frame.along), v.dot(frame.normal));
             // The offset of neighbours moves the petal's cone with it.
             let apex = to(cone.apex - root.extend(root3.z));
-            let sheet = match (mirrored, sheet) {
-                (false, s) => s,
-                (true, ConeSheet::Near) => ConeSheet::Far,
-                (true, ConeSheet::Far) => ConeSheet::Near,
-            };
+            let sheet = if mirrored { sheet.opposite() } else { sheet };
             Lift::Cone { cone: Cone { apex, axis: to(cone.axis), half_angle: cone.half_angle }, sheet }
         } else {
             // Nearly along the line of sight the cone would stretch the petal without end.

@@ -179,6 +179,34 @@ fn edge_on_flowers_keep_their_area_and_use_both_sheets() {
 }
 
 #[test]
+fn a_flower_in_profile_is_as_deep_as_it_is_wide() {
+    let centre = v(0.5, 0.2);
+    for n in [3_u32, 5] {
+        // A fan of 90 degrees that opens upwards.
+        let petals = (0..n).map(|k| {
+            let turn = (0.5 * ops::FRAC_PI_2) * (1.0 - 2.0 * f64::from(k) / f64::from(n - 1));
+            blade(centre, centre + v(-ops::sin(turn), ops::cos(turn)) * 0.2, 0.5, k)
+        });
+        let petals = petals.collect();
+        let flower = FlowerReading { centre, petals, disc: None, stamens: vec![], bearer: None };
+        let built = made(&Reading { flowers: vec![flower], ..Reading::default() }, &SketchSpec::default());
+        let got = &built.plant.flowers[0];
+        assert!(got.axis.distance(DVec3::Y) < 1e-9, "{}", got.axis);
+        assert!((0.5..0.8).contains(&got.half_angle), "{}", got.half_angle);
+        let petals = built.plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
+        let points = petals.clone().flat_map(|o| {
+            let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+            let points = b.surface().points(&b.outline);
+            points.into_iter().map(|p| o.frame.place(p, 1.0)).collect::<Vec<_>>()
+        });
+        let far = points.fold(DVec3::ZERO, |far, p| far.max((p - got.centre).abs()));
+        assert!((0.7..1.2).contains(&(far.z / far.x)), "{n}: {far}");
+        // Each petal has another one behind it or before it.
+        assert_eq!(petals.count(), 2 * n as usize);
+    }
+}
+
+#[test]
 fn inner_whorls_stand_steeper_and_nearer() {
     let mut flower = daisy(v(0.5, 0.5), 6, 0.2, 0);
     let mut inner = daisy(v(0.5, 0.5), 6, 0.2, 10).petals;
