@@ -67,6 +67,8 @@ struct CoherenceLimits {
     palmate_open: f64,
     /// where its petiole comes from, within this angle (the cosine).
     palmate_way: f64,
+    /// Blades without a stem are a rosette seen from above where more than this many times as many stand round them.
+    rosette: f64,
     /// Points of an outline that are compared with another one.
     places: usize,
 }
@@ -96,6 +98,7 @@ const LIMITS: CoherenceLimits = CoherenceLimits {
     palmate_gap: 1.7,
     palmate_open: 2.4,
     palmate_way: 0.7,
+    rosette: 2.0,
     places: 24,
 };
 
@@ -160,7 +163,8 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
     let mut is_petal = vec![false; forms.len()];
     flowers.iter().flat_map(|f| &f.petals).for_each(|&i| is_petal[i] = true);
     flowers.retain(|f| {
-        let are_leaves = !is_sure(f) && are_outnumbered(draft, &forms, &is_petal, f);
+        let are_leaves = !is_sure(f)
+            && (are_outnumbered(draft, &forms, &is_petal, f) || is_heart_of_rosette(draft, &is_petal, f));
         if are_leaves {
             freed.extend(f.petals.iter().copied());
         }
@@ -267,6 +271,18 @@ fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower:
         alike.iter().filter(touched).count() >= flower.petals.len()
     };
     outnumbered && (is_open() || is_surrounded())
+}
+
+/// Whether there is no stem, and many more blades stand all round: the youngest leaves in the middle are leaves as well.
+fn is_heart_of_rosette(draft: &Draft<'_>, is_petal: &[bool], flower: &FlowerDraft) -> bool {
+    let others = || draft.blades.iter().zip(is_petal).filter(|(_, is_petal)| !**is_petal).map(|(b, _)| b);
+    let count = others().count();
+    #[expect(clippy::cast_precision_loss, reason = "blades")]
+    let are_many =
+        count >= LIMITS.fewest_leaves && count as f64 > LIMITS.rosette * flower.petals.len() as f64;
+    draft.lines.is_empty()
+        && are_many
+        && widest_gap(others().map(|b| (b.middle - flower.centre).normalize_or_zero())) < LIMITS.ring
 }
 
 /// The petal of the median area.

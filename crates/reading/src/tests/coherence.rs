@@ -39,6 +39,23 @@ fn a_rosette_at_the_foot_of_a_stem_is_of_leaves() {
 }
 
 #[test]
+fn the_heart_of_a_rosette_without_a_stem_is_of_leaves() {
+    let ring = |count: usize, from: f64, long: f64| -> Vec<_> {
+        let turn = ops::TAU / count as f64;
+        let leaves = (0..count).map(move |k| {
+            let (s, c) = ops::sin_cos(turn * (k as f64 + 0.5 * from));
+            leaf((from * c, from * s), ((from + long) * c, (from + long) * s), 0.8)
+        });
+        leaves.map(|l| (StrokeClass::Blade, l)).collect()
+    };
+    let rosette = [ring(5, 0.0, 1.0), ring(7, 0.9, 1.6), ring(9, 2.1, 2.0)].concat();
+    let (r, _) = reading(&rosette);
+    assert_eq!((r.flowers.len(), r.leaves.len()), (0, 21));
+    let (r, _) = reading(&rosette[..5]);
+    assert_eq!((r.flowers.len(), r.leaves.len()), (1, 0), "petals alone are a flower");
+}
+
+#[test]
 fn three_blades_at_the_ends_of_several_stalks_are_trifoliate_leaves() {
     let mut strokes = vec![(StrokeClass::Axis, line((0.0, 0.0), (0.0, 10.0)))];
     for (k, side) in [(2.0, 1.0), (4.0, -1.0), (6.0, 1.0)] {
