@@ -346,11 +346,12 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.is_over() {
         return Reading::default();
     }
-    let mut sure = None;
-    if let Some((composed, proposed, score)) = by_readers(asked, (ink, classes), &scores)
-        && (proposed != kind || explains_better(ink, &composed, &reading))
+    let (mut sure, mut called) = (None, None);
+    if let Some((composed, proposal, score)) = by_readers(asked, (ink, classes), &scores)
+        && (proposal.kind != kind || proposal.word.is_some() || explains_better(ink, &composed, &reading))
     {
-        (reading, said, kind, sure) = (composed, Report::default(), proposed, Some(score));
+        (reading, said, kind, sure) = (composed, Report::default(), proposal.kind, Some(score));
+        called = proposal.word;
     }
     if asked.kind.is_none()
         && sure.is_none()
@@ -379,7 +380,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
-    as_body(ink, kind, free, &mut reading);
+    // Several bodies that a reader knows are no single one.
+    as_body(ink, kind, free && called.is_none(), &mut reading);
     let evidence = Evidence {
         share: share_of(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
         undecided: glance::entropy(&glance.words),
@@ -389,7 +391,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_arrangement: sure.is_some(),
     };
     let readings = readings(kind, &evidence, &scores);
-    reading.plants = vec![described(ink, kind, (evidence, readings), &glance)];
+    let word = called.or_else(|| glance::word(kind, &glance.words));
+    reading.plants = vec![described(ink, kind, (evidence, readings), word)];
     reading
 }
 
@@ -439,12 +442,11 @@ fn described(
     ink: &Ink,
     kind: Kind,
     (evidence, readings): (Evidence, Vec<Scored>),
-    glance: &Glance,
+    word: Option<&'static str>,
 ) -> PlantReading {
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-    let word = glance::word(kind, &glance.words);
     PlantReading { strokes, height: (high - low).max(0.0), kind, word, evidence, readings }
 }
 
@@ -695,7 +697,7 @@ fn as_likely(
     is_as_good.then_some((tried, said, likely))
 }
 
-/// A plant that one of the readers sees in the drawing's faces and lines, its kind, and how sure that is; of the kind that was
+/// A plant that one of the readers sees in the drawing's faces and lines, its proposal, and how sure that is; of the kind that was
 /// asked for, if one was.
 ///
 /// `scores`: how likely each kind is otherwise. A reading stands where it is likelier than the likeliest of the others (Bayes): the
@@ -704,7 +706,7 @@ fn by_readers(
     asked: &Asked<'_>,
     (ink, classes): (&Ink, &[Classified]),
     scores: &[Scored],
-) -> Option<(Reading, Kind, f64)> {
+) -> Option<(Reading, structure::readers::Proposal, f64)> {
     if !asked.is_free(ink, classes) || classes.iter().any(Classified::is_sure) {
         return None;
     }
@@ -726,7 +728,7 @@ fn by_readers(
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
     let reading = composed.back(ink, parts);
-    inertia::agrees(ink, classes, &reading).then_some((reading, proposal.kind, score))
+    inertia::agrees(ink, classes, &reading).then_some((reading, proposal, score))
 }
 
 /// Whether a reading explains the ink clearly better than another one of the same kind.

@@ -94,6 +94,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
         parts,
         heads,
         likelihood: BLOOM.likelihood[usize::from(disc.is_none() && petals.len() < BLOOM.many)],
+        word: None,
     })
 }
 

@@ -99,7 +99,13 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
             parts.extend(lines.iter().map(|l| Part::of_run(l, class)));
         }
     }
-    Some(Proposal { kind: Kind::Conifer, parts, heads: Vec::new(), likelihood: CONIFER.likelihood })
+    Some(Proposal {
+        kind: Kind::Conifer,
+        parts,
+        heads: Vec::new(),
+        likelihood: CONIFER.likelihood,
+        word: None,
+    })
 }
 
 /// Whether an outline is the crown of a conifer.

@@ -144,7 +144,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     parts.extend(scene.leaves_among(beside(), CUP.other)?);
     parts.extend(scene.axes.iter().map(Part::of_axis));
     let likelihood = CUP.likelihood[usize::from(in_front < CUP.in_front)];
-    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood })
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None })
 }
 
 type Petal = (Vec<DVec2>, Vec<usize>);

@@ -78,7 +78,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     parts.extend(leaves);
     parts.extend(scene.axes.iter().map(Part::of_axis));
     let likelihood = HEAD.likelihood[usize::from(!is_marked)];
-    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood })
+    Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None })
 }
 
 /// The head as a whole, and before it the petals that are seen in it.

@@ -66,5 +66,5 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let mut parts = vec![Part::of_face(face, StrokeClass::Blade, Some(root))];
     parts.extend(scene.marks_of(row).map(|m| Part::of_run(m, StrokeClass::Vein)));
     parts.extend(scene.lines.iter().map(|l| Part::of_run(l, StrokeClass::Axis)));
-    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: LOBED.likelihood })
+    Some(Proposal { kind: Kind::Leaf, parts, heads: Vec::new(), likelihood: LOBED.likelihood, word: None })
 }

@@ -10,6 +10,7 @@ mod cup;
 mod head;
 mod leaf;
 mod lobed;
+mod mushroom;
 mod palm;
 mod sprig;
 mod taproot;
@@ -49,6 +50,8 @@ pub(crate) struct Proposal {
     /// How many times as often this arrangement is found in drawings of the kind as in others (a likelihood ratio): the readers'
     /// judgement, to be weighed with how likely the kind is otherwise.
     pub(crate) likelihood: f64,
+    /// What a plant of the kind is called that has this arrangement, if only one has: a word of [`crate::glance::WORDS`].
+    pub(crate) word: Option<&'static str>,
 }
 
 /// What touches and what is small, for all readers. Lengths are in ink units (the drawing's diagonal is 1).
@@ -312,7 +315,8 @@ pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     // Lobes that spread from the foot are fingers, not tiers.
     let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
     let head = if cup.is_none() && !is_from_front { head::propose(&scene) } else { None };
-    let others = [leaf::propose, sprig::propose, palm::propose, taproot::propose].map(|read| read(&scene));
+    let others = [leaf::propose, sprig::propose, palm::propose, taproot::propose, mushroom::propose]
+        .map(|read| read(&scene));
     let mut found: Vec<Proposal> =
         [clover, lobed, bloom, cup, head, conifer].into_iter().chain(others).flatten().collect();
     base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));

@@ -97,7 +97,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     parts.extend(trunk.parts);
     parts.extend(scene.marks.iter().map(|(_, run)| Part::of_run(run, StrokeClass::Vein)));
-    Some(Proposal { kind: Kind::Palm, parts, heads: Vec::new(), likelihood: PALM.likelihood })
+    Some(Proposal { kind: Kind::Palm, parts, heads: Vec::new(), likelihood: PALM.likelihood, word: None })
 }
 
 /// A narrow face that stands on the ground.

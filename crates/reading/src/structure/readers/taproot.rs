@@ -71,7 +71,13 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         return None;
     }
     parts.insert(0, Part::of_face(body, StrokeClass::Fruit, None));
-    Some(Proposal { kind: Kind::Vegetable, parts, heads: Vec::new(), likelihood: TAPROOT.likelihood })
+    Some(Proposal {
+        kind: Kind::Vegetable,
+        parts,
+        heads: Vec::new(),
+        likelihood: TAPROOT.likelihood,
+        word: None,
+    })
 }
 
 /// Whether a body narrows downwards from a place on it to the point that is farthest from there.

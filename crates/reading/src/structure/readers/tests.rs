@@ -188,3 +188,25 @@ fn what_encloses_nothing_or_has_no_extent_gives_no_proposal() {
     assert!(seen(&[vec![DVec2::ZERO, DVec2::ZERO]]).is_empty());
     assert!(seen(&[vec![p(0.0, 0.0), p(0.0, 9.0)], vec![p(0.0, 4.0), p(3.0, 7.0)]]).is_empty());
 }
+
+#[test]
+fn half_a_ball_on_a_narrow_stem_is_a_mushroom_and_a_round_crown_is_not() {
+    let dome = |high: f64| {
+        let mut cap: Vec<DVec2> = (0..=24)
+            .map(|k| ops::sin_cos(0.5 * ops::TAU * f64::from(k) / 24.0))
+            .map(|(s, c)| p(3.0 * c, 3.0 + high * s))
+            .collect();
+        cap.push(cap[0]);
+        cap
+    };
+    let stem = vec![p(-0.7, 3.0), p(-0.8, 0.0), p(0.8, 0.0), p(0.7, 3.0)];
+    let spot = ring(p(0.6, 4.3), 0.5);
+    let mushroom = [dome(2.8), stem.clone(), spot];
+    let proposals = seen(&mushroom);
+    let proposal = proposals.iter().find(|p| p.word == Some("mushroom")).expect("a mushroom");
+    assert_eq!((proposal.kind, proposal.parts.len()), (Kind::Vegetable, 2));
+    let is_mushroom = |lines: &[Vec<DVec2>]| seen(lines).iter().any(|p| p.word.is_some());
+    assert!(!is_mushroom(&[ring(p(0.0, 5.5), 2.6), stem.clone()]), "widest in its middle");
+    let conifer = vec![p(-3.0, 3.0), p(0.0, 7.5), p(3.0, 3.0), p(-3.0, 3.0)];
+    assert!(!is_mushroom(&[conifer, stem]), "it runs out to a point");
+}
