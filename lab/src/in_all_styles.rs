@@ -323,6 +323,13 @@ fn vectors(folder: &Path) -> Outcome<Vec<Styled>> {
     Ok(found)
 }
 
+/// Icons of plants whose kind is known, without those that are kept. The name "plant" does not say whether it stands in a pot.
+pub(crate) fn icons_of_kinds(folder: &Path) -> Outcome<Vec<(Kind, Drawing)>> {
+    let is_learnt = |s: &Styled| s.set == Set::Icons && !s.is_kept && !s.group.contains("plant");
+    let icons = vectors(folder)?.into_iter().filter(is_learnt);
+    Ok(icons.filter_map(|s| Some((s.kind?, s.drawing))).collect())
+}
+
 fn made() -> Vec<Styled> {
     let one = made_drawings::kinds::of_kinds(MADE_SALT, MADE).into_iter().enumerate();
     one.map(|(k, (word, kind, lines))| Styled {

@@ -432,6 +432,8 @@ pub(crate) enum Origin {
     Together,
     /// One plant of any kind, or none.
     Kinds,
+    /// Icons of plants, by the kind that their file's name says.
+    Icons,
 }
 
 /// Drawings of a part whose plants are known. Trees by hand are not among them: nothing is learnt from those.

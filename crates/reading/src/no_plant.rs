@@ -26,7 +26,7 @@ pub struct NoPlantLimits {
 
 /// The limits for all drawings.
 pub const NO_PLANT_LIMITS: NoPlantLimits =
-    NoPlantLimits { chance_most: 0.86, share_most: 0.98, spreads_most: 4.0 };
+    NoPlantLimits { chance_most: 0.886, share_most: 0.98, spreads_most: 4.0 };
 
 /// Names of the numbers of [`row`] that neither the model of kinds nor the glance has.
 const OWN: [&str; 2] = ["strokes", "sureness"];
