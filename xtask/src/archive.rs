@@ -1,5 +1,7 @@
 //! One file to download: the command with the Studio in it, its manual pages and completions.
 
+use std::path::Path;
+
 use crate::toolchain::shown;
 use crate::{studio, web};
 use xtask::shell::{Outcome, built_burgeon, command, finish, output, prepare, repository, say, target_dir};
@@ -7,7 +9,17 @@ use xtask::shell::{Outcome, built_burgeon, command, finish, output, prepare, rep
 /// The shells that packages have completions for, and what their files are called.
 const SHELLS: [(&str, &str); 3] = [("bash", "burgeon.bash"), ("zsh", "_burgeon"), ("fish", "burgeon.fish")];
 
-/// `target/archives/burgeon-VERSION-SYSTEM.tar.gz`, as `cargo binstall` expects it.
+/// What lies in the archive as it lies in the repository: where from, and its name there.
+const FILES: [(&str, &str); 5] = [
+    ("LICENSE-APACHE", "LICENSE-APACHE"),
+    ("LICENSE-MIT", "LICENSE-MIT"),
+    ("CHANGELOG.md", "CHANGELOG.md"),
+    ("apps/cli/archive/README.md", README),
+    ("fixtures/sketches/sample.svg", "sample.svg"),
+];
+const README: &str = "README.md";
+
+/// `target/archives/burgeon-VERSION-SYSTEM.tar.gz`, as `cargo binstall` expects it. Unpacks it and does what its README says.
 pub(crate) fn run() -> Outcome {
     // The build script of the command takes the built page in.
     studio::build(&web::setup()?, true)?;
@@ -23,8 +35,8 @@ pub(crate) fn run() -> Outcome {
     std::fs::create_dir_all(folder.join("completions")).map_err(failed)?;
     let program = format!("burgeon{}", std::env::consts::EXE_SUFFIX);
     std::fs::copy(&burgeon, folder.join(program)).map_err(failed)?;
-    for file in ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "CHANGELOG.md"] {
-        std::fs::copy(repository().join(file), folder.join(file)).map_err(failed)?;
+    for (from, name) in FILES {
+        std::fs::copy(repository().join(from), folder.join(name)).map_err(failed)?;
     }
     for (shell, file) in SHELLS {
         let script = output(prepare(&burgeon, &["completions", shell]))?;
@@ -35,6 +47,53 @@ pub(crate) fn run() -> Outcome {
     let mut tar = prepare("tar", &["-czf", &archive, &name]);
     tar.current_dir(&out);
     finish(tar)?;
+    follow_readme(&out, &archive, &name)?;
     say(&format!("{}: the command with the Studio in it", shown(&out.join(archive))));
     Ok(())
+}
+
+/// Unpacks the archive into a folder of its own and runs the lines of its README that make something, as a newcomer would.
+fn follow_readme(out: &Path, archive: &str, name: &str) -> Outcome {
+    let away = out.join("unpacked");
+    let _ = std::fs::remove_dir_all(&away);
+    std::fs::create_dir_all(&away).map_err(|e| format!("{}: {e}", shown(&away)))?;
+    let mut tar = prepare("tar", &["-xzf"]);
+    tar.arg(out.join(archive)).arg("-C").arg(&away);
+    finish(tar)?;
+    let folder = away.join(name);
+    let readme = folder.join(README);
+    let text = std::fs::read_to_string(&readme).map_err(|e| format!("{}: {e}", shown(&readme)))?;
+    let lines = makers(&text);
+    if lines.is_empty() {
+        return Err(format!("{}: has no line that makes something", shown(&readme)));
+    }
+    let program = folder.join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    for line in lines {
+        say(&format!("$ ./burgeon {line}"));
+        let mut c = prepare(&program, &line.split(' ').collect::<Vec<_>>());
+        c.current_dir(&folder);
+        finish(c)?;
+    }
+    std::fs::remove_dir_all(&away).map_err(|e| format!("{}: {e}", shown(&away)))
+}
+
+/// What follows `./burgeon` in each line of a README that ends by itself: the Studio is served until somebody ends it.
+fn makers(readme: &str) -> Vec<&str> {
+    readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("./burgeon "))
+        .filter(|args| !args.starts_with("studio"))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_a_readme_that_make_something_are_found() {
+        let text = "Run `./burgeon`:\n```sh\n./burgeon grow oak -o oak.glb\n./burgeon studio a.svg\n```\n";
+        assert_eq!(makers(text), ["grow oak -o oak.glb"]);
+        assert!(!makers(include_str!("../../apps/cli/archive/README.md")).is_empty());
+    }
 }

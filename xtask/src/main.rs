@@ -27,7 +27,7 @@ cargo xtask COMMAND
   test           sets up what the tests need and runs them: native, WASM in Node, Khronos validator, npm, Python, Studio.
                  With --all everything of it: all on one thread and on four, all species in each test,
                  all interruptions of commands and kills of pages, all journeys in a headset, whether the fuzz targets
-                 compile, and the packages for people (wheel, archive, extension for Blender)
+                 compile, and the packages for people (npm, wheel, archive, extension for Blender)
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species [KEY..] grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures, or
@@ -216,8 +216,8 @@ fn test(share: Share) -> Outcome {
         beside(python_and_kills, || studio::journeys(true, share))
     })?;
     if share == Share::All {
-        // Without `npm::pack`: the core of trees alone is larger than it allows today.
         minutes.of("fuzz targets", fuzz_targets)?;
+        minutes.of("the npm package", || npm::pack(&tools))?;
         minutes.of("the wheel", python::wheel)?;
         minutes.of("the archive", archive::run)?;
         minutes.of("the extension for Blender", blender::pack)?;

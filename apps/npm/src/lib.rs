@@ -50,7 +50,7 @@ pub fn grow(asked: &str, seed: u64) -> Result<Made, Refused> {
     let height_m = asked.height_m.map(|h| asked::number("height_m", h, (0.001, 1000.0))).transpose()?;
     let options = TreeOptions { skin, height_m, ..TreeOptions::default() };
     let mut tree = TreeEvaluator::default();
-    let item = asked.common.run(|run| tree.update(&spec, seed, &options, run))?;
+    let item = asked.common.run(|run| tree.update_unedited(&spec, seed, &options, run))?;
     Made::of_tree(tree, (item, preset), &asked.common)
 }
 

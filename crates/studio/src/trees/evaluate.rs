@@ -103,7 +103,37 @@ impl TreeEvaluator {
         options: &TreeOptions,
         run: &Run<'_>,
     ) -> Result<ItemReport, TreeError> {
-        let (mut report, obstacles) = self.shaped(spec, seed, options, run)?;
+        let (report, obstacles) = self.shaped(spec, seed, options, run)?;
+        self.meshed(spec, seed, options, (report, obstacles), run)
+    }
+
+    /// As [`Self::update`], for programs without edits by hand: what calls this and not that links no code of theirs.
+    /// [`TreeOptions::edits`] must be empty.
+    ///
+    /// # Errors
+    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    pub fn update_unedited(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<ItemReport, TreeError> {
+        debug_assert!(options.edits.is_empty(), "there is nothing here that does edits by hand");
+        let begun = self.grown_and_dressed(spec, seed, options, run)?;
+        self.stale |= self.shaped.take().is_some();
+        self.meshed(spec, seed, options, begun, run)
+    }
+
+    /// Meshes and report.
+    fn meshed(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        (mut report, obstacles): (Report, growth::Obstacles),
+        run: &Run<'_>,
+    ) -> Result<ItemReport, TreeError> {
         if self.mesh(spec, seed, options, &mut report, run)? {
             let model = self.model().filter(|_| !self.previewing);
             self.inside = model.and_then(|m| Inside::of(m, &obstacles));
@@ -142,6 +172,21 @@ impl TreeEvaluator {
         options: &TreeOptions,
         run: &Run<'_>,
     ) -> Result<(Report, growth::Obstacles), TreeError> {
+        let (mut report, obstacles) = self.grown_and_dressed(spec, seed, options, run)?;
+        let start = run.clock.now_ms();
+        self.shape(&obstacles, options, run)?;
+        report.book("depth", run.clock.now_ms() - start);
+        Ok((report, obstacles))
+    }
+
+    /// Everything but edits by hand and meshes.
+    fn grown_and_dressed(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<(Report, growth::Obstacles), TreeError> {
         let mut report = core::mem::take(&mut self.begun);
         if report.stages.is_empty() {
             self.done.clear();
@@ -149,9 +194,6 @@ impl TreeEvaluator {
         let grown = self.grow(spec, seed, options, &mut report, run);
         let obstacles = grown.map_err(|e| e.naming(&options.obstacles))?;
         self.dress(spec, &obstacles, seed, options);
-        let start = run.clock.now_ms();
-        self.shape(&obstacles, options, run)?;
-        report.book("depth", run.clock.now_ms() - start);
         Ok((report, obstacles))
     }
 
