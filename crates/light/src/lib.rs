@@ -20,5 +20,5 @@ mod sun;
 pub use error::LightError;
 pub use exchange::{Absorption, DirectionLight, EnergyBalance, LightSpec, PatchLight, ReceiverLight, absorb};
 pub use scene::{LitScene, Optics};
-pub use sky::{Beam, Beams, SkyKind, TURTLE_DIRECTIONS, direction_to};
-pub use sun::{SunPlace, SunPosition, Sunlight};
+pub use sky::{Beam, Beams, SkyKind, TURTLE_DIRECTIONS};
+pub use sun::{SunPlace, SunPosition, Sunlight, direction_to};

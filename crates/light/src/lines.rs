@@ -18,8 +18,8 @@ pub(crate) const SOIL_SIDE: u32 = 16;
 /// The cell of soil that is all outside of the grid: in the open.
 pub(crate) const OPEN_SOIL: usize = (SOIL_SIDE * SOIL_SIDE) as usize;
 
-/// Crossings in one direction: 12 bytes each, twice.
-const MOST_CROSSINGS: usize = 16_000_000;
+/// Crossings in one direction: some 24 bytes each on each thread.
+const MOST_CROSSINGS: usize = 12_000_000;
 
 /// Products of coordinates in sub-pixels still are whole numbers of 64 bits.
 const FARTHEST_PIXEL: f64 = 3.9e6;
@@ -160,7 +160,8 @@ impl Lines {
     fn soil(&self, ground: &Ground, pixel: u32) -> u16 {
         let (column, row) = (pixel % self.columns, pixel / self.columns);
         let cell = if self.wraps {
-            let place = |k: u32, of: u32| (u64::from(k) * u64::from(SOIL_SIDE) / u64::from(of)) as usize;
+            let share = |k: u32, of: u32| u64::from(k) * u64::from(SOIL_SIDE) / u64::from(of);
+            let place = |k: u32, of: u32| usize::try_from(share(k, of)).unwrap_or_default();
             place(row, self.rows) * SOIL_SIDE as usize + place(column, self.columns)
         } else {
             // Across the line in metres, then along it down to the level.
@@ -325,13 +326,13 @@ struct Found {
 struct Placed {
     across: DVec2,
     /// In sub-pixels.
-    whole: [i64; 2],
+    whole: [i32; 2],
     along: f64,
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "at most the farthest pixel is kept")]
-fn snapped(x: f64) -> i64 {
-    (x * SUB as f64).round() as i64
+fn snapped(x: f64) -> i32 {
+    (x * SUB as f64).round() as i32
 }
 
 /// A triangle as lines see it.
@@ -361,7 +362,7 @@ struct Edge {
 impl Flat {
     /// None where no line can cross it.
     fn new([a, b, c]: [&Placed; 3]) -> Option<Self> {
-        let corners = [a.whole, b.whole, c.whole];
+        let corners = [a, b, c].map(|p| p.whole.map(i64::from));
         let range = |k: usize| {
             let of = corners.map(|p| p[k]);
             let (low, high) = (of[0].min(of[1]).min(of[2]), of[0].max(of[1]).max(of[2]));

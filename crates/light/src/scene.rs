@@ -91,7 +91,7 @@ impl LitScene {
     }
 
     pub(crate) fn check(&self, budget: &Budget) -> Result<(), LightError> {
-        let advice = "make the plant coarser (--detail)";
+        let advice = "choose fewer or coarser plants";
         budget.check(Counted::Triangles, self.triangles.len() as u64, advice)?;
         for optics in &self.receivers {
             optics.check()?;
@@ -103,8 +103,8 @@ impl LitScene {
         if let Some(triangle) = self.triangles.iter().position(|t| !t.iter().all(is_near)) {
             return Err(LightError::FarAway { triangle, most_m: FARTHEST_M });
         }
-        let owned = self.owners.iter().all(|o| (*o as usize) < self.receivers.len());
-        debug_assert!(owned && self.owners.len() == self.triangles.len(), "each triangle has a receiver");
+        let owned = self.owners.len() == self.triangles.len()
+            && self.owners.iter().all(|o| (*o as usize) < self.receivers.len());
         let has_area = (0..self.triangles.len()).any(|t| self.normal(t).length_squared() > 0.0);
         if owned && has_area { Ok(()) } else { Err(LightError::Empty) }
     }

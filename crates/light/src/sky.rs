@@ -3,8 +3,9 @@
 use base::ops;
 use glam::DVec3;
 
+use crate::LightError;
 use crate::scene::check_range;
-use crate::{LightError, SunPosition};
+use crate::sun::{SunPosition, direction_to};
 
 /// Parallel light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,18 +52,6 @@ pub(crate) fn turtle() -> impl Iterator<Item = (DVec3, f64)> {
     TURTLE.iter().flat_map(|(elevation, solid_angle, azimuths)| {
         azimuths.iter().map(|azimuth| (direction_to(*azimuth, *elevation), *solid_angle))
     })
-}
-
-/// The unit vector towards a place of the sky. Degrees: azimuth clockwise from north (-Z), elevation above the horizon.
-///
-/// ```
-/// let east = light::direction_to(90.0, 0.0);
-/// assert!(east.distance(glam::DVec3::X) < 1e-15);
-/// ```
-pub fn direction_to(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
-    let (sin, cos) = ops::sin_cos(azimuth_deg.to_radians());
-    let (up, flat) = ops::sin_cos(elevation_deg.to_radians());
-    DVec3::new(sin * flat, up, -cos * flat)
 }
 
 impl SkyKind {

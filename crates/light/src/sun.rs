@@ -5,7 +5,6 @@ use glam::DVec3;
 
 use crate::LightError;
 use crate::scene::check_range;
-use crate::sky::direction_to;
 
 /// A place of the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +20,18 @@ impl SunPosition {
     pub fn direction(self) -> DVec3 {
         direction_to(self.azimuth_deg, self.elevation_deg)
     }
+}
+
+/// The unit vector towards a place of the sky. Degrees: azimuth clockwise from north (-Z), elevation above the horizon.
+///
+/// ```
+/// let east = light::direction_to(90.0, 0.0);
+/// assert!(east.distance(glam::DVec3::X) < 1e-15);
+/// ```
+pub fn direction_to(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
+    let (sin, cos) = ops::sin_cos(azimuth_deg.to_radians());
+    let (up, flat) = ops::sin_cos(elevation_deg.to_radians());
+    DVec3::new(sin * flat, up, -cos * flat)
 }
 
 /// A place of the earth on a day.
@@ -154,6 +165,7 @@ fn air_mass(elevation_deg: f64, altitude_m: f64) -> f64 {
 
 /// Optical thickness of pure air per air mass (Kasten 1996).
 fn rayleigh(mass: f64) -> f64 {
+    // The polynomial holds for the sun above 2 degrees.
     if mass > 20.0 {
         return 1.0 / (10.4 + 0.718 * mass);
     }

@@ -63,7 +63,7 @@ pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
-pub use lit::{EnergyFigures, LightFigures, LightOptions, LitOrgan, LitStand, light_stand};
+pub use lit::{EnergyFigures, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand};
 pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};

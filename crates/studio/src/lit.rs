@@ -14,11 +14,42 @@ use serde::Serialize;
 
 use crate::survey::{NOTHING, PARTS, Stood, part_of_axis, part_of_organ, triangle_labels};
 
+/// What light is counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum LightUnit {
+    /// Watts, at one moment.
+    #[serde(rename = "W")]
+    Watt,
+    /// Megajoules, of a day.
+    #[serde(rename = "MJ")]
+    Megajoule,
+}
+
+impl LightUnit {
+    /// As people read it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Watt => "W",
+            Self::Megajoule => "MJ",
+        }
+    }
+
+    /// In names of columns.
+    const fn column(self) -> &'static str {
+        match self {
+            Self::Watt => "w",
+            Self::Megajoule => "mj",
+        }
+    }
+}
+
 /// Light on a stand: where it comes from and what becomes of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightOptions {
     /// Sky and sun.
     pub beams: Beams,
+    /// What the beams are counted in.
+    pub unit: LightUnit,
     /// How it is followed. `ground_m` is the height of the ground; leaves that hang lower lower it.
     pub spec: LightSpec,
     /// Leaves, petals and sepals.
@@ -30,7 +61,13 @@ pub struct LightOptions {
 impl LightOptions {
     /// With the optics of the field's tables.
     pub fn new(beams: Beams) -> Self {
-        Self { beams, spec: LightSpec::default(), leaf: Optics::LEAF, wood: Optics::WOOD }
+        Self {
+            beams,
+            unit: LightUnit::Watt,
+            spec: LightSpec::default(),
+            leaf: Optics::LEAF,
+            wood: Optics::WOOD,
+        }
     }
 }
 
@@ -52,14 +89,16 @@ pub struct LitOrgan {
 }
 
 /// Figures of a stand in light. What does not apply or was not measured is none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LightFigures {
-    /// What light gives a horizontal surface above the stand, W/m2 (J/m2 of a day).
-    pub incoming_w_m2: f64,
-    /// What all organs and axes absorb, W.
-    pub absorbed_w: f64,
-    /// What leaves absorb, W.
-    pub leaf_absorbed_w: f64,
+    /// What light is counted in.
+    pub unit: LightUnit,
+    /// What light gives a square metre of a horizontal surface above the stand.
+    pub incoming_per_m2: f64,
+    /// What all organs and axes absorb.
+    pub absorbed: f64,
+    /// What leaves absorb.
+    pub leaf_absorbed: f64,
     /// What leaves absorb for each square metre of one side, over what a horizontal surface above the stand gets.
     pub leaf_share: Option<f64>,
     /// The share of the light above the ground of a cell that plants absorb; of stands that repeat themselves.
@@ -85,21 +124,21 @@ pub struct LightFigures {
 /// [`EnergyBalance`] for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EnergyFigures {
-    incoming_w: f64,
-    plants_w: f64,
-    soil_w: f64,
-    reflected_w: f64,
-    lost_w: f64,
+    incoming: f64,
+    plants: f64,
+    soil: f64,
+    reflected: f64,
+    lost: f64,
 }
 
 impl From<EnergyBalance> for EnergyFigures {
     fn from(b: EnergyBalance) -> Self {
         Self {
-            incoming_w: b.incoming_w,
-            plants_w: b.absorbed_w,
-            soil_w: b.soil_w,
-            reflected_w: b.reflected_w,
-            lost_w: b.lost_w,
+            incoming: b.incoming_w,
+            plants: b.absorbed_w,
+            soil: b.soil_w,
+            reflected: b.reflected_w,
+            lost: b.lost_w,
         }
     }
 }
@@ -248,8 +287,8 @@ fn figures_of(
 ) -> LightFigures {
     let leaves = || organs.iter().filter(|o| is_leaf(o.part)).map(|o| &o.light);
     let leaf_area_m2: f64 = leaves().map(|l| l.area_m2).sum();
-    let leaf_absorbed_w: f64 = leaves().map(|l| l.absorbed_w).sum();
-    let absorbed_w: f64 = organs.iter().map(|o| o.light.absorbed_w).sum();
+    let leaf_absorbed: f64 = leaves().map(|l| l.absorbed_w).sum();
+    let absorbed: f64 = organs.iter().map(|o| o.light.absorbed_w).sum();
     // Leaves that are seen from their edges alone show nothing of themselves.
     let lit = leaves().filter_map(|l| Some((l.area_m2, l.sunlit?)));
     let [in_sun, seen] = lit.fold([0.0; 2], |[lit, all], (area, share)| [lit + area * share, all + area]);
@@ -259,11 +298,12 @@ fn figures_of(
     let intercepted = incoming.map(|incoming| absorption.intercepted_w / incoming);
     let extinction = intercepted.zip(leaf_area_index).filter(|(share, lai)| *share < 1.0 && *lai > 0.0);
     LightFigures {
-        incoming_w_m2: absorption.horizontal,
-        absorbed_w,
-        leaf_absorbed_w,
-        leaf_share: (leaf_area_m2 > 0.0).then(|| leaf_absorbed_w / (leaf_area_m2 * absorption.horizontal)),
-        fapar: incoming.map(|incoming| absorbed_w / incoming),
+        unit: options.unit,
+        incoming_per_m2: absorption.horizontal,
+        absorbed,
+        leaf_absorbed,
+        leaf_share: (leaf_area_m2 > 0.0).then(|| leaf_absorbed / (leaf_area_m2 * absorption.horizontal)),
+        fapar: incoming.map(|incoming| absorbed / incoming),
         intercepted,
         leaf_area_m2,
         leaf_area_index,
@@ -283,10 +323,10 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
     };
     test(
         "light-dark",
-        figures.absorbed_w,
+        figures.absorbed,
         Bound::AtLeast(f64::MIN_POSITIVE),
-        [format!("{} W", figures.absorbed_w), "more than 0 W".into()],
-        format!("the plant absorbs {} W", figures.absorbed_w),
+        [figures.absorbed.to_string(), "more than 0".into()],
+        format!("the plant absorbs {} {}", figures.absorbed, figures.unit.word()),
         "all of it is below the ground, or throws all light back",
     );
     let leaves = || organs.iter().filter(|o| is_leaf(o.part));
@@ -315,7 +355,8 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
         ),
         "sums are sound, but figures of single leaves are rough: give more lines (--rays)",
     );
-    let measured: f64 = stand.iter().map(|s| s.plant.measure().leaf_area_m2 * s.standing.scale.powi(2)).sum();
+    let measured: f64 =
+        stand.iter().map(|s| s.plant.measure().leaf_area_m2 * s.standing.scale * s.standing.scale).sum();
     if measured > 0.0 {
         let of_mesh = figures.leaf_area_m2 / measured;
         let beyond = (of_mesh / LEAF_MESH[1]).max(LEAF_MESH[0] / of_mesh);
@@ -340,10 +381,6 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
     }
 }
 
-/// The columns of [`LitStand::write_csv`].
-const COLUMNS: &str =
-    "plant,kind,id,axis,order,area_m2,height_m,incident_w_m2,absorbed_w_m2,absorbed_w,fapar,sunlit,lines\n";
-
 /// Shares of the light of the scale that are its colours: dark violet, purple, red, orange, pale yellow; sRGB.
 const SCALE: [[f64; 3]; 6] = [
     [0.05, 0.03, 0.20],
@@ -367,7 +404,7 @@ impl LitStand {
     /// | `id` | row of the plant's organs or, of an axis, of its axes, from 0 |
     /// | `axis`, `order` | the axis that it is or that bears it (empty for none), and its branching order |
     /// | `area_m2`, `height_m` | of one side of its mesh; of its middle |
-    /// | `incident_w_m2`, `absorbed_w_m2` | on both sides, for each square metre of one side |
+    /// | `incident_w_m2`, `absorbed_w_m2` | on both sides, for each square metre of one side; `mj` for `w` of a day |
     /// | `absorbed_w` | all of it |
     /// | `fapar` | `absorbed_w_m2` over what a horizontal surface above the plants gets |
     /// | `sunlit` | the share of its area that is in the sun; empty without a sun |
@@ -376,7 +413,11 @@ impl LitStand {
     /// # Errors
     /// What the writer says.
     pub fn write_csv(&self, out: &mut dyn io::Write) -> io::Result<()> {
-        out.write_all(COLUMNS.as_bytes())?;
+        let unit = self.figures.unit.column();
+        writeln!(
+            out,
+            "plant,kind,id,axis,order,area_m2,height_m,incident_{unit}_m2,absorbed_{unit}_m2,absorbed_{unit},fapar,sunlit,lines"
+        )?;
         for o in &self.organs {
             let light = &o.light;
             let per_area = |w: f64| w / light.area_m2;
@@ -395,7 +436,7 @@ impl LitStand {
                 per_area(light.incident_w),
                 absorbed,
                 light.absorbed_w,
-                absorbed / self.figures.incoming_w_m2,
+                absorbed / self.figures.incoming_per_m2,
                 light.sunlit.map_or_else(String::new, |s| s.to_string()),
                 light.crossings
             )?;
@@ -403,7 +444,7 @@ impl LitStand {
         Ok(())
     }
 
-    /// What the end of the colours' scale stands for, W/m2: all patches but the brightest 2 %.
+    /// What the end of the colours' scale stands for, for each square metre: all patches but the brightest 2 %.
     pub fn brightest(&self) -> f64 {
         let patches = self.absorption.patches.iter().filter(|p| p.area_m2 > 0.0);
         let mut values: Vec<f64> = patches.map(|p| p.absorbed_w / p.area_m2).collect();
