@@ -13,7 +13,7 @@ use light::{Beams, LightError, LightSpec, LitScene, Optics, SkyKind, SunPosition
 const CANOPIES: [(f64, &str); 4] = [(1.0, "#8bc34a"), (2.0, "#4b9f3c"), (3.0, "#26703a"), (4.0, "#0d4030")];
 
 /// Edge of a leaf, metres.
-const LEAF_M: f64 = 0.01;
+const LEAF_M: f64 = 0.02;
 
 /// Directions around of each elevation.
 const TURNS: u32 = 6;
@@ -40,7 +40,7 @@ fn canopy(leaf_area_index: f64, optics: Optics) -> LitScene {
 }
 
 fn spec() -> LightSpec {
-    LightSpec { repeat_m: Some([1.0, 1.0]), ..LightSpec::default() }
+    LightSpec { lines: 1 << 16, repeat_m: Some([1.0, 1.0]), ..LightSpec::default() }
 }
 
 /// What a canopy lets through at each elevation: the mean over azimuths.
