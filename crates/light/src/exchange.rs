@@ -63,7 +63,7 @@ pub struct ReceiverLight {
     /// The share of its area that is in the sun, 0 to 1; the mean over all suns. None without a sun, and where lines in its
     /// direction do not cross the receiver.
     pub sunlit: Option<f64>,
-    /// How many lines cross it: a few hundred give figures within some percent.
+    /// How many lines cross it: by chance, figures are off by about one over its root.
     pub crossings: u64,
 }
 
@@ -139,7 +139,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// left in the soil, to rounding. Not modelled: gloss, and what a part of a patch throws back more than another. An isolated
 /// scene stands on soil that is lit as far as the scene does not shade it.
 ///
-/// Cost: linear in triangles and lines, times directions: about 46 times 0.1 us a triangle.
+/// Cost: linear in triangles and lines, times directions: 46 of the sky and the others.
 ///
 /// # Errors
 /// [`LightError`].

@@ -164,7 +164,7 @@ struct Owner {
     order: u32,
 }
 
-/// Leaves are crossed by fewer lines than this, if the figures of single ones are rough: by a hundred, they are within some 10 %.
+/// Leaves are crossed by fewer lines than this, if the figures of single ones are rough: by chance, a hundred are off by a tenth.
 const LINES_FEWEST: u64 = 100;
 
 /// The share of leaf area that may be so.
