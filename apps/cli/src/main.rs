@@ -21,6 +21,7 @@ mod leaf;
 mod leaf_data;
 mod lease;
 mod levels;
+mod light;
 mod machine;
 mod manual;
 mod materials;
@@ -79,6 +80,7 @@ fn main() -> ExitCode {
         Command::Scan(mut args) if args.all => args.settle().and_then(|()| plot::scan_all(&args)),
         Command::Scan(mut args) => args.settle().and_then(|()| scan::scan(&args)),
         Command::Forest(args) => forest::forest(&args),
+        Command::Light(args) => light::light(&args),
         Command::Shape(mut args) => args.settle().and_then(|()| shape::shape(&args)),
         Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),

@@ -26,6 +26,7 @@ mod flowers;
 mod leaf_blade;
 mod leaves;
 mod levels;
+mod lit;
 mod lod;
 mod made;
 mod make;
@@ -62,6 +63,7 @@ pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
+pub use lit::{EnergyFigures, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand};
 pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
@@ -107,8 +109,8 @@ pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, forest, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, scan,
-    shape, sketch, skin, spec,
+    bloom, document, forest, formats, geom, glam, growth, ink, leaf, light, mesh, plant, reading, render,
+    scan, shape, sketch, skin, spec,
 };
 
 /// The version that is written into reports and files.

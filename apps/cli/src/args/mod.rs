@@ -9,6 +9,7 @@ mod forest;
 mod given;
 mod grow;
 mod leaf;
+mod light;
 mod lists;
 mod plant_format;
 mod presets;
@@ -29,6 +30,7 @@ pub(crate) use grow::{GrowArgs, MethodWord, PointsArgs};
 pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };
+pub(crate) use light::{LightArgs, SkyWord, SourceArgs};
 pub(crate) use plant_format::{FormatWord, PlantFormat};
 pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
@@ -86,6 +88,11 @@ pub(crate) enum Command {
     /// Each tree stands in its place with its height, crown and diameter. A few plants of each species and age are grown and
     /// stand for many trees, turned and scaled as far as looks right; coarser levels and pictures stand for them far away.
     Forest(Box<ForestArgs>),
+    /// Compute the light on a plant: what each leaf and branch absorbs of sky and sun
+    ///
+    /// Photosynthetically active light (PAR) from a sky of 46 directions and the sun of a place and day, with what leaves and soil
+    /// throw back and let through; of one plant, of several, or of a canopy without end.
+    Light(Box<LightArgs>),
     /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
     ///
     /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays

@@ -15,6 +15,7 @@ mod grow;
 mod hostile;
 mod kills;
 mod leaf;
+mod light;
 mod limits;
 mod named;
 mod options;

@@ -27,7 +27,7 @@ const SOON: Duration = Duration::from_secs(1);
 const LATEST: Duration = Duration::from_millis(1500);
 
 /// What is interrupted: arguments, of which `in/` names inputs. All files are written below `out`.
-const COMMANDS: [&[&str]; 19] = [
+const COMMANDS: [&[&str]; 20] = [
     &["sketch", "in/sample.svg", "-o", "out/s.obj", "--png", "out/s.png", "--report", "out/s.json"],
     &["sketch", "in/a.svg", "in/b.svg", "in/c.svg", "in/d.svg", "in/e.svg", "-o", "out/", "--png", "out/"],
     &[
@@ -45,6 +45,7 @@ const COMMANDS: [&[&str]; 19] = [
     ],
     &["grow", "oak", "-o", "out/g.glb", "--lods", "2", "--png", "out/g.png", "--qsm", "out/g.csv"],
     &["scan", "in/tree.xyz", "-o", "out/c.glb", "--qsm", "out/c.csv", "--report", "out/c.json"],
+    &["light", "oak", "-o", "out/h.csv", "--png", "out/h.png", "--report", "out/h.json"],
     &["shape", "oak", "--list"],
     &["replay", "in/hands.json", "--film", "out/r.gif", "--size", "160x120", "--report", "out/r.json"],
     &["compare", "oak", "--png", "out/v.png", "--report", "out/v.json"],
