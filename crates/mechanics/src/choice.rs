@@ -23,7 +23,7 @@ pub(crate) struct Bend {
 /// An axis with bending energy U under the reference load that has n joints lacks U / 4 n^2 of it (the error of the midpoint
 /// rule for a rod with a weight at its end), and U without any. Joints are given one by one to the axis where the energy that
 /// is lacking falls most; all other axes are rigid with what bears them. Within an axis each joint stands for a run with an
-/// even share of the integral of (c F^2)^(1/3), where c is the compliance of a metre and F the mean of the weights borne there
+/// even share of the integral of (c F^2)^(1/3), where c is the compliance of a metre and F the geometric mean of the weights borne there
 /// and at the foot: the division with the least error, for a hand that pulls at the tip, too. It stands at the run's centre of compliance, so that a run bends as far and as high up as
 /// the beam does.
 pub(crate) fn choose(lines: &Lines, most: u32) -> Vec<Vec<Bend>> {
@@ -67,8 +67,8 @@ fn most_joints(steps: &[Step]) -> u32 {
 fn bends(steps: &[Step], count: u32) -> Vec<Bend> {
     let foot = steps.first().map_or(0.0, |s| s.borne);
     let weight = |s: &Step| {
-        let (length, load) = (s.to - s.from, f64::midpoint(s.borne, foot));
-        base::ops::cbrt(s.compliance / length * load * load) * length
+        let length = s.to - s.from;
+        base::ops::cbrt(s.compliance / length * s.borne * foot) * length
     };
     let whole: f64 = steps.iter().map(weight).sum();
     let mut runs = vec![(0.0, 0.0); count as usize];

@@ -143,8 +143,11 @@ impl Line {
         if self.length() > 0.0 { area / self.length() } else { 0.0 }
     }
 
-    /// The integral of ds / (E I) with I = pi r^4 / 4 of a radius that changes evenly.
+    /// The integral of ds / (E I) with I = pi r^4 / 4 of a radius that changes evenly; 0 where there is no wood to bend.
     fn compliance(&self, from: f64, to: f64, thinnest: f64) -> f64 {
+        if self.mass(from, to) <= 0.0 {
+            return 0.0;
+        }
         let (a, b) = (self.at(from).1.max(thinnest), self.at(to).1.max(thinnest));
         let fourth = (a * a + a * b + b * b) / (3.0 * a * a * a * b * b * b);
         4.0 * (to - from) * fourth / (PI * self.tissue.modulus_pa)
