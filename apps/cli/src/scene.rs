@@ -7,7 +7,7 @@ use burgeon::formats::{PngCache, Room, write_glb_scene};
 use burgeon::mesh::Standing;
 use burgeon::{RunReport, SceneEvaluator, scene_model, standing};
 
-use crate::args::{EXPORT, PlantFormat, Seen, SketchArgs};
+use crate::args::{EXPORT, Seen, SketchArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;

@@ -49,6 +49,10 @@ const STRAIGHT: f64 = 0.05;
 /// after numbers were rounded for a file (flat bodies have just as much).
 const ROUNDING: f64 = 1e-5;
 
+/// Inertia about any axis of any body, at least, kg m2: a thousandth of what the least limb has
+/// (`choice::LIGHTEST_KG_M2`), so that a hair is still a body for MuJoCo.
+const LEAST_INERTIA_KG_M2: f64 = 1e-12;
+
 /// Makes rigid bodies and springy joints of a plant.
 ///
 /// Guaranteed: at most [`MechanicsSpec::most_joints`] hinges; the masses of the bodies are volume times density of all wood
@@ -187,7 +191,7 @@ impl Draft {
             body.centre = body.origin + r;
             let about_centre = self.about_origin - parallel(body.mass, r);
             let trace = about_centre.x_axis.x + about_centre.y_axis.y + about_centre.z_axis.z;
-            body.inertia = about_centre + DMat3::IDENTITY * (trace * ROUNDING);
+            body.inertia = about_centre + DMat3::IDENTITY * (trace * ROUNDING + LEAST_INERTIA_KG_M2);
         }
         body
     }

@@ -9,6 +9,10 @@ const MOST_ON_AXIS: u32 = 8;
 /// a millisecond, and moves too little to be seen.
 const FASTEST_RAD_S: f64 = 2000.0;
 
+/// What a joint moves has at least this polar inertia, kg m2: that of a tenth of a gram at 3 mm. Less is nothing that a simulator
+/// should spend a body on, and MuJoCo refuses 1e-15.
+const LIGHTEST_KG_M2: f64 = 1e-9;
+
 /// Where an axis bends, and how easily.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bend {
@@ -56,12 +60,15 @@ fn gain(energy: f64, joints: u32) -> f64 {
     lacking(joints) - lacking(joints + 1)
 }
 
-/// Joints at which a limb's highest frequency, about n^2 times its own (Dunkerley 1894), is still slow enough.
+/// Joints at which a limb is still slow enough. The highest frequency of a chain is about n^2 times its own (Dunkerley 1894);
+/// what stands between two joints has the inertia of its wood alone, however much the tip bears.
 fn most_joints(steps: &[Step]) -> u32 {
-    let slowness: f64 = steps.iter().map(|s| s.slowness).sum();
-    let own = (1.0 / slowness).sqrt();
-    let most = (FASTEST_RAD_S / own).sqrt();
-    if most.is_finite() { base::ops::whole(most.floor()).min(MOST_ON_AXIS) } else { 0 }
+    let most = |slowness: f64| {
+        let most = (FASTEST_RAD_S * slowness.sqrt()).sqrt();
+        if most.is_finite() { base::ops::whole(most.floor()).min(MOST_ON_AXIS) } else { 0 }
+    };
+    let bare = most(steps.iter().map(|s| s.bare_slowness).sum());
+    most(steps.iter().map(|s| s.slowness).sum()).min(bare.max(1))
 }
 
 fn bends(steps: &[Step], count: u32) -> Vec<Bend> {
@@ -71,7 +78,7 @@ fn bends(steps: &[Step], count: u32) -> Vec<Bend> {
         base::ops::cbrt(s.compliance / length * s.borne * foot) * length
     };
     let whole: f64 = steps.iter().map(weight).sum();
-    let mut runs = vec![(0.0, 0.0); count as usize];
+    let mut runs = vec![Sums::default(); count as usize];
     let mut passed = 0.0;
     for step in steps {
         let own = weight(step);
@@ -88,12 +95,34 @@ fn bends(steps: &[Step], count: u32) -> Vec<Bend> {
             let share = step.compliance * (to - from);
             let middle = base::ops::lerp(step.from, step.to, f64::midpoint(from, to));
             let sums = &mut runs[run as usize];
-            sums.0 += share;
-            sums.1 += share * middle;
+            sums.compliance += share;
+            sums.first += share * middle;
+            sums.slowness += step.slowness * (to - from);
             from = to;
         }
         passed += own;
     }
-    let bend = |(compliance, first): (f64, f64)| Bend { arc: first / compliance, compliance };
-    runs.into_iter().filter(|run| run.0 > 0.0).map(bend).filter(|b| b.arc.is_finite()).collect()
+    runs.into_iter().filter(Sums::can_swing).map(Sums::bend).filter(|b| b.arc.is_finite()).collect()
+}
+
+/// Sums over the steps of a run.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    compliance: f64,
+    /// Compliance times arc length.
+    first: f64,
+    /// Compliance times the inertia of what is borne.
+    slowness: f64,
+}
+
+impl Sums {
+    /// Whether what a joint here would move is neither too quick nor too light.
+    fn can_swing(&self) -> bool {
+        let slow = self.slowness * FASTEST_RAD_S * FASTEST_RAD_S >= 1.0;
+        self.compliance > 0.0 && slow && self.slowness >= LIGHTEST_KG_M2 * self.compliance
+    }
+
+    fn bend(self) -> Bend {
+        Bend { arc: self.first / self.compliance, compliance: self.compliance }
+    }
 }

@@ -16,6 +16,9 @@ const ITERATIONS: usize = 60;
 /// How often springs are stiffened by half until a plant stands: 40 times is more than ten million fold.
 const MOST_STIFFENED: u32 = 40;
 
+/// An axis that had to be stiffened is this many times as stiff as just bears its load.
+const MARGIN: f64 = 2.0;
+
 /// Lowest and highest frequency of a mechanism, hertz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frequencies {
@@ -140,53 +143,90 @@ impl Mechanism {
         }
     }
 
-    /// Stiffens the springs of a plant that would fall over under its own weight, and says so.
+    /// Stiffens the springs of a plant that would fall over under its own weight, and says so: first of each axis that
+    /// bows down by itself, then of the whole, if that still falls.
     fn stand(&mut self, report: &mut Report) {
-        let mut times = 1.0;
-        for _ in 0..MOST_STIFFENED {
-            let (_, stiffness) = self.matrices();
-            if stiffness.side == 0 || stiffness.solve(&vec![1.0; stiffness.side]).is_some() {
-                break;
-            }
-            times *= 1.5;
-            for joint in self.bodies.iter_mut().filter_map(|b| b.joint.as_mut()) {
-                joint.stiffness *= 1.5;
+        let (mut most, mut axes) = (1.0, 0);
+        for rows in self.axes_of_joints() {
+            let times = self.stiffen(&rows);
+            if times > 1.0 {
+                // What just bears its load by itself would not on a bearer that gives way.
+                self.multiply_stiffness(&rows, MARGIN);
+                axes += 1;
+                most = (times * MARGIN).max(most);
             }
         }
+        let all: Vec<usize> =
+            (0..self.bodies.len()).filter(|&row| self.bodies[row].joint.is_some()).collect();
+        let whole = self.stiffen(&all);
+        let (axes, times) =
+            if whole > 1.0 { (self.axes_of_joints().len(), whole * most) } else { (axes, most) };
         if times > 1.0 {
             base::warn!(
                 report,
                 "would-fall",
-                { times = format!("{times:.1}") },
-                "its stems are too thin for its own weight: all joints were made {times} times as stiff so that it stands; thicker stems need none of that"
+                { axes = axes, times = format!("{times:.1}") },
+                "{axes} of its axes are too thin for what they bear: their joints were made up to {times} times as stiff so that they stand; give them thicker stems"
             );
+        }
+    }
+
+    /// Rows of the bodies whose joints are on one axis, for each axis.
+    fn axes_of_joints(&self) -> Vec<Vec<usize>> {
+        let mut all: Vec<Vec<usize>> = Vec::new();
+        for (row, body) in self.bodies.iter().enumerate().filter(|(_, b)| b.joint.is_some()) {
+            match all.last_mut().filter(|rows| self.bodies[rows[0]].axis == body.axis) {
+                Some(rows) => rows.push(row),
+                None => all.push(vec![row]),
+            }
+        }
+        all
+    }
+
+    /// Stiffens some joints by half again and again until they bear what moves on them, the rest of the plant being rigid; how
+    /// many times as stiff they are.
+    fn stiffen(&mut self, rows: &[usize]) -> f64 {
+        let mut times = 1.0;
+        for _ in 0..MOST_STIFFENED {
+            let hinges = self.hinges();
+            let own: Vec<usize> = (0..hinges.len()).filter(|&i| rows.contains(&hinges[i].body)).collect();
+            let (_, stiffness) = self.matrices();
+            let part = own.iter().flat_map(|&i| own.iter().map(move |&j| (i, j)));
+            let values = part.map(|(i, j)| stiffness.rows[i * stiffness.side + j]).collect();
+            let part = Matrix { side: own.len(), rows: values };
+            if own.is_empty() || part.solve(&vec![1.0; own.len()]).is_some() {
+                break;
+            }
+            times *= 1.5;
+            self.multiply_stiffness(rows, 1.5);
+        }
+        times
+    }
+
+    fn multiply_stiffness(&mut self, rows: &[usize], times: f64) {
+        for &row in rows {
+            if let Some(joint) = &mut self.bodies[row].joint {
+                joint.stiffness *= times;
+            }
         }
     }
 
     /// Damps each limb: d = 2 z k / w, with w the lowest frequency of the limb by itself, 1 / w^2 = sum of I / k over its
     /// joints (Dunkerley 1894). In its lowest mode it then has the share z of critical damping, in faster ones more.
     fn damp(&mut self, ratio: f64, limbs: &[Limb]) {
-        // Joints of one axis follow one another.
-        let mut from = 0;
-        while from < self.bodies.len() {
-            let own = self.bodies[from].axis;
-            let count = self.bodies[from..].iter().take_while(|b| own.is_some() && b.axis == own).count();
-            let rows = from..from + count.max(1);
-            let slowness: f64 = rows
-                .clone()
-                .filter_map(|row| {
-                    let body = &self.bodies[row];
-                    let joint = body.joint?;
-                    let inertia = joint.axes.map(|axis| limbs[row].about(axis, body.origin));
-                    Some(f64::midpoint(inertia[0], inertia[1]) / joint.stiffness)
-                })
-                .sum();
-            for row in rows.clone() {
+        for rows in self.axes_of_joints() {
+            let own = |row: &usize| {
+                let body = &self.bodies[*row];
+                let joint = body.joint?;
+                let inertia = joint.axes.map(|axis| limbs[*row].about(axis, body.origin));
+                Some(f64::midpoint(inertia[0], inertia[1]) / joint.stiffness)
+            };
+            let slowness: f64 = rows.iter().filter_map(own).sum();
+            for row in rows {
                 if let Some(joint) = &mut self.bodies[row].joint {
                     joint.damping = 2.0 * ratio * joint.stiffness * slowness.sqrt();
                 }
             }
-            from = rows.end;
         }
     }
 
@@ -213,8 +253,8 @@ impl Mechanism {
 
     /// Mass and stiffness in the angles of the hinges.
     ///
-    /// M_ij = a_i . (I a_j) + m (a_i x r_i) . (a_j x r_j) of the limb that both move, r from each hinge to its centre;
-    /// K_ij = k_i d_ij + m g up . (a_i x (a_j x r_j)), the second of which is what the weight does.
+    /// `M_ij = a_i . (I a_j) + m (a_i x r_i) . (a_j x r_j)` of the limb that both move, r from each hinge to its centre;
+    /// `K_ij = k_i d_ij + m g up . (a_i x (a_j x r_j))`, the second of which is what the weight does.
     fn matrices(&self) -> (Matrix, Matrix) {
         let (hinges, limbs) = (self.hinges(), self.limbs());
         let side = hinges.len();

@@ -71,6 +71,8 @@ pub(crate) struct Step {
     pub(crate) energy: f64,
     /// Compliance times polar inertia of what it bears, square seconds (a term of Dunkerley's sum).
     pub(crate) slowness: f64,
+    /// The same of the axis's own wood alone, s2.
+    pub(crate) bare_slowness: f64,
 }
 
 /// An axis as a bent line.
@@ -176,7 +178,15 @@ impl Line {
                 let (from, to) = (share(k), share(k + 1));
                 if to > from {
                     let compliance = self.compliance(from, to, thinnest);
-                    steps.push(Step { from, to, compliance, borne: 0.0, energy: 0.0, slowness: 0.0 });
+                    steps.push(Step {
+                        from,
+                        to,
+                        compliance,
+                        borne: 0.0,
+                        energy: 0.0,
+                        slowness: 0.0,
+                        bare_slowness: 0.0,
+                    });
                 }
             }
         }
@@ -223,16 +233,21 @@ impl Lines {
         for row in (0..self.all.len()).rev() {
             let (line, mut loads) = (&self.all[row], core::mem::take(&mut hanging[row]));
             base::sort_by(&mut loads, |a, b| a.0.total_cmp(&b.0));
-            let mut borne = Masses::default();
+            let (mut borne, mut bare) = (Masses::default(), Masses::default());
             for step in self.steps[row].iter_mut().rev() {
                 let middle = f64::midpoint(step.from, step.to);
                 while let Some((_, load)) = loads.pop_if(|(arc, _)| *arc >= middle) {
                     borne.add(&load);
                 }
                 let (place, half) = (line.at(middle).0, line.mass(step.from, step.to) / 2.0);
-                borne.add(&Masses::point(half, line.at(f64::midpoint(middle, step.to)).0));
+                let above = Masses::point(half, line.at(f64::midpoint(middle, step.to)).0);
+                let below = Masses::point(half, line.at(f64::midpoint(middle, step.from)).0);
+                borne.add(&above);
+                bare.add(&above);
                 step.bear(&borne, (place, line.tangent(middle)), gravity);
-                borne.add(&Masses::point(half, line.at(f64::midpoint(middle, step.from)).0));
+                step.bare_slowness = step.compliance * bare.about(place);
+                borne.add(&below);
+                bare.add(&below);
             }
             loads.iter().for_each(|(_, load)| borne.add(load));
             if let Some((bearer, arc)) = line.bearer {

@@ -30,9 +30,10 @@ base::words!(WoodGroup { Hardwood = "hardwood", Softwood = "softwood", Green = "
 impl WoodGroup {
     /// The tissue of a group: a value in the middle of the range of its species, not of one species.
     ///
-    /// Green wood (Wood Handbook, Forest Products Laboratory 2010, chapter 5): modulus of hardwoods 7 to 11 GPa and of
-    /// softwoods 6 to 11 GPa, bending strength 45 to 75 and 35 to 60 MPa. Herbaceous stems as whole sections (Niklas 1992,
-    /// Plant Biomechanics): 0.1 to 2 GPa, strength 1 to 20 MPa. Densities are those of tissue full of water: 850 to 1100.
+    /// Green wood (Wood Handbook, Forest Products Laboratory 2010, chapter 5): modulus of hardwoods 7e9 to 11e9 Pa and of
+    /// softwoods 6e9 to 11e9, bending strength 45e6 to 75e6 and 35e6 to 60e6 Pa. Herbaceous stems as whole sections (Niklas
+    /// 1992, Plant Biomechanics): 0.1e9 to 2e9 Pa, strength 1e6 to 20e6. Densities are those of tissue full of water: 850 to
+    /// 1100.
     pub const fn tissue(self) -> Tissue {
         match self {
             Self::Hardwood => Tissue { modulus_pa: 9e9, density_kg_m3: 1000.0, strength_pa: 6e7 },
@@ -42,11 +43,13 @@ impl WoodGroup {
     }
 
     /// The group that a plant shows to belong to: conifers by their needles, herbs by the names of the species that come
-    /// with Burgeon, all others hardwood. Green stems and stalks are green in any group ([`Self::of_axis`]).
+    /// with Burgeon or by having stems and stalks alone, all others hardwood. Green stems and stalks are green in any group ([`Self::of_axis`]).
     pub fn seen_in(plant: &Plant) -> Self {
         let name = plant.name.trim().to_lowercase();
         let has_needles = |s: &Shape| matches!(s, Shape::Blade(blade) if blade.needles.is_some());
-        if HERBS.contains(&name.as_str()) {
+        let has_wood =
+            |a: &plant::Axis| !matches!(a.kind, AxisKind::Stem | AxisKind::Petiole | AxisKind::Root);
+        if HERBS.contains(&name.as_str()) || !plant.axes.iter().any(has_wood) {
             Self::Green
         } else if plant.shapes.iter().any(has_needles) {
             Self::Softwood

@@ -147,3 +147,46 @@ fn the_same_plant_gives_the_same_bits() {
     let plant = tree(80);
     assert_eq!(made(&plant).0, made(&plant).0);
 }
+
+#[test]
+fn a_stalk_like_a_hair_is_stiffened_and_not_the_stem() {
+    let mut plant = fruited();
+    // Upright, so that it would bow down.
+    let shape = plant.organs[0].shape;
+    let points = [DVec3::Y * 0.5, DVec3::Y * 0.6];
+    plant.add_axis(AxisKind::Petiole, Some(NodeId::new(1)), 4, &points, None);
+    plant.nodes.radius_m[4..].fill(0.0002);
+    plant.organs.push(Organ {
+        bearer: Some(NodeId::new(5)),
+        shape,
+        frame: Frame::looking(points[1], DVec3::Y, DVec3::Z),
+        scale: 0.3,
+        key: 5,
+        ..plant.organs[0].clone()
+    });
+    let stem = |m: &Mechanism| {
+        let first = m.bodies.iter().find(|b| b.axis == Some(AxisId::new(0))).expect("a joint");
+        first.joint.expect("a joint").stiffness
+    };
+    let (thick, thin) = (made(&fruited()).0, made(&plant));
+    assert!(thin.1.warnings.iter().any(|w| w.code == "would-fall"));
+    // Where the stem's joint stands depends a little on what it bears.
+    assert!((stem(&thin.0) / stem(&thick) - 1.0).abs() < 0.3, "{} of {}", stem(&thin.0), stem(&thick));
+}
+
+#[test]
+fn tips_that_weigh_nothing_are_no_bodies() {
+    let mut plant = fruited();
+    let tip = [DVec3::Y * 0.5, DVec3::new(0.0, 0.5, 0.001)];
+    plant.add_axis(AxisKind::Stem, Some(NodeId::new(1)), 4, &tip, None);
+    plant.nodes.radius_m[4..].fill(0.00005);
+    let (made, _) = made(&plant);
+    assert!(made.bodies.iter().all(|b| b.axis != Some(AxisId::new(2))));
+    assert!(made.time_step_s > 1e-4, "{} s", made.time_step_s);
+}
+
+#[test]
+fn a_plant_of_stems_alone_is_green() {
+    assert_eq!(WoodGroup::seen_in(&fruited()), WoodGroup::Green);
+    assert_eq!(WoodGroup::seen_in(&tree(3)), WoodGroup::Hardwood);
+}
