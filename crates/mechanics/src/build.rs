@@ -50,7 +50,7 @@ const STRAIGHT: f64 = 0.05;
 const ROUNDING: f64 = 1e-5;
 
 /// Inertia about any axis of any body, at least, kg m2: a thousandth of what the least limb has
-/// (`choice::LIGHTEST_KG_M2`), so that a hair is still a body for MuJoCo.
+/// (`choice::LIGHTEST_KG_M2`), so that a hair is still a body for `MuJoCo`.
 const LEAST_INERTIA_KG_M2: f64 = 1e-12;
 
 /// Makes rigid bodies and springy joints of a plant.

@@ -10,7 +10,7 @@ const MOST_ON_AXIS: u32 = 8;
 const FASTEST_RAD_S: f64 = 2000.0;
 
 /// What a joint moves has at least this polar inertia, kg m2: that of a tenth of a gram at 3 mm. Less is nothing that a simulator
-/// should spend a body on, and MuJoCo refuses 1e-15.
+/// should spend a body on, and `MuJoCo` refuses 1e-15.
 const LIGHTEST_KG_M2: f64 = 1e-9;
 
 /// Where an axis bends, and how easily.

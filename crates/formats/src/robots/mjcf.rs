@@ -1,4 +1,4 @@
-//! Mechanism -> MJCF, as MuJoCo reads it.
+//! Mechanism -> MJCF, as `MuJoCo` reads it.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -71,7 +71,7 @@ pub fn robot_files(
     Ok(ModelFiles { own: own.into_bytes(), beside })
 }
 
-/// Whether a mesh has four corners at different places: MuJoCo refuses one with fewer, which is a sliver nobody sees.
+/// Whether a mesh has four corners at different places: `MuJoCo` refuses one with fewer, which is a sliver nobody sees.
 fn has_four_corners(mesh: &TriMesh) -> bool {
     let mut places: Vec<[u32; 3]> = Vec::new();
     for p in mesh.positions.iter().map(|p| p.map(f32::to_bits)) {
