@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
     Beside, CloudFormat, DrawingFormat, ExportSpec, FileFault, FileStems, Foreign, MAX_MODEL_BYTES,
-    ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, Room, SideFile, StructureFormat,
-    WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind, write_glb_packed,
-    write_glb_with,
+    ModelFiles, ModelFormat, NoFile, Packing, PngCache, ReadDrawing, RobotFormat, Room, SideFile,
+    StructureFormat, WriteError, decode_uri, gltf_files, model_files, names_beside, warn_of_wind,
+    write_glb_packed, write_glb_with,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{DrawnLine, Report, Spec, Unit, UpAxis, Warning, plainly};
+use burgeon::{DrawnLine, Report, RobotError, Run, Spec, Unit, UpAxis, Warning, plainly};
 use companions::{LIMITS, Named, NamedFault};
 use serde::Deserialize;
 
@@ -403,7 +403,7 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
 /// The format of a plant's file name, if we write it.
 pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
     match extension(path).and_then(PlantFormat::from_extension) {
-        Some(structure @ PlantFormat::Structure(_)) => Ok(structure),
+        Some(format @ (PlantFormat::Structure(_) | PlantFormat::Robot(_))) => Ok(format),
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
         None => Err(Failure::at(path, format!("{}; end the name with one of them", PlantFormat::endings()))),
     }
@@ -496,7 +496,26 @@ pub(crate) fn write_plant(
             warn_of_wind(model, format.name(), &mut report);
             Ok(report.warnings)
         }
+        PlantFormat::Robot(format) => write_robot(outputs, goal, plant, format),
     }
+}
+
+/// Writes a plant as bodies and joints, with their meshes beside it.
+fn write_robot(
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
+    plant: &Plant,
+    format: RobotFormat,
+) -> Outcome<Vec<Warning>> {
+    let mut report = Report::default();
+    let (_, stem) = goal.stems();
+    let made = burgeon::write_robot(plant, format, &stem, &Run::plain(), &mut report);
+    let files = made.map_err(|e| match e {
+        RobotError::Write(e) => output::write_failed(goal.path, e),
+        e => Failure::at(goal.path, e),
+    })?;
+    write_files(outputs, goal, Ok(files))?;
+    Ok(report.warnings)
 }
 
 /// Writes a plant's structure, with +Z up unless `args` say otherwise.

@@ -7,7 +7,7 @@ use burgeon::formats::{PngCache, Room, write_glb_scene};
 use burgeon::mesh::Standing;
 use burgeon::{RunReport, SceneEvaluator, scene_model, standing};
 
-use crate::args::{EXPORT, PlantFormat, Seen, SketchArgs};
+use crate::args::{EXPORT, Seen, SketchArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
@@ -107,7 +107,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let [only] = seen.as_slice() else {
             return Err(Failure::at(
                 path,
-                "holds several plants; a structure (MTG, OPF, QSM, SWC) is of one",
+                "holds several plants; a structure (MTG, OPF, QSM, SWC) or a robot (MJCF, URDF) is of one",
             ));
         };
         let plant = scene.get(only.id()).and_then(|p| p.plant);
@@ -118,7 +118,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     }
     if let Some((out, format)) = args.output.as_deref().zip(format) {
         let nothing = burgeon::plant::Plant::default();
-        let plant = if matches!(format, PlantFormat::Structure(_)) { structure()? } else { &nothing };
+        let plant = if format.model().is_none() { structure()? } else { &nothing };
         let goal = Goal::new("-o", out);
         let mut cache = PngCache::new();
         if let Some(gltf) = format.model().filter(|format| format.holds(Room::Instances)) {

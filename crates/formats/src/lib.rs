@@ -2,7 +2,7 @@
 //!
 //! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
 //! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_structure`]
-//! -> bytes.
+//! -> bytes; [`mechanics::Mechanism`] -> [`robot_files`] -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -16,6 +16,7 @@ mod kind;
 mod leaves;
 mod model;
 mod plant;
+mod robots;
 mod summary;
 mod table;
 mod tiles;
@@ -37,9 +38,10 @@ pub use model::{
     write_ply, write_png, write_stl,
 };
 pub use plant::{write_mtg, write_opf, write_qsm, write_structure, write_swc};
+pub use robots::{BodyMesh, robot_files};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};
 pub use table::{
-    Access, Beside, CloudFormat, DrawingFormat, FormatRow, ModelFormat, Room, StructureFormat,
+    Access, Beside, CloudFormat, DrawingFormat, FormatRow, ModelFormat, RobotFormat, Room, StructureFormat,
     list_of_endings,
 };
 pub use tiles::{

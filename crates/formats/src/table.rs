@@ -56,6 +56,8 @@ pub enum Beside {
     Buffer,
     /// The pictures of its materials.
     Textures,
+    /// The meshes that are seen of its bodies.
+    Meshes,
 }
 
 impl Beside {
@@ -65,16 +67,17 @@ impl Beside {
             Self::Materials => "the materials",
             Self::Buffer => "the buffer",
             Self::Textures => "a texture",
+            Self::Meshes => "a mesh",
         }
     }
 
-    /// How the name of its file ends, without the dot, where the rest is the stem of the file that names it: of textures it
-    /// is not.
+    /// How the name of its file ends, without the dot, where the rest is the stem of the file that names it: of textures
+    /// and meshes it is not.
     pub const fn ending(self) -> Option<&'static str> {
         match self {
             Self::Materials => Some("mtl"),
             Self::Buffer => Some("bin"),
-            Self::Textures => None,
+            Self::Textures | Self::Meshes => None,
         }
     }
 }
@@ -315,6 +318,30 @@ formats! {
 }
 
 formats! {
+    /// The file formats that hold a plant as bodies and joints, for simulators of robots; written only.
+    RobotFormat {
+        Mjcf = "mjcf" {
+            name: "MJCF",
+            endings: &["xml"],
+            media_type: "application/xml",
+            about: "MuJoCo: bodies, springy joints, collision shapes, with meshes beside it",
+            access: Write,
+            holds: [],
+            beside: [Meshes],
+        }
+        Urdf = "urdf" {
+            name: "URDF",
+            endings: &["urdf"],
+            media_type: "application/xml",
+            about: "Unified Robot Description Format: links and joints, with meshes beside it",
+            access: Write,
+            holds: [],
+            beside: [Meshes],
+        }
+    }
+}
+
+formats! {
     /// The file formats that hold strokes.
     DrawingFormat {
         Svg = "svg" {
@@ -438,7 +465,12 @@ mod tests {
     fn rows() -> Vec<&'static FormatRow> {
         let models = ModelFormat::ALL.into_iter().map(ModelFormat::row);
         let structures = StructureFormat::ALL.into_iter().map(StructureFormat::row);
-        models.chain(structures).chain(DrawingFormat::ALL.into_iter().map(DrawingFormat::row)).collect()
+        let robots = RobotFormat::ALL.into_iter().map(RobotFormat::row);
+        models
+            .chain(structures)
+            .chain(robots)
+            .chain(DrawingFormat::ALL.into_iter().map(DrawingFormat::row))
+            .collect()
     }
 
     #[test]

@@ -34,6 +34,7 @@ mod motion;
 mod opening;
 mod refusal;
 mod report;
+mod robot;
 mod scanned;
 mod scene;
 mod schemas;
@@ -75,6 +76,7 @@ pub use report::{
     LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord,
     StrokeReport, TimingsMs,
 };
+pub use robot::{RobotError, write_robot};
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
     PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,
@@ -109,8 +111,8 @@ pub use growth::{Bark, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, forest, formats, geom, glam, growth, ink, leaf, light, mesh, plant, reading, render,
-    scan, shape, sketch, skin, spec,
+    bloom, document, forest, formats, geom, glam, growth, ink, leaf, light, mechanics, mesh, plant, reading,
+    render, scan, shape, sketch, skin, spec,
 };
 
 /// The version that is written into reports and files.

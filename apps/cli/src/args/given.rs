@@ -95,7 +95,7 @@ impl Seen {
     pub(crate) fn new(plant: Option<PlantFormat>, png: Option<&PathBuf>, common: &CommonArgs) -> Self {
         let model = match plant {
             Some(PlantFormat::Model(format)) => Some(format),
-            Some(PlantFormat::Structure(_)) | None => None,
+            Some(PlantFormat::Structure(_) | PlantFormat::Robot(_)) | None => None,
         };
         Self { model, picture: png.is_some(), report: common.reports() }
     }

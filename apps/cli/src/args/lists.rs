@@ -1,13 +1,16 @@
 //! Help texts that list formats, from the table of formats.
 
-use burgeon::formats::{DrawingFormat, ModelFormat, Room};
+use burgeon::formats::{DrawingFormat, ModelFormat, RobotFormat, Room};
 
 use super::plant_format::PlantFormat;
 
-/// A plant as a model or as its structure.
+/// A plant as a model, as its structure or as a robot.
 pub(crate) fn plant_output() -> String {
     let (models, structures) = (ModelFormat::written_endings(), PlantFormat::structure_endings());
-    format!("The model ({models}), or the structure ({structures}).")
+    let robots = RobotFormat::written_endings();
+    format!(
+        "The model ({models}), the structure ({structures}), or bodies and joints for simulators ({robots})."
+    )
 }
 
 pub(crate) fn sketch_output() -> String {

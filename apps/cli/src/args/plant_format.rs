@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use burgeon::formats::{FormatRow, ModelFormat, Room, StructureFormat, list_of_endings};
+use burgeon::formats::{FormatRow, ModelFormat, RobotFormat, Room, StructureFormat, list_of_endings};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
@@ -57,6 +57,8 @@ pub(crate) enum PlantFormat {
     Model(ModelFormat),
     /// Its structure.
     Structure(StructureFormat),
+    /// Its bodies and joints.
+    Robot(RobotFormat),
 }
 
 impl PlantFormat {
@@ -64,6 +66,7 @@ impl PlantFormat {
         match self {
             Self::Model(model) => model.row(),
             Self::Structure(structure) => structure.row(),
+            Self::Robot(robot) => robot.row(),
         }
     }
 
@@ -81,7 +84,7 @@ impl PlantFormat {
     pub(crate) const fn model(self) -> Option<ModelFormat> {
         match self {
             Self::Model(model) => Some(model),
-            Self::Structure(_) => None,
+            Self::Structure(_) | Self::Robot(_) => None,
         }
     }
 
@@ -89,6 +92,7 @@ impl PlantFormat {
         StructureFormat::from_extension(extension)
             .map(Self::Structure)
             .or_else(|| ModelFormat::from_extension(extension).map(Self::Model))
+            .or_else(|| RobotFormat::from_extension(extension).map(Self::Robot))
     }
 
     /// The formats of models that are written.
@@ -98,7 +102,7 @@ impl PlantFormat {
 
     /// All that plants are written as, by the last ending of a file's name: that of tables may hold anything.
     fn written() -> impl Iterator<Item = Self> {
-        Self::models().map(Self::Model).chain(Self::structures())
+        Self::models().map(Self::Model).chain(Self::structures()).chain(RobotFormat::ALL.map(Self::Robot))
     }
 
     fn structures() -> impl Iterator<Item = Self> {

@@ -175,7 +175,7 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     given.only_if(several, &["frames"], &format!("{films} and folders"), one)?;
     given.only_if(film, &["seconds"], &films, "none is written")?;
     let structure = extension.and_then(PlantFormat::from_extension);
-    let structure = matches!(structure, Some(PlantFormat::Structure(_)));
+    let structure = structure.is_some_and(|format| format.model().is_none());
     let moving = ModelFormat::endings_with(Room::Morphs);
     let users = format!("models of one shape (--day, or another format than {moving})");
     given.only_if(!several && !structure, &EXPORT, &users, "none is written")?;

@@ -20,6 +20,7 @@ mod limits;
 mod named;
 mod options;
 mod replay;
+mod robots;
 mod scans;
 mod shape;
 mod signals;

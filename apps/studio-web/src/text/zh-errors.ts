@@ -363,6 +363,8 @@ export const zhWarnings: Record<string, string> = {
   'obj-left-out': '{count} 条线、点或曲线没有读取',
   'obj-material-file': '没有找到材质文件“{file}”：材质为单色',
   'texture-missing': '无法读取纹理（{name}），已略去',
+  'robot-assumed':
+    '{bodies} 个刚体、{hinges} 个铰链，{kilograms} 千克，最低频率 {hertz} 赫兹，步长至多 {milliseconds} 毫秒；木材按一般 {group} 取值（{gigapascals} GPa，并非测得）',
   'gltf-fixed-units': 'glTF 总以米为单位、+Y 向上：没有使用所要求的单位和向上轴',
   'wind-left-out': '{format} 不能存放风：已略去；.glb 和 .usda 可以',
   'gltf-left-out': '{count} 个由线组成的网格没有读取',

@@ -4,7 +4,7 @@
 
 use std::fmt::Write as _;
 
-use formats::{Beside, FormatRow, ModelFormat, Room, StructureFormat};
+use formats::{Beside, FormatRow, ModelFormat, RobotFormat, Room, StructureFormat};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/exports.md");
 /// The lines between which the table of models lies.
@@ -29,7 +29,8 @@ fn table() -> String {
         .to_owned();
     let models = ModelFormat::ALL.into_iter().map(ModelFormat::row);
     let structures = StructureFormat::ALL.into_iter().map(StructureFormat::row);
-    for row in models.chain(structures) {
+    let robots = RobotFormat::ALL.into_iter().map(RobotFormat::row);
+    for row in models.chain(structures).chain(robots) {
         line(&mut out, row);
     }
     out
@@ -37,7 +38,9 @@ fn table() -> String {
 
 fn line(out: &mut String, row: &FormatRow) {
     let yes = |rooms: &[Room]| if rooms.iter().all(|room| row.holds.contains(room)) { "yes" } else { "–" };
-    let axes = if row.holds.contains(&Room::Axes) { "`--up`, `--unit`" } else { "metres, +Y up" };
+    let is_robot = row.beside.contains(&Beside::Meshes);
+    let fixed = if is_robot { "metres, +Z up" } else { "metres, +Y up" };
+    let axes = if row.holds.contains(&Room::Axes) { "`--up`, `--unit`" } else { fixed };
     let access = match (row.is_read(), row.is_written()) {
         (true, true) => "reads and writes it",
         (true, false) => "reads it",
@@ -59,5 +62,9 @@ fn line(out: &mut String, row: &FormatRow) {
 
 /// The names of the files beside one of the stem `NAME`.
 fn beside(what: Beside) -> String {
-    what.ending().map_or("`NAME-MATERIAL.png`".to_owned(), |ending| format!("`NAME.{ending}`"))
+    match (what, what.ending()) {
+        (_, Some(ending)) => format!("`NAME.{ending}`"),
+        (Beside::Meshes, None) => "`NAME-BODY_PART.stl`".to_owned(),
+        (_, None) => "`NAME-MATERIAL.png`".to_owned(),
+    }
 }

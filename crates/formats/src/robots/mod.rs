@@ -1,0 +1,189 @@
+//! [`mechanics::Mechanism`] -> bytes: plants as robots, for simulators. In metres, +Z up.
+
+mod mjcf;
+mod urdf;
+
+use base::{Unit, UpAxis};
+use glam::{DMat3, DVec3};
+use mechanics::{Body, Mechanism};
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+
+use crate::model::file_name;
+use crate::{Beside, BesideFile, ExportSpec, ModelFiles, RobotFormat, WriteError, write_stl};
+
+/// What is seen of a body: triangles of one kind of surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyMesh {
+    /// Row of [`Mechanism::bodies`].
+    pub body: usize,
+    /// Which surface it is, such as `leaves`: with the body's name that of the mesh.
+    pub part: String,
+    /// Its mean colour, linear RGB.
+    pub color: [f32; 3],
+    /// The triangles, in the plant's coordinates.
+    pub mesh: TriMesh,
+}
+
+/// Limits of each hinge, radians: a right angle, beyond which no stem goes without breaking.
+const MOST_TURN_RAD: f64 = 1.57;
+
+/// Writes a mechanism with its meshes beside it, as binary STL, named `STEM-BODY_PART.stl`; `stem` is the file's name without
+/// its ending.
+///
+/// Guaranteed: masses, stiffness and places to nine digits. Meshes of less than four corners are left out. MJCF has springs that hold the pose, fruits on welds with the
+/// force at which they break, areas for the wind, and the time step. URDF has no springs of its own: they are for Gazebo; its fruits do not come off.
+/// Cost: linear.
+///
+/// # Errors
+/// [`WriteError`] for meshes that are not sound.
+///
+/// ```
+/// use glam::DVec3;
+/// let mut p = plant::Plant::default();
+/// p.add_axis(plant::AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+/// p.nodes.radius_m = vec![0.02, 0.01];
+/// let (run, mut report) = (base::Run::plain(), base::Report::default());
+/// let made = mechanics::articulate(&p, &mechanics::MechanicsSpec::default(), &run, &mut report)?;
+/// for format in formats::RobotFormat::ALL {
+///     let files = formats::robot_files(&made, &[], format, "rod")?;
+///     assert!(String::from_utf8(files.own)?.contains("branch_1_1"));
+/// }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn robot_files(
+    mechanism: &Mechanism,
+    meshes: &[BodyMesh],
+    format: RobotFormat,
+    stem: &str,
+) -> Result<ModelFiles, WriteError> {
+    let stem = file_name(stem, "plant");
+    let named: Vec<Seen<'_>> = meshes
+        .iter()
+        .filter(|mesh| has_four_corners(&mesh.mesh))
+        .filter_map(|mesh| Some((mesh, mechanism.bodies.get(mesh.body)?)))
+        .map(|(mesh, body)| Seen::new(mesh, body, &stem))
+        .collect();
+    let own = match format {
+        RobotFormat::Mjcf => mjcf::text(mechanism, &named),
+        RobotFormat::Urdf => urdf::text(mechanism, &named),
+    };
+    let beside = named.into_iter().map(Seen::file).collect::<Result<_, _>>()?;
+    Ok(ModelFiles { own: own.into_bytes(), beside })
+}
+
+/// Whether a mesh has four corners at different places: `MuJoCo` refuses one with fewer, which is a sliver nobody sees.
+fn has_four_corners(mesh: &TriMesh) -> bool {
+    let mut places: Vec<[u32; 3]> = Vec::new();
+    for p in mesh.positions.iter().map(|p| p.map(f32::to_bits)) {
+        if !places.contains(&p) {
+            places.push(p);
+        }
+        if places.len() == 4 {
+            return true;
+        }
+    }
+    false
+}
+
+/// A mesh with its names.
+struct Seen<'a> {
+    mesh: &'a BodyMesh,
+    origin: DVec3,
+    /// `BODY_PART`.
+    name: String,
+    file: String,
+}
+
+impl<'a> Seen<'a> {
+    fn new(mesh: &'a BodyMesh, body: &Body, stem: &str) -> Self {
+        let name = file_name(&format!("{}_{}", body.name, mesh.part), "mesh");
+        Self { mesh, origin: body.origin, file: format!("{stem}-{name}.stl"), name }
+    }
+
+    /// sRGB with an opacity of 1, each 0 to 1.
+    fn rgba(&self) -> String {
+        let [r, g, b] = self.mesh.color.map(|c| number(base::srgb_of_linear(f64::from(c).clamp(0.0, 1.0))));
+        format!("{r} {g} {b} 1")
+    }
+
+    /// The triangles about the body's origin.
+    fn file(self) -> Result<BesideFile, WriteError> {
+        let mut mesh = TriMesh {
+            positions: self.mesh.mesh.positions.clone(),
+            triangles: self.mesh.mesh.triangles.clone(),
+            ..TriMesh::default()
+        };
+        for p in &mut mesh.positions {
+            *p = (DVec3::from_array(p.map(f64::from)) - self.origin).as_vec3().to_array();
+        }
+        mesh.compute_normals();
+        let part = Part { name: self.name, material: MaterialId::new(0), mesh };
+        let material = Material::plain("seen", MaterialKind::Other, [0.5; 3]);
+        let model = Model { parts: vec![part], materials: vec![material], ..Model::default() };
+        let mut bytes = Vec::new();
+        write_stl(&model, &ExportSpec { up: UpAxis::Z, unit: Unit::Metre }, &mut bytes)?;
+        Ok(BesideFile { what: Beside::Meshes, name: self.file, bytes })
+    }
+}
+
+/// From the plant's axes to those of robots: +Z up.
+fn turned(v: DVec3) -> DVec3 {
+    DVec3::new(v.x, -v.z, v.y)
+}
+
+/// Inertia in the axes of robots: xx, yy, zz, xy, xz, yz.
+fn turned_inertia(inertia: DMat3) -> [f64; 6] {
+    let turn = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z));
+    let i = turn * inertia * turn.transpose();
+    [i.x_axis.x, i.y_axis.y, i.z_axis.z, i.y_axis.x, i.z_axis.x, i.z_axis.y]
+}
+
+/// A number of nine digits, as short as can be.
+fn number(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&size) {
+        let text = format!("{x:.9}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        let text = format!("{x:.8e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let digits =
+            if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        format!("{digits}e{exponent}")
+    }
+}
+
+fn numbers(values: impl IntoIterator<Item = f64>) -> String {
+    values.into_iter().map(number).collect::<Vec<_>>().join(" ")
+}
+
+/// A place or direction of the plant in the axes of robots.
+fn triple(v: DVec3) -> String {
+    numbers(turned(v).to_array())
+}
+
+/// A name for an attribute.
+fn attribute(name: &str) -> String {
+    base::escaped_xml(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_nine_digits_and_no_more_than_it_takes() {
+        let written = [0.0, 1.0, -0.5, 1.0 / 3.0, 1.5e-7, -2e9, 0.002].map(number);
+        assert_eq!(written, ["0", "1", "-0.5", "0.333333333", "1.5e-7", "-2e9", "0.002"]);
+    }
+
+    #[test]
+    fn inertia_turns_with_its_axes() {
+        let inertia =
+            DMat3::from_cols(DVec3::new(1.0, 0.1, 0.2), DVec3::new(0.1, 2.0, 0.3), DVec3::new(0.2, 0.3, 3.0));
+        // The plant's y is z, and its z is -y.
+        assert_eq!(turned_inertia(inertia), [1.0, 3.0, 2.0, -0.2, 0.1, -0.3]);
+    }
+}

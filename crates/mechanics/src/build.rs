@@ -1,0 +1,366 @@
+//! Plant -> mechanism.
+
+use base::{Counted, Report, Run};
+use glam::{DMat3, DVec3};
+use plant::{AxisId, AxisKind, OrganKind, Plant};
+
+use crate::choice::{Bend, choose};
+use crate::line::{Line, Lines, Weight, place_of};
+use crate::mechanism::{Runs, outer, parallel};
+use crate::{Body, Capsule, Joint, MechanicsError, Mechanism, Stalk, WoodGroup};
+
+/// How a plant becomes a mechanism.
+///
+/// ```
+/// assert_eq!(mechanics::MechanicsSpec::default().most_joints, 200);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MechanicsSpec {
+    /// Hinges, at most; two make a joint. Default 200.
+    pub most_joints: u32,
+    /// The group of the woody axes; stems and stalks that are green are so in any. Default hardwood.
+    pub group: WoodGroup,
+    /// Share of critical damping with which each limb swings in its lowest mode, above 0. Default 0.1: trees and stems in
+    /// still air have 0.02 to 0.2 (Moore and Maguire 2004 give the range of trees).
+    pub damping_ratio: f64,
+    /// Metres per second squared, downwards; 0 for none. Default 9.81.
+    pub gravity: f64,
+}
+
+impl Default for MechanicsSpec {
+    fn default() -> Self {
+        Self { most_joints: 200, group: WoodGroup::Hardwood, damping_ratio: 0.1, gravity: 9.81 }
+    }
+}
+
+/// Gravity of the reference load where the mechanism has none, m/s2: only ratios of energies matter.
+const REFERENCE_GRAVITY: f64 = 9.81;
+
+/// Fruits that hang on stalks that break, at most: each is free in space and costs as much as three joints.
+const MOST_FRUITS: usize = 24;
+
+/// Capsules of a mechanism, at most: the largest.
+const MOST_CAPSULES: usize = 1000;
+
+/// A capsule follows wood that bends away from its line by less than this share of its length.
+const STRAIGHT: f64 = 0.05;
+
+/// Added to the inertia about each axis as a share of its trace, so that no axis has more than the other two together
+/// after numbers were rounded for a file (flat bodies have just as much).
+const ROUNDING: f64 = 1e-5;
+
+/// Inertia about any axis of any body, at least, kg m2: a thousandth of what the least limb has
+/// (`choice::LIGHTEST_KG_M2`), so that a hair is still a body for `MuJoCo`.
+const LEAST_INERTIA_KG_M2: f64 = 1e-12;
+
+/// Makes rigid bodies and springy joints of a plant.
+///
+/// Guaranteed: at most [`MechanicsSpec::most_joints`] hinges; the masses of the bodies are volume times density of all wood
+/// above the ground and the weight of all organs; the plant rests in the pose that it was made in; the same bits on every
+/// platform. Roots are held by the soil and weigh nothing; stubs do not bend.
+/// Not modelled: torsion of wood, growth stresses, tapering of a joint's run (its compliance is that of the tapered wood), collisions of the plant with itself.
+/// Cost: linear in nodes and organs; some 0.1 s for the frequencies of 200 hinges.
+///
+/// Joints: see `docs/engines/robots.md`. Euler-Bernoulli beams, I = pi r^4 / 4, k = E I / L; the frequency of a limb by
+/// Dunkerley (1894).
+///
+/// # Errors
+/// [`MechanicsError`] of a plant without stems, without thickness or beyond the budget.
+pub fn articulate(
+    plant: &Plant,
+    spec: &MechanicsSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Mechanism, MechanicsError> {
+    let pieces = plant.nodes.position.len() as u64 + plant.organs.len() as u64;
+    run.budget.check(Counted::Pieces, pieces, "grow a smaller plant, or one without leaves")?;
+    if let Some(fault) = plant.validate().next() {
+        return Err(MechanicsError::Unsound(fault));
+    }
+    let gravity = if spec.gravity > 0.0 { spec.gravity } else { REFERENCE_GRAVITY };
+    let lines = Lines::new(plant, spec.group, gravity);
+    check(&lines)?;
+    let bends = choose(&lines, spec.most_joints / 2);
+    let base = Draft::new("base".to_owned(), None, foot(plant));
+    let mut build = Build { plant, lines: &lines, bodies: vec![base], runs: Vec::new() };
+    for (row, bends) in bends.iter().enumerate() {
+        build.axis(row, bends);
+    }
+    let organ_bodies = build.organs(report);
+    let Build { bodies, runs, .. } = build;
+    let mut bodies: Vec<Body> = bodies.into_iter().map(Draft::body).collect();
+    keep_largest(&mut bodies);
+    let mut made = Mechanism {
+        name: plant.name.clone(),
+        bodies,
+        gravity: spec.gravity,
+        time_step_s: 0.0,
+        runs,
+        organ_bodies,
+    };
+    made.settle(spec, report)?;
+    Ok(made)
+}
+
+/// Where the plant stands: the foot of its first axis on the ground that is not below it.
+fn foot(plant: &Plant) -> DVec3 {
+    let standing = plant.axes.iter().find(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
+    standing.map_or(DVec3::ZERO, |a| plant.nodes.position[a.nodes.start as usize])
+}
+
+fn check(lines: &Lines) -> Result<(), MechanicsError> {
+    let mut shoot = lines.all.iter().filter(|l| !l.is_buried && l.length() > 0.0).peekable();
+    if shoot.peek().is_none() {
+        return Err(MechanicsError::NoStem);
+    }
+    if shoot.all(|l| l.radii.iter().all(|r| *r <= 0.0)) {
+        return Err(MechanicsError::NoThickness);
+    }
+    for step in lines.steps.iter().flatten() {
+        let numbers =
+            [("the compliance", step.compliance), ("the mass", step.borne), ("the load", step.energy)];
+        if let Some((what, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+            return Err(MechanicsError::Number { what, value });
+        }
+    }
+    Ok(())
+}
+
+/// A body while masses are added to it.
+#[derive(Debug)]
+struct Draft {
+    body: Body,
+    first: DVec3,
+    /// About the body's origin.
+    about_origin: DMat3,
+}
+
+impl Draft {
+    fn new(name: String, parent: Option<usize>, origin: DVec3) -> Self {
+        let body = Body {
+            name,
+            axis: None,
+            parent,
+            origin,
+            joint: None,
+            stalk: None,
+            mass: 0.0,
+            centre: origin,
+            inertia: DMat3::ZERO,
+            capsules: Vec::new(),
+            wood_area_m2: 0.0,
+            leaf_area_m2: 0.0,
+        };
+        Self { body, first: DVec3::ZERO, about_origin: DMat3::ZERO }
+    }
+
+    /// Adds a mass with its own inertia about its centre.
+    fn add(&mut self, mass: f64, centre: DVec3, own: DMat3) {
+        let r = centre - self.body.origin;
+        self.body.mass += mass;
+        self.first += r * mass;
+        self.about_origin += own + parallel(mass, r);
+    }
+
+    /// Adds a frustum of wood, as a cylinder of its mean radius whose mass is the frustum's.
+    fn add_wood(&mut self, line: &Line, from: f64, to: f64) {
+        let ((p, a), (q, b)) = (line.at(from), line.at(to));
+        let (mass, length) = (line.mass(from, to), p.distance(q));
+        let (Some(along), radius) = ((q - p).try_normalize(), f64::midpoint(a, b)) else { return };
+        let round = mass * radius * radius / 2.0;
+        let across = mass * (3.0 * radius * radius + length * length) / 12.0;
+        let own = DMat3::IDENTITY * across + outer(along, along) * (round - across);
+        // The centre of a frustum lies towards its thicker end.
+        let thick = a * a + a * b + b * b;
+        let share = if thick > 0.0 { (a * a + 2.0 * a * b + 3.0 * b * b) / (4.0 * thick) } else { 0.5 };
+        self.add(mass, p.lerp(q, share), own);
+        self.body.wood_area_m2 += (a + b) * length;
+    }
+
+    /// Adds an organ, as a ball of its reach.
+    fn add_organ(&mut self, weight: &Weight) {
+        let own = DMat3::IDENTITY * (0.4 * weight.mass * weight.reach_m * weight.reach_m);
+        self.add(weight.mass, weight.centre, own);
+        self.body.leaf_area_m2 += weight.area_m2;
+    }
+
+    fn body(self) -> Body {
+        let mut body = self.body;
+        if body.mass > 0.0 {
+            let r = self.first / body.mass;
+            body.centre = body.origin + r;
+            let about_centre = self.about_origin - parallel(body.mass, r);
+            let trace = about_centre.x_axis.x + about_centre.y_axis.y + about_centre.z_axis.z;
+            body.inertia = about_centre + DMat3::IDENTITY * (trace * ROUNDING + LEAST_INERTIA_KG_M2);
+        }
+        body
+    }
+}
+
+struct Build<'a> {
+    plant: &'a Plant,
+    lines: &'a Lines,
+    bodies: Vec<Draft>,
+    runs: Vec<Runs>,
+}
+
+impl Build<'_> {
+    /// The bodies of an axis: the first part moves with what bears it, and a new body begins at each bend.
+    fn axis(&mut self, row: usize, bends: &[Bend]) {
+        let line = &self.lines.all[row];
+        let length = line.length();
+        let mut body = line.bearer.map_or(0, |(bearer, arc)| self.body_at(bearer, arc));
+        let mut runs: Runs = vec![(0.0, body)];
+        let mut from = 0.0;
+        let ends = bends.iter().skip(1).map(|bend| bend.arc).chain([length]);
+        // A tip that runs out to nothing would be a body without mass.
+        let heavy = bends.iter().zip(ends).filter(|(bend, end)| line.mass_between(bend.arc, *end) > 0.0);
+        for (k, (bend, _)) in heavy.enumerate() {
+            self.wood(body, line, from, bend.arc);
+            let name = format!("{}_{}_{}", word(line.kind), row + 1, k + 1);
+            let mut draft = Draft::new(name, Some(body), line.at(bend.arc).0);
+            let tangent = line.tangent(bend.arc);
+            let across = tangent.any_orthonormal_vector();
+            draft.body.axis = Some(AxisId::new(row));
+            draft.body.joint = Some(Joint {
+                axes: [across, tangent.cross(across)],
+                stiffness: 1.0 / bend.compliance,
+                damping: 0.0,
+                rest_rad: [0.0; 2],
+            });
+            body = self.bodies.len();
+            self.bodies.push(draft);
+            runs.push((bend.arc / length, body));
+            from = bend.arc;
+        }
+        self.wood(body, line, from, length);
+        self.runs.push(runs);
+    }
+
+    /// The body that has a place of an axis.
+    fn body_at(&self, axis: usize, arc: f64) -> usize {
+        let (runs, length) = (&self.runs[axis], self.lines.all[axis].length());
+        let share = if length > 0.0 { arc / length } else { 0.0 };
+        runs[runs.partition_point(|(from, _)| *from <= share).max(1) - 1].1
+    }
+
+    /// Adds the wood of a part of an axis to a body, and its capsules.
+    fn wood(&mut self, body: usize, line: &Line, from: f64, to: f64) {
+        if line.is_buried || to <= from {
+            return;
+        }
+        let draft = &mut self.bodies[body];
+        let stops = line.stops(from, to);
+        stops.windows(2).for_each(|s| draft.add_wood(line, s[0], s[1]));
+        capsules(line, &stops, &mut draft.body.capsules);
+    }
+
+    /// Adds the organs, fruits as bodies of their own; for each organ the row of its body.
+    fn organs(&mut self, report: &mut Report) -> Vec<usize> {
+        let fruits = self.fruits();
+        let mut rows = Vec::with_capacity(self.plant.organs.len());
+        for (k, (organ, weight)) in self.plant.organs.iter().zip(&self.lines.organs).enumerate() {
+            let place = organ.bearer.map(|node| place_of(self.plant, &self.lines.all, node));
+            let bearer = place.map_or(0, |(axis, arc)| self.body_at(axis, arc));
+            let Some((axis, arc)) = place.filter(|_| fruits.contains(&k)) else {
+                self.bodies[bearer].add_organ(weight);
+                rows.push(bearer);
+                continue;
+            };
+            let line = &self.lines.all[axis];
+            let radius = line.at(arc).1;
+            let break_force_n = line.tissue.strength_pa * base::ops::PI * radius * radius;
+            let mut draft = Draft::new(format!("fruit_{}", k + 1), Some(bearer), organ.frame.origin);
+            draft.body.stalk = Some(Stalk { at: organ.frame.origin, break_force_n });
+            draft.add_organ(weight);
+            draft.body.capsules.push(Capsule {
+                from: weight.centre,
+                to: weight.centre,
+                radius_m: weight.reach_m,
+            });
+            rows.push(self.bodies.len());
+            self.bodies.push(draft);
+        }
+        let all = self.plant.organs.iter().filter(|o| is_fruit(o.kind)).count();
+        if all > fruits.len() {
+            let kept = fruits.len();
+            base::warn!(
+                report,
+                "fruits-fixed",
+                { all = all, kept = kept },
+                "of {all} fruits the heaviest {kept} that hang on stalks can break off; the others are part of what bears them"
+            );
+        }
+        rows
+    }
+
+    /// Rows of the fruits that can break off: the heaviest of those on stalks with a thickness.
+    fn fruits(&self) -> Vec<usize> {
+        let can = |k: &usize| {
+            let organ = &self.plant.organs[*k];
+            let Some((axis, arc)) = organ.bearer.map(|n| place_of(self.plant, &self.lines.all, n)) else {
+                return false;
+            };
+            let line = &self.lines.all[axis];
+            let weight = &self.lines.organs[*k];
+            is_fruit(organ.kind) && line.at(arc).1 > 0.0 && weight.mass > 0.0 && weight.reach_m > 0.0
+        };
+        let mut all: Vec<usize> = (0..self.plant.organs.len()).filter(can).collect();
+        let mass = |k: usize| self.lines.organs[k].mass;
+        base::sort_by(&mut all, |a, b| mass(*b).total_cmp(&mass(*a)).then(a.cmp(b)));
+        all.truncate(MOST_FRUITS);
+        all
+    }
+}
+
+const fn is_fruit(kind: OrganKind) -> bool {
+    matches!(kind, OrganKind::Fruit | OrganKind::Syncarp)
+}
+
+const fn word(kind: AxisKind) -> &'static str {
+    match kind {
+        AxisKind::Stem => "stem",
+        AxisKind::Petiole => "stalk",
+        AxisKind::Twig => "twig",
+        AxisKind::Root => "root",
+        AxisKind::Stub => "stub",
+        _ => "branch",
+    }
+}
+
+/// Capsules along a part of an axis, one for each piece that is straight enough; each has the piece's volume without its ends.
+fn capsules(line: &Line, stops: &[f64], out: &mut Vec<Capsule>) {
+    let (Some(&from), Some(&to)) = (stops.first(), stops.last()) else { return };
+    let ((p, _), (q, _)) = (line.at(from), line.at(to));
+    let volume = line.mass_between(from, to) / line.tissue.density_kg_m3;
+    let radius_m = (volume / (base::ops::PI * (to - from))).sqrt();
+    let away = |k: &usize| geom::nearest_on_polyline3(&[p, q], line.at(stops[*k]).0).0;
+    let farthest = (1..stops.len() - 1).map(|k| (away(&k), k)).reduce(|a, b| if b.0 > a.0 { b } else { a });
+    match farthest.filter(|(distance, _)| *distance > radius_m.max(STRAIGHT * (to - from))) {
+        Some((_, k)) => {
+            capsules(line, &stops[..=k], out);
+            capsules(line, &stops[k..], out);
+        }
+        None if radius_m > 0.0 && radius_m.is_finite() => out.push(Capsule { from: p, to: q, radius_m }),
+        None => {}
+    }
+}
+
+/// Leaves the largest capsules.
+fn keep_largest(bodies: &mut [Body]) {
+    let mut volumes: Vec<f64> = bodies.iter().flat_map(|b| &b.capsules).map(Capsule::volume_m3).collect();
+    if volumes.len() <= MOST_CAPSULES {
+        return;
+    }
+    base::sort_by(&mut volumes, |a, b| b.total_cmp(a));
+    let least = volumes[MOST_CAPSULES - 1];
+    let mut left = MOST_CAPSULES;
+    for body in bodies {
+        let mut keep = |c: &Capsule| {
+            let keep = left > 0 && c.volume_m3() >= least;
+            left -= usize::from(keep);
+            keep
+        };
+        body.capsules.retain(&mut keep);
+    }
+}

@@ -1,0 +1,147 @@
+//! A plant as a robot: bodies, joints and the meshes that are seen of them.
+//!
+//! `Plant -> mechanics::Mechanism; Plant -> skin -> triangles of each body -> formats::robot_files`
+
+use std::collections::BTreeMap;
+
+use base::{Report, Run, Stopped};
+use formats::{BodyMesh, ModelFiles, RobotFormat, WriteError, robot_files};
+use glam::DVec3;
+use mechanics::{MechanicsError, MechanicsSpec, Mechanism, WoodGroup, articulate};
+use mesh::{Model, Part, TriMesh};
+use plant::{AxisId, OrganId, Plant};
+use skin::SkinSpec;
+
+use crate::survey::triangle_labels;
+
+/// Why a plant cannot be written as a robot.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RobotError {
+    /// It has no mechanism.
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// Stopped, or too many triangles.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// Its meshes cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Fineness of the meshes that are seen, over that of models: simulators draw them, and nothing is computed with them.
+const SEEN_DETAIL: f64 = 0.5;
+
+/// Writes a plant as a robot, with its meshes beside it: see [`articulate`] and [`robot_files`]. `stem`: the file's name without
+/// its ending. What was assumed of its wood, and how it swings, is told in `report`.
+///
+/// Guaranteed: the same bits for any executor. Cost: that of [`skin::skin`] at half its fineness.
+///
+/// # Errors
+/// [`RobotError`] of a plant without stems or thickness, or beyond the budget.
+///
+/// ```
+/// use glam::DVec3;
+/// use burgeon::formats::RobotFormat;
+/// let mut p = burgeon::plant::Plant::default();
+/// p.add_axis(burgeon::plant::AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+/// p.nodes.radius_m = vec![0.01, 0.005];
+/// let mut report = burgeon::Report::default();
+/// let files = burgeon::write_robot(&p, RobotFormat::Mjcf, "stem", &burgeon::Run::plain(), &mut report)?;
+/// assert!(files.beside.iter().any(|f| f.name == "stem-base_stems.stl"));
+/// # Ok::<(), burgeon::RobotError>(())
+/// ```
+pub fn write_robot(
+    plant: &Plant,
+    format: RobotFormat,
+    stem: &str,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<ModelFiles, RobotError> {
+    let spec = MechanicsSpec { group: WoodGroup::seen_in(plant), ..MechanicsSpec::default() };
+    let mechanism = articulate(plant, &spec, run, report)?;
+    tell(&mechanism, spec.group, report);
+    let meshes = body_meshes(plant, &mechanism, run)?;
+    Ok(robot_files(&mechanism, &meshes, format, stem)?)
+}
+
+/// Says what was assumed, so that nobody takes it for measured.
+fn tell(mechanism: &Mechanism, group: WoodGroup, report: &mut Report) {
+    let kilograms = format!("{:.3}", mechanism.mass());
+    let hertz = format!("{:.2}", mechanism.frequencies().map_or(0.0, |f| f.lowest_hz));
+    let milliseconds = format!("{:.2}", mechanism.time_step_s * 1e3);
+    let gigapascals = group.tissue().modulus_pa / 1e9;
+    base::warn!(
+        report,
+        "robot-assumed",
+        {
+            bodies = mechanism.bodies.len(),
+            hinges = mechanism.joints(),
+            kilograms = kilograms,
+            hertz = hertz,
+            milliseconds = milliseconds,
+            group = group.word(),
+            gigapascals = gigapascals,
+        },
+        "{bodies} bodies on {hinges} hinges, {kilograms} kg, lowest frequency {hertz} Hz, steps of at most {milliseconds} ms; its wood is taken for that of any {group} ({gigapascals} GPa, not measured)"
+    );
+}
+
+/// The triangles of each body by kind of surface, in the order of the bodies.
+fn body_meshes(plant: &Plant, mechanism: &Mechanism, run: &Run<'_>) -> Result<Vec<BodyMesh>, Stopped> {
+    let spec = SkinSpec { textures: false, detail: SEEN_DETAIL, ..SkinSpec::default() };
+    let (model, layout) = skin::skin_laid_out(plant, &spec, skin::SurfacePictures::default(), None, run)?;
+    let labels = triangle_labels(plant, &model, &layout);
+    let mut sorted: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
+    for ((row, part), labels) in model.parts.iter().enumerate().zip(&labels) {
+        for ((triangle, corners), label) in (0_u32..).zip(&part.mesh.triangles).zip(labels) {
+            let body = body_of((plant, mechanism), *label, || middle(&part.mesh, *corners));
+            sorted.entry((body, row)).or_default().push(triangle);
+        }
+    }
+    Ok(sorted.into_iter().map(|((body, row), triangles)| taken(&model, row, &triangles, body)).collect())
+}
+
+/// The body of a triangle by what it lies on: an axis or an organ; that on the ground for neither.
+fn body_of(
+    (plant, mechanism): (&Plant, &Mechanism),
+    [_, axis, organ]: [i32; 3],
+    place: impl Fn() -> DVec3,
+) -> usize {
+    if let Ok(organ) = usize::try_from(organ) {
+        return mechanism.body_of_organ(OrganId::new(organ));
+    }
+    usize::try_from(axis).map_or(0, |axis| mechanism.body_on_axis(plant, AxisId::new(axis), place()))
+}
+
+fn middle(mesh: &TriMesh, corners: [u32; 3]) -> DVec3 {
+    let corner = |i: u32| DVec3::from_array(mesh.positions[i as usize].map(f64::from));
+    corners.into_iter().map(corner).sum::<DVec3>() / 3.0
+}
+
+/// Some triangles of a part as a mesh of their own, with their mean colour.
+fn taken(model: &Model, row: usize, triangles: &[u32], body: usize) -> BodyMesh {
+    let Part { name, material, mesh } = &model.parts[row];
+    let mut rows: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut own = TriMesh::default();
+    for &triangle in triangles {
+        let corners = mesh.triangles[triangle as usize].map(|corner| {
+            *rows.entry(corner).or_insert_with(|| {
+                own.positions.push(mesh.positions[corner as usize]);
+                // At most as many as the part has.
+                u32::try_from(own.positions.len() - 1).unwrap_or(u32::MAX)
+            })
+        });
+        own.triangles.push(corners);
+    }
+    let base = model.materials.get(material.index()).map_or([0.5; 3], |m| m.base_color);
+    let tints = rows.keys().filter_map(|corner| mesh.colors.get(*corner as usize));
+    let (mut sum, mut count) = ([0.0_f32; 3], 0.0_f32);
+    for tint in tints {
+        sum.iter_mut().zip(tint).for_each(|(s, t)| *s += t);
+        count += 1.0;
+    }
+    let tint = if count > 0.0 { sum.map(|s| s / count) } else { [1.0; 3] };
+    let color = [0, 1, 2].map(|k| base[k] * tint[k]);
+    BodyMesh { body, part: name.clone(), color, mesh: own }
+}
