@@ -195,7 +195,7 @@ fn cap(end: DVec2, way: DVec2, width: f64) -> Vec<DVec2> {
 
 /// Straight lines across an outline in one direction, from edge to edge.
 pub(super) fn hatches(outline: &[DVec2], angle: f64, apart: f64) -> Vec<[DVec2; 2]> {
-    let way = DVec2::from_angle(0.0) * ops::cos(angle) + DVec2::Y * ops::sin(angle);
+    let way = DVec2::new(ops::cos(angle), ops::sin(angle));
     let turned: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.dot(way), p.dot(way.perp()))).collect();
     let Some((lo, hi)) = geom::bounds(&turned) else { return Vec::new() };
     let mut out = Vec::new();

@@ -14,6 +14,9 @@ const NEARLY_STRAIGHT: f64 = 0.9;
 /// A head lies about the end of its line within this share of the drawing's diagonal, and touches it within that share.
 const HEAD: f64 = 0.035;
 const TOUCHES: f64 = 0.012;
+/// Points of a head that is drawn as an angle, and most of one that is an area.
+const ANGLE: usize = 3;
+const MOST_POINTS: usize = 5;
 
 impl Work {
     /// Leaves out lines from words, and heads of arrows at their ends. `words`: boxes around words.
@@ -51,7 +54,8 @@ impl Work {
                 let near = line.iter().all(|s| s.at.distance(*end) <= HEAD * diagonal);
                 near && line.iter().any(|s| s.at.distance(*end) <= TOUCHES * diagonal)
             };
-            if line.len() <= 5 && (line.len() == 3 || is_closed(line)) && ends.iter().any(is_head) {
+            let is_angle = line.len() == ANGLE || (line.len() <= MOST_POINTS && is_closed(line));
+            if is_angle && ends.iter().any(is_head) {
                 out[0] = true;
             }
         }

@@ -36,7 +36,10 @@ impl Work {
                 let (before, line) = (&figure.lines[l - 1], &figure.lines[l]);
                 // The edges of a thin ring lie as near: one runs against the other, or areas count by turns.
                 let is_painted = figure.fill.is_some_and(|f| !f.even_odd) && is_turned_alike(before, line);
-                if (figure.lined || is_painted) && !out[l - 1] && goes_along(before, line, diagonal) {
+                if (figure.lined || is_painted)
+                    && !out[l - 1]
+                    && goes_along(before, line, &within_figure(diagonal, line))
+                {
                     out[l] = true;
                 }
             }
@@ -46,7 +49,7 @@ impl Work {
             if let ([a], [b]) = (before.lines.as_slice(), figure.lines.as_slice())
                 && (before.lined && figure.lined && before.fill == figure.fill && is_like(before, figure))
                 && !out[k - 1][0]
-                && goes_along(a, b, diagonal)
+                && goes_along(a, b, &between_figures(diagonal, b))
             {
                 out[k][0] = true;
             }
@@ -205,15 +208,33 @@ fn leads_on(a: &[InkSample], b: &[InkSample]) -> bool {
     from.dot(to) >= STRAIGHT_ON * from.length() * to.length()
 }
 
+/// How near to each other two lines are that are one: on the average, and everywhere.
+struct Near {
+    mean: f64,
+    most: f64,
+}
+
+/// Lines in figures of their own may be two needles or the sides of a stem: only what a pen's tremble explains is one.
+fn between_figures(diagonal: f64, line: &[InkSample]) -> Near {
+    let long = length_of(line);
+    Near {
+        mean: (BY * diagonal).min(BY_SHARE * long),
+        most: (BY_AT_MOST * diagonal).min(BY_AT_MOST_SHARE * long),
+    }
+}
+
+fn within_figure(diagonal: f64, line: &[InkSample]) -> Near {
+    let (far, own) = (LIMITS.twice * length_of(line), between_figures(diagonal, line));
+    Near { mean: own.mean.max(0.5 * far), most: own.most.max(1.5 * far) }
+}
+
 /// Whether two lines go the same way from end to end, or round and round.
-fn goes_along(a: &[InkSample], b: &[InkSample], diagonal: f64) -> bool {
+fn goes_along(a: &[InkSample], b: &[InkSample], near: &Near) -> bool {
     let (long, other) = (length_of(a), length_of(b));
     if !(long > 0.0 && (long - other).abs() <= AS_LONG * long.max(other)) {
         return false;
     }
     let (a, b) = (places(a), places(b));
-    let far = (1.5 * LIMITS.twice * long).max((BY_AT_MOST * diagonal).min(BY_AT_MOST_SHARE * long));
-    let by = (0.5 * LIMITS.twice * long).max((BY * diagonal).min(BY_SHARE * long));
     let lies_by = |from: &[DVec2], to: &[DVec2]| {
         let away = |p: DVec2| geom::closest_on_polyline(to, p).map_or(f64::INFINITY, |c| c.point.distance(p));
         let even = geom::resample(from, long / 24.0);
@@ -221,7 +242,7 @@ fn goes_along(a: &[InkSample], b: &[InkSample], diagonal: f64) -> bool {
         let most = all.iter().copied().fold(0.0, f64::max);
         #[expect(clippy::cast_precision_loss, reason = "a few points")]
         let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
-        most <= far && mean <= by
+        most <= near.most && mean <= near.mean
     };
     lies_by(&a, &b) && lies_by(&b, &a)
 }

@@ -173,7 +173,7 @@ fn lines_from_words_are_left_out_with_their_heads_and_a_stem_over_its_name_stays
     let plant = vec![stem(30.0), leaf(40.0), leaf(60.0)];
     let arrow = |y: f64| {
         let shaft = lined(vec![line(&[[88.0, y], [52.0, y]])]);
-        vec![shaft, lined(vec![line(&[[55.0, y + 2.0], [52.0, y], [55.0, y - 2.0]])])]
+        vec![shaft, lined(vec![line(&[[54.0, y + 1.5], [52.0, y], [54.0, y - 1.5]])])]
     };
     let words = |x: f64, y: f64| (DVec2::new(x, y - 2.0), DVec2::new(x + 20.0, y + 2.0));
     let drawn = [plant.clone(), arrow(40.0), arrow(60.0)].concat();

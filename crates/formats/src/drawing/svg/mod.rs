@@ -352,17 +352,18 @@ impl<'a> Reader<'a> {
     fn box_of_words(&self, node: Node<'_, '_>, here: DAffine2) -> Option<(DVec2, DVec2)> {
         let spans = || node.descendants().filter(|n| matches!(n.tag_name().name(), "text" | "tspan"));
         let placed = |name: &str| spans().find_map(|n| n.attribute(name)).map(str::to_owned);
+        // Both are inherited.
+        let said = |name: &str| spans().chain(node.ancestors()).find_map(|n| self.said(n, name));
         let at = DVec2::new(
             placed("x").map_or(0.0, |v| self.length(&v, 0)),
             placed("y").map_or(0.0, |v| self.length(&v, 1)),
         );
-        let size =
-            spans().find_map(|n| self.said(n, "font-size")).map_or(USUAL_FONT, |v| length(&v, USUAL_FONT));
+        let size = said("font-size").map_or(USUAL_FONT, |v| length(&v, USUAL_FONT));
         let letters = node.descendants().filter_map(|n| n.text().filter(|_| n.is_text()));
         let count = letters.map(|t| t.trim().chars().count()).sum::<usize>().min(MOST_LETTERS);
         #[expect(clippy::cast_precision_loss, reason = "a few letters")]
         let width = count as f64 * LETTER_WIDTH * size;
-        let before = match self.said(node, "text-anchor").as_deref().map(str::trim) {
+        let before = match said("text-anchor").as_deref().map(str::trim) {
             Some("middle") => 0.5 * width,
             Some("end") => width,
             _ => 0.0,
