@@ -14,8 +14,6 @@ const STRAIGHT_ON: f64 = 0.7;
 /// Segments of a polyline meet within this share of the drawing's diagonal, and of the shorter segment's length.
 const MEET_EXACTLY: f64 = 1e-3;
 const MEET_SEGMENT: f64 = 0.1;
-/// Pieces of an outline meet within this share of its length, too. The sides of a trunk that are so near enclose too little.
-const GAP: f64 = 0.025;
 /// A line that is drawn twice by one program lies within these shares of the drawing's diagonal on the average and everywhere, too,
 /// and within these shares of its length.
 const BY: f64 = 0.003;
@@ -259,8 +257,7 @@ fn outline_of(pieces: &[Figure], diagonal: f64) -> Option<Vec<InkSample>> {
         }
     }
     let shortest = lines.iter().map(|l| length_of(l)).fold(f64::INFINITY, f64::min);
-    let whole: f64 = lines.iter().map(|l| length_of(l)).sum();
-    let tolerance = (LIMITS.meet * diagonal).max(GAP * whole).min(LIMITS.meet_share * shortest);
+    let tolerance = (LIMITS.meet * diagonal).min(LIMITS.meet_share * shortest);
     [false, true].into_iter().find_map(|turned| {
         let mut way = oriented(lines[0], turned);
         for line in &lines[1..] {

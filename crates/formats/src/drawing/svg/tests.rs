@@ -251,32 +251,3 @@ fn what_a_mask_takes_away_as_a_whole_is_left_out_and_said() {
     assert_eq!(ends(&d), [[[15.0, -15.0], [25.0, -25.0]]]);
     assert!(w.iter().any(|w| w.contains("clipped away (1)")), "{w:?}");
 }
-
-#[test]
-fn leaders_from_texts_are_left_out() {
-    let (d, w) = drawing(
-        "<g fill='none' stroke='black'><path d='M30 90C28 70 33 40 30 20'/><path d='M30 60C40 50 50 55 55 60'/>\
-         <path d='M74 58L56 60'/><path d='M74 28L31 24'/></g><g transform='translate(75 0)' font-size='6'>\
-         <text y='60'>leaf</text><text><tspan x='0' y='30'>stem</tspan></text></g>",
-    );
-    assert_eq!(d.strokes.len(), 2);
-    assert!(w.iter().any(|w| w.starts_with("2 lines lead from words")), "{w:?}");
-}
-
-/// Our own drawings are plain strokes: each sub-path is one, whatever the normal form learns of programs.
-#[test]
-fn our_own_drawings_pass_as_they_are() {
-    let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
-    for folder in ["sketches/table1", "sketches/gallery", "illustrations"] {
-        for entry in std::fs::read_dir(fixtures.join(folder)).expect("fixtures") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_some_and(|e| e == "svg") {
-                let text = std::fs::read_to_string(&path).expect("UTF-8");
-                let mut report = Report::default();
-                read(&text, "own", &mut report).expect("a drawing");
-                let told: Vec<&str> = report.warnings.iter().map(|w| w.code).collect();
-                assert_eq!(told, [""; 0], "{}", path.display());
-            }
-        }
-    }
-}
