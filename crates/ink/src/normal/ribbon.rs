@@ -20,7 +20,7 @@ impl Work {
         let opaque = self.figures.iter().any(|f| !is_translucent(f));
         let candidate = |(lines, f): (_, &super::Figure)| Candidate {
             lines,
-            fill_only: !f.lined && !is_solid(f) && !(opaque && is_translucent(f)),
+            fill_only: !(f.lined || is_solid(f) || (opaque && is_translucent(f))),
             fill_said: f.fill.is_some_and(|f| f.said),
         };
         let candidates: Vec<Candidate<'_>> =
