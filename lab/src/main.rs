@@ -22,6 +22,7 @@ mod train_kinds;
 mod train_no_plants;
 mod train_strokes;
 mod workshop;
+mod written;
 
 use std::process::ExitCode;
 

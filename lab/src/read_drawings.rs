@@ -19,9 +19,10 @@ use serde_json::{Value, json};
 use crate::contact_sheet::{self, Cell, Frame};
 use crate::made_drawings::{self, side_by_side};
 use crate::quickdraw::{drawing_of, json_lines, text_of};
+use crate::written;
 use xtask::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
 
-const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE] [--hundred] [--test]";
+const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE | --written [WAY]] [--hundred] [--test]";
 
 /// Sets of real drawings side by side.
 const SIDE_BY_SIDE: u64 = 60;
@@ -129,13 +130,18 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     let mut folder = repository().join("../shared/data/sketches");
     let (mut part, mut sheets, mut pictures, mut again) = (Part::Choose, false, false, false);
     let mut hundred = false;
-    let mut wanted = args.iter();
+    let mut written: Option<Option<String>> = None;
+    let mut wanted = args.iter().peekable();
     while let Some(arg) = wanted.next() {
         match arg.as_str() {
             "--test" => part = Part::Test,
             "--sheets" => sheets = true,
             "--changed" => again = true,
             "--hundred" => hundred = true,
+            "--written" => {
+                let way = wanted.next_if(|way| !way.starts_with("--"));
+                written = Some(way.cloned());
+            }
             "--without" => {
                 let name = wanted.next().ok_or_else(|| USAGE.to_owned())?;
                 say(&Chosen::of(&folder)?.told_without(name));
@@ -158,6 +164,9 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     }
     if !folder.is_dir() {
         say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
+    }
+    if let Some(way) = written {
+        return told_written(&folder, part, way.as_deref());
     }
     if again {
         let drawings: Vec<Drawing> = people(&folder, part, OF_SPG)?.into_iter().map(|c| c.drawing).collect();
@@ -205,6 +214,45 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     Ok(())
 }
 
+/// Trees by people that are written in all ways.
+const TREES_WRITTEN: usize = 24;
+
+/// Our own drawings and trees by people, as programs write them, and how those of `programs` are read. Every third of ours, by
+/// name, is for one look at the end.
+fn told_written(folder: &Path, part: Part, way: Option<&str>) -> Outcome {
+    let mut drawings: Vec<(String, Drawing)> = Vec::new();
+    for sub in ["sketches/table1", "sketches/gallery", "illustrations"] {
+        for (place, file) in svgs_in(&repository().join("fixtures").join(sub))?.into_iter().enumerate() {
+            if (place % 3 == 2) == (part == Part::Test) {
+                let bytes = fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
+                let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                let items = formats::read_drawings(bytes.as_slice(), formats::DrawingFormat::Svg, &name);
+                drawings.extend(items.filter_map(|i| Some((name.clone(), i.ok()?.drawing))));
+            }
+        }
+    }
+    let trees = people(folder, part, OF_SPG)?.into_iter().filter(|c| c.set == "by hand tree");
+    let trees = trees.step_by(2).take(TREES_WRITTEN).enumerate();
+    drawings.extend(trees.map(|(k, c)| (format!("tree {k}"), c.drawing)));
+    say(&format!("{} drawings:\n\n{}", drawings.len(), written::table(&drawings, way)?));
+    let programs = folder.join("programs");
+    if programs.is_dir() {
+        say(&written::programs(&programs)?);
+    } else {
+        say(&format!("skipped: what programs write, because {} is not here", programs.display()));
+    }
+    Ok(())
+}
+
+/// The pictures of a folder, by name.
+fn svgs_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "svg"));
+    files.sort();
+    Ok(files)
+}
+
 /// Which words are told of drawings by people that show a fruit or a vegetable and are read as that.
 fn words(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
     let (mut all, mut told, mut right) = (0, 0, 0);
@@ -227,11 +275,7 @@ fn words(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
 fn own_drawings() -> Outcome<Vec<String>> {
     let mut found = Vec::new();
     for folder in ["table1", "gallery"] {
-        let folder = repository().join("fixtures/sketches").join(folder);
-        let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
-        files.retain(|f| f.extension().is_some_and(|e| e == "svg"));
-        files.sort();
+        let files = svgs_in(&repository().join("fixtures/sketches").join(folder))?;
         for file in files {
             let bytes = fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

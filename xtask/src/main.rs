@@ -43,7 +43,8 @@ cargo xtask COMMAND
   train-no-plants  learns what is no plant, from drawings in all styles; with --end, judges what is kept
   train-confidence  fits how likely a reading is right; with --end, measures it on what is kept
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets),
-                 or whether they are read alike when they are drawn in another way (--changed)
+                 or whether they are read alike when they are drawn in another way (--changed), or as programs write them
+                 (--written)
   read-in-turn   draws drawings stroke by stroke in several orders: how often strokes become something else (docs/strokes.md)
   train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   train-glance   learns what drawings look like at a glance, from pictures that npm has (docs/strokes.md)

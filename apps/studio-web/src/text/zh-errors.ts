@@ -376,7 +376,8 @@ export const zhWarnings: Record<string, string> = {
   'svg-style': '{count} 个复合样式选择器没有查看',
   'filled-outline': '{count} 个填充的形状是变宽画笔的笔画：取了它们的中心线，宽度作为压力',
   'off-sheet': '{count} 个形状在画纸之外，已略去',
-  'paper-left-out': '{count} 条线是纸面（页面、边框、卡片、天空、地面、格线），已略去',
+  'paper-left-out': '{count} 条线是纸面（页面、边框、卡片、天空、地面、格线、与纸同色的线），已略去',
+  'labels-left-out': '{count} 条线从文字指向图中，已略去',
   'traced-ink':
     '{count} 个填充的形状是描摹的墨迹：取了它们的中心线；版画和描摹的扫描图大多会被误读：若植物不对，请用笔画出它的轮廓',
   'drawn-twice': '{count} 条线画了两遍：各算一笔',

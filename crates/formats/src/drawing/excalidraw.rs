@@ -88,7 +88,11 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     for (what, count) in &left_out {
         base::warn!(report, "svg-left-out", { what = what, count = count }, "left out: {what} ({count})");
     }
-    Ok(Drawing { name: name.to_owned(), strokes: plain_strokes(figures, None, report), layers: Vec::new() })
+    Ok(Drawing {
+        name: name.to_owned(),
+        strokes: plain_strokes(figures, None, &[], report),
+        layers: Vec::new(),
+    })
 }
 
 /// The figure of an element, or in a word what is left out; no word for what was deleted.

@@ -142,8 +142,15 @@ fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, FileFault> {
 }
 
 /// The strokes that figures of a drawing program mean, and in the report what was done to them.
-fn plain_strokes(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, report: &mut Report) -> Vec<Stroke> {
-    let normal = ink::normalise(figures, sheet);
+///
+/// `words`: boxes around texts.
+fn plain_strokes(
+    figures: Vec<Figure>,
+    sheet: Option<(DVec2, DVec2)>,
+    words: &[(DVec2, DVec2)],
+    report: &mut Report,
+) -> Vec<Stroke> {
+    let normal = ink::normalise(figures, sheet, words);
     for (change, count) in &normal.changes {
         report.warn_of(change.code(), &[("count", count)], change.sentence(*count));
     }

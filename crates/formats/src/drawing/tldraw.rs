@@ -59,7 +59,11 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     for (what, count) in &left_out {
         base::warn!(report, "svg-left-out", { what = what, count = count }, "left out: {what} ({count})");
     }
-    Ok(Drawing { name: name.to_owned(), strokes: plain_strokes(figures, None, report), layers: Vec::new() })
+    Ok(Drawing {
+        name: name.to_owned(),
+        strokes: plain_strokes(figures, None, &[], report),
+        layers: Vec::new(),
+    })
 }
 
 fn word<'v>(value: &'v Value, key: &str) -> &'v str {

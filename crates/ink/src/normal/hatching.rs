@@ -21,10 +21,24 @@ const ALONG_ZIGZAG: f64 = 48.0;
 const APART: f64 = 0.02;
 /// Least dots of a stipple within an outline.
 const DOTS: usize = 12;
+/// Dots of one pen differ by no more than this share of their size.
+const SAME_DOT: f64 = 0.2;
 /// Ends of hatches lie this near to the outline, as a share of its narrower side.
 const AT_EDGE: f64 = 0.16;
 /// Share of the hatches that lie within the outline and end on it.
 const MOST: f64 = 0.75;
+/// Outlines over one another that are asked for which one a hatch shades.
+const OVERLAPPING: usize = 6;
+/// Least hatches of an outline that do not run across it.
+const MANY: usize = 8;
+/// Hatches from one edge are nearer to one another than this share of their length; side veins are farther apart.
+const DENSE: f64 = 0.35;
+/// Short strokes within an outline are no longer than this share of its narrower side.
+const SHORT: f64 = 0.45;
+/// Hatching of one drawing runs in no more directions than this.
+const WAYS: usize = 6;
+/// A few strokes in an outline are hatching if many in others run the same way within this cosine: 6 degrees.
+const SAME_WAY: f64 = 0.995;
 
 struct Outline {
     figure: usize,
@@ -84,7 +98,8 @@ impl Work {
             }
         }
         self.end_run(&mut run, &outlines, &mut out, &mut colors);
-        stipple(&dots, &outlines, &mut out);
+        self.find_few_hatches(&outlines, &mut out, &mut colors);
+        self.find_stipple(&dots, &outlines, &mut out);
         for (figure, color) in colors {
             let f = &mut self.figures[figure];
             if f.fill.is_none() {
@@ -92,6 +107,49 @@ impl Work {
             }
         }
         self.leave_out(&out, Change::Hatching);
+    }
+
+    /// Where outlines are hatched, those that are too small for many hatches are so, too: by lines across them that run the same way,
+    /// are painted alike and are no longer than the others.
+    fn find_few_hatches(
+        &self,
+        outlines: &[Outline],
+        out: &mut [Vec<bool>],
+        colors: &mut Vec<(usize, [u8; 3])>,
+    ) {
+        let hatch = |figure: usize, line: usize| {
+            let samples = &self.figures[figure].lines[line];
+            Some(Hatch { figure, line, from: samples.first()?.at, to: samples.last()?.at })
+        };
+        let rows =
+            || (0..self.figures.len()).flat_map(|f| (0..self.figures[f].lines.len()).map(move |l| (f, l)));
+        let known: Vec<Hatch> = rows().filter(|&(f, l)| out[f][l]).filter_map(|(f, l)| hatch(f, l)).collect();
+        let Some(longest) = known.iter().map(|h| h.from.distance(h.to)).reduce(f64::max) else { return };
+        let mut ways: Vec<(DVec2, Option<[u8; 3]>)> = Vec::new();
+        for h in &known {
+            let (way, color) = ((h.to - h.from).normalize_or_zero(), self.figures[h.figure].like.color);
+            if !ways.iter().any(|(w, c)| *c == color && w.dot(way).abs() >= SAME_WAY) {
+                ways.push((way, color));
+            }
+        }
+        if ways.len() > WAYS || rows().count() * outlines.len() > LIMITS.pairs {
+            return;
+        }
+        for (f, l) in rows().filter(|&(f, l)| !out[f][l]).collect::<Vec<_>>() {
+            let (figure, Some(h)) = (&self.figures[f], hatch(f, l)) else { continue };
+            let (way, length) = (h.to - h.from, h.from.distance(h.to));
+            let runs_so =
+                |(w, c): &(DVec2, _)| *c == figure.like.color && w.dot(way).abs() >= SAME_WAY * length;
+            let straight =
+                chord_of(&figure.lines[l]).length() >= NEARLY_STRAIGHT * length_of(&figure.lines[l]);
+            if !(figure.lined && straight && length <= longest && ways.iter().any(runs_so)) {
+                continue;
+            }
+            if let Some(row) = outline_of(&h, outlines).filter(|&row| outlines[row].is_crossed_by(&h)) {
+                out[f][l] = true;
+                colors.extend(figure.like.color.map(|c| (outlines[row].figure, c)));
+            }
+        }
     }
 
     fn closed_outlines(&self) -> Vec<Outline> {
@@ -134,7 +192,7 @@ impl Work {
         // Outlines side by side may be hatched one after the other, in one direction.
         let mut by_outline: LiteMap<usize, Vec<Hatch>> = LiteMap::new();
         for hatch in hatches {
-            if let Some(row) = outlines.iter().position(|o| o.holds(hatch.from.midpoint(hatch.to))) {
+            if let Some(row) = outline_of(&hatch, outlines) {
                 by_outline.entry(row).or_default().push(hatch);
             }
         }
@@ -150,23 +208,55 @@ impl Work {
     }
 }
 
+/// The outline that a hatch shades: of those that overlap, the one that it runs across, or else the smallest.
+fn outline_of(hatch: &Hatch, outlines: &[Outline]) -> Option<usize> {
+    let middle = hatch.from.midpoint(hatch.to);
+    let around = || (0..outlines.len()).filter(|&row| outlines[row].holds(middle)).take(OVERLAPPING);
+    around().find(|&row| outlines[row].is_crossed_by(hatch)).or_else(|| around().next())
+}
+
 impl Outline {
     fn holds(&self, p: DVec2) -> bool {
         let is_boxed = self.extent.lo.cmple(p).all() && self.extent.hi.cmpge(p).all();
         is_boxed && geom::contains(&self.points, p)
     }
 
-    /// Whether enough lines run across it from edge to edge.
-    fn is_hatched_by(&self, hatches: &[Hatch]) -> bool {
+    /// Whether a point lies on its edge.
+    fn has_on_edge(&self, p: DVec2) -> bool {
         let near = AT_EDGE * self.extent.size().min_element();
-        let at_edge = |p: DVec2| {
-            geom::closest_on_polyline(&self.points, p).is_some_and(|c| c.point.distance(p) <= near)
-        };
-        let across = hatches.iter().filter(|h| at_edge(h.from) && at_edge(h.to)).count();
-        #[expect(clippy::cast_precision_loss, reason = "numbers of strokes")]
-        let is_most = across as f64 >= MOST * hatches.len() as f64;
-        hatches.len() >= LIMITS.hatches && is_most
+        geom::closest_on_polyline(&self.points, p).is_some_and(|c| c.point.distance(p) <= near)
     }
+
+    /// Whether a line runs across it from edge to edge.
+    fn is_crossed_by(&self, hatch: &Hatch) -> bool {
+        self.has_on_edge(hatch.from) && self.has_on_edge(hatch.to)
+    }
+
+    /// Whether enough lines run across it from edge to edge, or many dense ones begin at its edge, or are short within it.
+    fn is_hatched_by(&self, hatches: &[Hatch]) -> bool {
+        let is_most_of = |holds: fn(&Self, &Hatch) -> bool| {
+            let count = hatches.iter().filter(|h| holds(self, h)).count();
+            #[expect(clippy::cast_precision_loss, reason = "numbers of strokes")]
+            let is_most = count as f64 >= MOST * hatches.len() as f64;
+            is_most
+        };
+        let from_edge = |o: &Self, h: &Hatch| o.has_on_edge(h.from) || o.has_on_edge(h.to);
+        let is_short = |o: &Self, h: &Hatch| {
+            h.from.distance(h.to) <= SHORT * o.extent.size().min_element() && o.holds(h.from) && o.holds(h.to)
+        };
+        (hatches.len() >= LIMITS.hatches && is_most_of(Self::is_crossed_by))
+            || (hatches.len() >= MANY && is_most_of(from_edge) && is_dense(hatches))
+            || (hatches.len() >= MANY && is_most_of(is_short))
+    }
+}
+
+/// Whether most hatches are nearer to the one before than they are long.
+fn is_dense(hatches: &[Hatch]) -> bool {
+    let middle = |h: &Hatch| h.from.midpoint(h.to);
+    let near = |w: &&[Hatch]| middle(&w[0]).distance(middle(&w[1])) <= DENSE * w[0].from.distance(w[0].to);
+    #[expect(clippy::cast_precision_loss, reason = "numbers of strokes")]
+    let is_most = hatches.windows(2).filter(near).count() as f64 >= MOST * (hatches.len() - 1) as f64;
+    is_most
 }
 
 /// The smallest outline that most points lie in.
@@ -213,19 +303,32 @@ fn runs_to_and_fro(corners: &[DVec2]) -> bool {
     turns >= TURNS && along.iter().map(|a| a.abs()).sum::<f64>() >= TURNS_SHARE * whole
 }
 
-/// Tiny dots, many of them in one outline.
-fn stipple(dots: &[Hatch], outlines: &[Outline], out: &mut [Vec<bool>]) {
-    if dots.len() < DOTS || dots.len() * outlines.len() > LIMITS.pairs {
-        return;
-    }
-    let mut inside: Vec<Vec<&Hatch>> = outlines.iter().map(|_| Vec::new()).collect();
-    for dot in dots {
-        let own = |o: &Outline| o.figure != dot.figure && geom::contains(&o.points, dot.from);
-        if let Some(row) = outlines.iter().position(own) {
-            inside[row].push(dot);
+impl Work {
+    /// Tiny dots in outlines: many in one of them, or many painted as areas of one size in all.
+    fn find_stipple(&self, dots: &[Hatch], outlines: &[Outline], out: &mut [Vec<bool>]) {
+        if dots.len() < DOTS || dots.len() * outlines.len() > LIMITS.pairs {
+            return;
         }
-    }
-    for dots in inside.into_iter().filter(|d| d.len() >= DOTS) {
-        dots.iter().for_each(|d| out[d.figure][d.line] = true);
+        let size = |d: &Hatch| {
+            Extent::of(&self.figures[d.figure].lines[d.line]).map_or(0.0, |e| e.size().max_element())
+        };
+        let mut inside: Vec<Vec<&Hatch>> = outlines.iter().map(|_| Vec::new()).collect();
+        for dot in dots {
+            let own = |o: &Outline| o.figure != dot.figure && o.extent.size().min_element() > 2.0 * size(dot);
+            if let Some(row) = outlines.iter().position(|o| own(o) && o.holds(dot.from)) {
+                inside[row].push(dot);
+            }
+        }
+        let mut areas: Vec<&Hatch> = inside.iter().flatten().copied().collect();
+        areas.retain(|d| !self.figures[d.figure].lined);
+        let mut sizes: Vec<f64> = areas.iter().map(|d| size(d)).collect();
+        base::sort_numbers(&mut sizes);
+        let usual = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
+        areas.retain(|d| (size(d) - usual).abs() <= SAME_DOT * usual);
+        if areas.len() < 2 * DOTS {
+            areas.clear();
+        }
+        let many = inside.into_iter().filter(|d| d.len() >= DOTS).flatten();
+        many.chain(areas).for_each(|d| out[d.figure][d.line] = true);
     }
 }

@@ -5,6 +5,7 @@
 //! | step | module |
 //! |---|---|
 //! | outside the sheet, pages, frames, ruling | `paper` |
+//! | lines that lead from words | `labels` |
 //! | rims of stickers, layers under the whole drawing | `backing` |
 //! | outlines of a pen's stroke, traced ink | `ribbon`, `traced` |
 //! | a line drawn twice, segments, outlines in pieces | `pieces` |
@@ -17,6 +18,7 @@
 mod backing;
 mod colour;
 mod hatching;
+mod labels;
 mod paper;
 mod pieces;
 mod ribbon;
@@ -43,9 +45,9 @@ struct Limits {
     round: f64,
     /// Two ends of an outline in pieces meet within this share of the shorter piece.
     meet_share: f64,
-    /// A polyline in segments has at least this many of them, one after the other.
+    /// A line in segments has at least this many of them, one after the other.
     segments: usize,
-    /// Segments of a polyline are no longer than this.
+    /// Pieces of a line in segments are no longer than this.
     segment: f64,
     /// A rectangle of paper has this share of its length on the sides of its box.
     on_sides: f64,
@@ -79,7 +81,7 @@ const LIMITS: Limits = Limits {
     round: 0.018,
     meet_share: 0.12,
     segments: 6,
-    segment: 0.04,
+    segment: 0.06,
     on_sides: 0.8,
     held: 0.95,
     across: 0.94,
@@ -126,6 +128,8 @@ pub enum Change {
     OffSheet,
     /// Page, frame, card, sky, ground or ruling.
     Paper,
+    /// A line from words to what they name, or its head.
+    Labels,
     /// The outline of a pen's stroke: its centre line was taken.
     PenOutline,
     /// Traced ink: the centre lines of what is connected were taken.
@@ -148,6 +152,7 @@ impl Change {
         match self {
             Self::OffSheet => "off-sheet",
             Self::Paper => "paper-left-out",
+            Self::Labels => "labels-left-out",
             Self::PenOutline => "filled-outline",
             Self::TracedInk => "traced-ink",
             Self::DrawnTwice => "drawn-twice",
@@ -163,8 +168,11 @@ impl Change {
         match self {
             Self::OffSheet => format!("{count} shapes lie outside the sheet and were left out"),
             Self::Paper => {
-                format!("{count} lines are paper (page, frame, card, sky, ground, ruling) and were left out")
+                format!(
+                    "{count} lines are paper (page, frame, card, sky, ground, ruling, lines in its colour) and were left out"
+                )
             }
+            Self::Labels => format!("{count} lines lead from words to the drawing and were left out"),
             Self::PenOutline => format!(
                 "{count} filled shapes are strokes of a variable-width pen: their centre lines were taken, \
                  and their widths as pressure"
@@ -193,7 +201,7 @@ pub struct Normal {
 
 /// Brings figures to plain strokes.
 ///
-/// `sheet`: the corners of the sheet, if the file has one. Guaranteed: lines of a pen that are none of what [`Change`]
+/// `sheet`: the corners of the sheet, if the file has one. `words`: boxes around its texts, lower and upper corner. Guaranteed: lines of a pen that are none of what [`Change`]
 /// tells of pass through as they are, in their order; not everything is left out. Cost: about linear in points, apart from
 /// comparing areas with outlines, which is bounded.
 ///
@@ -201,12 +209,13 @@ pub struct Normal {
 /// use ink::{Figure, InkSample, normalise};
 /// let line = [[0.0, 0.0], [1.0, 5.0]].map(|p| InkSample::from(glam::DVec2::from(p))).to_vec();
 /// let figure = Figure { lines: vec![line.clone()], lined: true, ..Figure::default() };
-/// assert_eq!(normalise(vec![figure], None).strokes[0].samples, line);
+/// assert_eq!(normalise(vec![figure], None, &[]).strokes[0].samples, line);
 /// ```
-pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>) -> Normal {
+pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, words: &[(DVec2, DVec2)]) -> Normal {
     let mut work = Work { figures, sheet, changes: LiteMap::new() };
     work.figures.iter_mut().for_each(drop_points);
     work.off_sheet();
+    work.leave_labels_out(words);
     work.leave_paper_out();
     work.leave_backings_out();
     work.take_pen_outlines();

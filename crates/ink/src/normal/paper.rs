@@ -7,6 +7,22 @@ use crate::InkSample;
 
 /// Sky and ground fill the corners of the paper as near to its sides as this share of them.
 const INSET: f64 = 0.04;
+/// A straight line along an axis is no wider than this share of its length.
+const THIN: f64 = 0.006;
+/// Borders lie on this many sides of a drawing, at least; the ground and one wall on two.
+const SIDES: usize = 3;
+/// The sides of a ring's box differ by no more than this share.
+const ROUND_RING: f64 = 0.95;
+/// Parts of a circle that are looked at for whether a drawing reaches its rim.
+const SECTORS: usize = 8;
+/// A drawing in a ring goes farther from its middle than this share of its radius; marks on a fruit need not.
+const SPANS_RING: f64 = 0.55;
+/// A drawing in a ring goes no farther from its middle than this share of its radius.
+const WITHIN_RING: f64 = 0.93;
+/// A drawing goes as far from the middle of a ring all round if its least reach is more than this share of its largest.
+const ALL_ROUND: f64 = 0.75;
+/// Colours are told apart from this difference in a channel on.
+const SAME_COLOR: u8 = 6;
 
 /// A line and where it is.
 struct Placed {
@@ -49,7 +65,87 @@ impl Work {
         self.find_dots(&placed, &mut out);
         let paper = self.find_frames(&placed, &mut out);
         self.find_ground(&placed, paper, &mut out);
+        self.find_borders(&placed, &mut out);
+        self.find_ring(&placed, &mut out);
+        self.find_unseen(&mut out);
         self.leave_out(&out, Change::Paper);
+    }
+
+    /// What is painted in the colour of the topmost page, where no area of another colour is painted that it might lie on. Where
+    /// there is no page, white areas; white lines may be meant for a dark one.
+    fn find_unseen(&self, out: &mut [Vec<bool>]) {
+        let is_paper = |k: usize| out[k].iter().all(|o| *o);
+        let area = |k: usize| self.figures[k].fill.filter(|f| f.opacity > LIMITS.translucent);
+        let pages = (0..self.figures.len()).rev().filter(|&k| is_paper(k));
+        let page = pages.filter_map(|k| area(k)?.color).next();
+        let color = page.unwrap_or([u8::MAX; 3]);
+        let is_like_paper = |own: Option<[u8; 3]>| {
+            own.is_some_and(|own| own.iter().zip(color).all(|(a, b)| a.abs_diff(b) <= SAME_COLOR))
+        };
+        let drawn: Vec<usize> = (0..self.figures.len()).filter(|&k| !is_paper(k)).collect();
+        let lies_under_nothing = |&k: &usize| {
+            let painted = self.figures[k].fill.filter(|f| f.said || !self.figures[k].lined);
+            painted.is_none_or(|f| is_like_paper(f.color))
+        };
+        let is_unseen = |&k: &usize| {
+            let figure = &self.figures[k];
+            !figure.lined || (page.is_some() && is_like_paper(figure.like.color))
+        };
+        let unseen: Vec<usize> = drawn.iter().copied().filter(is_unseen).collect();
+        if unseen.len() < drawn.len() && drawn.iter().all(lies_under_nothing) {
+            unseen.into_iter().for_each(|k| out[k].fill(true));
+        }
+    }
+
+    /// Straight lines along an axis outside of all else, on three sides of it or more: frames in pieces, crop marks.
+    fn find_borders(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
+        let is_rule = |p: &&Placed| {
+            let figure = &self.figures[p.figure];
+            let (size, line) = (p.extent.size(), &figure.lines[p.line]);
+            figure.lined
+                && size.min_element() <= THIN * size.max_element()
+                && length_of(line) < 1.05 * size.max_element()
+        };
+        let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
+        let drawn = seen().filter(|p| !is_rule(p)).map(|p| p.extent).reduce(Extent::with);
+        let Some(drawn) = drawn else { return };
+        let mut found: [Vec<&Placed>; 4] = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        for p in seen().filter(is_rule) {
+            let across = usize::from(p.extent.size().x >= p.extent.size().y);
+            let at = p.extent.middle()[across];
+            if at < drawn.lo[across] {
+                found[2 * across].push(p);
+            } else if at > drawn.hi[across] {
+                found[2 * across + 1].push(p);
+            }
+        }
+        if found.iter().filter(|side| !side.is_empty()).count() >= SIDES {
+            found.iter().flatten().for_each(|p| out[p.figure][p.line] = true);
+        }
+    }
+
+    /// A circle around all else, which does not fill it: a badge. What reaches its rim all round is a slice of fruit.
+    fn find_ring(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
+        let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
+        let Some(p) = seen().max_by(|a, b| a.extent.area().total_cmp(&b.extent.area())) else { return };
+        let (figure, half) = (&self.figures[p.figure], p.extent.size() * 0.5);
+        let is_circle = half.min_element() >= ROUND_RING * half.max_element()
+            && is_ellipse(&figure.lines[p.line], p.extent);
+        if !(figure.lined && figure.lines.len() == 1 && is_circle) {
+            return;
+        }
+        let others = seen().filter(|o| (o.figure, o.line) != (p.figure, p.line));
+        let points = others.flat_map(|o| &self.figures[o.figure].lines[o.line]).map(|s| s.at);
+        let mut reach = [0.0_f64; SECTORS];
+        for from_middle in points.map(|q| (q - p.extent.middle()) / half) {
+            let (x, y) = (from_middle.x, from_middle.y);
+            let sector = usize::from(x > 0.0) + 2 * usize::from(y > 0.0) + 4 * usize::from(x.abs() > y.abs());
+            reach[sector] = reach[sector].max(from_middle.length());
+        }
+        let (least, most) = reach.iter().fold((1.0_f64, 0.0_f64), |(a, b), r| (a.min(*r), b.max(*r)));
+        if (SPANS_RING..WITHIN_RING).contains(&most) && least < ALL_ROUND * most {
+            out[p.figure][p.line] = true;
+        }
     }
 
     /// Rectangles that hold all the rest, and filled ellipses under it. The largest of them, or the sheet.
@@ -129,7 +225,7 @@ impl Work {
             }
             let size = p.extent.size();
             for axis in [0, 1] {
-                let thin = size[1 - axis] <= 0.006 * size[axis];
+                let thin = size[1 - axis] <= THIN * size[axis];
                 let long = size[axis] >= 0.8 * whole.size()[axis];
                 if thin && long && length_of(line) < 1.05 * size[axis] {
                     along[axis].push((p.extent.middle()[1 - axis], p));

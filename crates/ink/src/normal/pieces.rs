@@ -14,21 +14,42 @@ const STRAIGHT_ON: f64 = 0.7;
 /// Segments of a polyline meet within this share of the drawing's diagonal, and of the shorter segment's length.
 const MEET_EXACTLY: f64 = 1e-3;
 const MEET_SEGMENT: f64 = 0.1;
+/// A line that is drawn twice by one program lies within these shares of the drawing's diagonal on the average and everywhere, too,
+/// and within these shares of its length.
+const BY: f64 = 0.003;
+const BY_AT_MOST: f64 = 0.006;
+const BY_SHARE: f64 = 0.06;
+const BY_AT_MOST_SHARE: f64 = 0.12;
 /// Most pieces of an outline.
 const PIECES: usize = 3;
 
 impl Work {
-    /// Sub-paths of one figure that go the same way: programs that imitate a hand draw each line twice.
+    /// Sub-paths of one figure, and figures after each other, that go the same way: programs that imitate a hand draw each line
+    /// twice.
     pub(super) fn merge_repeats(&mut self) {
         let mut out = self.none_out();
+        let diagonal = self.diagonal();
         for (figure, out) in self.figures.iter().zip(&mut out) {
             for l in 1..figure.lines.len() {
                 let (before, line) = (&figure.lines[l - 1], &figure.lines[l]);
                 // The edges of a thin ring lie as near: one runs against the other, or areas count by turns.
                 let is_painted = figure.fill.is_some_and(|f| !f.even_odd) && is_turned_alike(before, line);
-                if (figure.lined || is_painted) && !out[l - 1] && goes_along(before, line) {
+                if (figure.lined || is_painted)
+                    && !out[l - 1]
+                    && goes_along(before, line, &within_figure(diagonal, line))
+                {
                     out[l] = true;
                 }
+            }
+        }
+        for k in 1..self.figures.len() {
+            let (before, figure) = (&self.figures[k - 1], &self.figures[k]);
+            if let ([a], [b]) = (before.lines.as_slice(), figure.lines.as_slice())
+                && (before.lined && figure.lined && before.fill == figure.fill && is_like(before, figure))
+                && !out[k - 1][0]
+                && goes_along(a, b, &between_figures(diagonal, b))
+            {
+                out[k][0] = true;
             }
         }
         self.leave_out(&out, Change::DrawnTwice);
@@ -47,32 +68,31 @@ impl Work {
         self.note(Change::Joined, joined);
     }
 
-    /// Elements of two points, each of which begins where the one before ended.
+    /// Short lines in elements of their own, each of which begins where the one before ended. Where a long line is written so, short
+    /// ones are, too.
     fn join_segments(&mut self, diagonal: f64) -> usize {
-        let mut joined = 0;
-        let mut figures: Vec<Figure> = Vec::with_capacity(self.figures.len());
-        let mut run: Vec<Figure> = Vec::new();
+        let mut runs: Vec<Vec<Figure>> = Vec::with_capacity(self.figures.len());
         for figure in core::mem::take(&mut self.figures) {
-            let segment = segment_of(&figure).filter(|s| s[0].distance(s[1]) <= LIMITS.segment * diagonal);
-            let goes_on = match (run.last().and_then(segment_of), segment) {
-                (Some(before), Some(s)) => {
-                    let shorter = before[0].distance(before[1]).min(s[0].distance(s[1]));
-                    let meet = (MEET_EXACTLY * diagonal).min(MEET_SEGMENT * shorter);
-                    before[1].distance(s[0]) <= meet && is_like(&run[0], &figure)
-                }
-                _ => false,
-            };
-            if !goes_on {
-                joined += end_run(&mut run, &mut figures);
-            }
-            if segment.is_some() {
-                run.push(figure);
-            } else {
-                figures.push(figure);
+            match runs.last_mut() {
+                Some(run) if goes_on(run, &figure, diagonal) => run.push(figure),
+                _ => runs.push(vec![figure]),
             }
         }
-        joined += end_run(&mut run, &mut figures);
-        self.figures = figures;
+        let longest = runs.iter().map(Vec::len).max().unwrap_or_default();
+        let least = if longest >= LIMITS.segments { 2 } else { usize::MAX };
+        let mut joined = 0;
+        for run in runs {
+            if run.len() < least {
+                self.figures.extend(run);
+                continue;
+            }
+            joined += run.len();
+            let mut pieces = run.into_iter();
+            if let Some(mut first) = pieces.next() {
+                first.lines[0].extend(pieces.flat_map(|piece| piece.lines.into_iter().flatten().skip(1)));
+                self.figures.push(first);
+            }
+        }
         joined
     }
 
@@ -117,30 +137,33 @@ fn is_like(a: &Figure, b: &Figure) -> bool {
     (s.color, s.mode, &s.layer, s.hidden) == (o.color, o.mode, &o.layer, o.hidden)
 }
 
-fn segment_of(figure: &Figure) -> Option<[DVec2; 2]> {
+/// A line that may be a piece of a longer one.
+struct Segment {
+    from: DVec2,
+    to: DVec2,
+    length: f64,
+}
+
+/// The only line of a figure, if it is drawn and encloses nothing.
+fn segment_of(figure: &Figure) -> Option<Segment> {
+    let is_area = figure.fill.is_some_and(|f| f.said);
     match (figure.lined, figure.lines.as_slice()) {
-        (true, [line]) => match line.as_slice() {
-            [a, b] => Some([a.at, b.at]),
-            _ => None,
-        },
+        (true, [line]) if line.len() == 2 || !(is_area || is_closed(line)) => {
+            let (from, to) = (line.first()?.at, line.last()?.at);
+            Some(Segment { from, to, length: length_of(line) })
+        }
         _ => None,
     }
 }
 
-fn end_run(run: &mut Vec<Figure>, figures: &mut Vec<Figure>) -> usize {
-    if run.len() < LIMITS.segments {
-        figures.append(run);
-        return 0;
-    }
-    let count = run.len();
-    let mut pieces = run.drain(..);
-    if let Some(mut first) = pieces.next() {
-        for piece in pieces {
-            first.lines[0].extend(piece.lines.into_iter().flatten().skip(1));
-        }
-        figures.push(first);
-    }
-    count
+/// Whether a short line begins where the last of a run of short lines ended, and is painted like it.
+fn goes_on(run: &[Figure], next: &Figure, diagonal: f64) -> bool {
+    let (Some(before), Some(s)) = (run.last().and_then(segment_of), segment_of(next)) else { return false };
+    let shorter = before.length.min(s.length);
+    let meet = (MEET_EXACTLY * diagonal).min(MEET_SEGMENT * shorter);
+    before.length.max(s.length) <= LIMITS.segment * diagonal
+        && before.to.distance(s.from) <= meet
+        && is_like(&run[0], next)
 }
 
 /// Joins sub-paths that begin where the one before ends and lead on. Straight pieces need not lead on, as the sides of a
@@ -183,14 +206,33 @@ fn leads_on(a: &[InkSample], b: &[InkSample]) -> bool {
     from.dot(to) >= STRAIGHT_ON * from.length() * to.length()
 }
 
+/// How near to each other two lines are that are one: on the average, and everywhere.
+struct Near {
+    mean: f64,
+    most: f64,
+}
+
+/// Lines in figures of their own may be two needles or the sides of a stem: only what a pen's tremble explains is one.
+fn between_figures(diagonal: f64, line: &[InkSample]) -> Near {
+    let long = length_of(line);
+    Near {
+        mean: (BY * diagonal).min(BY_SHARE * long),
+        most: (BY_AT_MOST * diagonal).min(BY_AT_MOST_SHARE * long),
+    }
+}
+
+fn within_figure(diagonal: f64, line: &[InkSample]) -> Near {
+    let (far, own) = (LIMITS.twice * length_of(line), between_figures(diagonal, line));
+    Near { mean: own.mean.max(0.5 * far), most: own.most.max(1.5 * far) }
+}
+
 /// Whether two lines go the same way from end to end, or round and round.
-fn goes_along(a: &[InkSample], b: &[InkSample]) -> bool {
+fn goes_along(a: &[InkSample], b: &[InkSample], near: &Near) -> bool {
     let (long, other) = (length_of(a), length_of(b));
     if !(long > 0.0 && (long - other).abs() <= AS_LONG * long.max(other)) {
         return false;
     }
     let (a, b) = (places(a), places(b));
-    let far = LIMITS.twice * long;
     let lies_by = |from: &[DVec2], to: &[DVec2]| {
         let away = |p: DVec2| geom::closest_on_polyline(to, p).map_or(f64::INFINITY, |c| c.point.distance(p));
         let even = geom::resample(from, long / 24.0);
@@ -198,7 +240,7 @@ fn goes_along(a: &[InkSample], b: &[InkSample]) -> bool {
         let most = all.iter().copied().fold(0.0, f64::max);
         #[expect(clippy::cast_precision_loss, reason = "a few points")]
         let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
-        most <= 1.5 * far && mean <= 0.5 * far
+        most <= near.most && mean <= near.mean
     };
     lies_by(&a, &b) && lies_by(&b, &a)
 }

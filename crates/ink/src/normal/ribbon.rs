@@ -13,11 +13,14 @@ impl Work {
         if self.figures.iter().all(|f| f.lined) {
             return;
         }
+        self.split_pens_strokes();
         let lines: Vec<Vec<Vec<DVec2>>> =
             self.figures.iter().map(|f| f.lines.iter().map(|l| places(l)).collect()).collect();
+        // Among opaque ones, areas that are seen through shade what they lie on.
+        let opaque = self.figures.iter().any(|f| !is_translucent(f));
         let candidate = |(lines, f): (_, &super::Figure)| Candidate {
             lines,
-            fill_only: !f.lined && !is_solid(f),
+            fill_only: !(f.lined || is_solid(f) || (opaque && is_translucent(f))),
             fill_said: f.fill.is_some_and(|f| f.said),
         };
         let candidates: Vec<Candidate<'_>> =
@@ -34,6 +37,54 @@ impl Work {
         }
         self.note(Change::PenOutline, reduced);
     }
+}
+
+fn is_translucent(figure: &super::Figure) -> bool {
+    figure.fill.is_some_and(|f| f.opacity < super::LIMITS.translucent)
+}
+
+impl Work {
+    /// Takes apart areas whose sub-paths are strokes of a pen: programs merge them into one path when they expand lines.
+    fn split_pens_strokes(&mut self) {
+        let diagonal = self.diagonal();
+        let mut figures: Vec<super::Figure> = Vec::with_capacity(self.figures.len());
+        for figure in core::mem::take(&mut self.figures) {
+            let many = (3..MOST_STROKES).contains(&figure.lines.len());
+            let parts = (!figure.lined && figure.fill.is_some_and(|f| f.said) && many)
+                .then(|| pens_strokes(&figure.lines, diagonal));
+            let Some(parts) = parts.flatten() else {
+                figures.push(figure);
+                continue;
+            };
+            let mut lines = figure.lines.into_iter();
+            for part in parts {
+                let lines = lines.by_ref().take(part).collect();
+                figures.push(super::Figure { lines, like: figure.like.clone(), ..figure });
+            }
+        }
+        self.figures = figures;
+    }
+}
+
+/// How many sub-paths, one after the other, belong to each stroke of a pen: one, or two for one that closes on itself. `None`
+/// where they are no strokes of a pen.
+fn pens_strokes(lines: &[Vec<InkSample>], diagonal: f64) -> Option<Vec<usize>> {
+    let lines: Vec<Vec<DVec2>> = lines.iter().map(|l| places(l)).collect();
+    let is_pen = |r: &Ribbon| r.width < SLENDER * r.length && r.width < WIDEST * diagonal;
+    let mut parts = Vec::new();
+    let (mut of_pens, mut all, mut k) = (0.0, 0.0, 0);
+    while k < lines.len() {
+        let closed = lines.get(k + 1).and_then(|inner| closed_ribbon(&lines[k], inner)).filter(is_pen);
+        let count = if closed.is_some() { 2 } else { 1 };
+        let around: f64 = lines[k..k + count].iter().map(|l| perimeter(l)).sum();
+        all += around;
+        if closed.is_some() || open_ribbon(&lines[k]).is_some_and(|r| is_pen(&r)) {
+            of_pens += around;
+        }
+        parts.push(count);
+        k += count;
+    }
+    (of_pens >= OF_PENS * all).then_some(parts)
 }
 
 /// Whether two sub-paths that run the same way round are painted as one area: programs that imitate a hand draw it twice.
@@ -65,6 +116,10 @@ const SLENDER: f64 = 0.07;
 const SLENDER_UNSAID: f64 = 0.03;
 /// A pen is no wider than this share of the drawing's diagonal.
 const WIDEST: f64 = 0.06;
+/// Strokes of a pen have this share of all outlines of a path that is made of them; the rest are dashes.
+const OF_PENS: f64 = 0.85;
+/// A path of more sub-paths is traced, and not drawn.
+const MOST_STROKES: usize = 1000;
 
 /// For each candidate the centre line with pressures (width over the greatest width), or `None` where the
 /// outline itself is the stroke.

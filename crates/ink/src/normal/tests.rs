@@ -34,7 +34,7 @@ fn plain_strokes_pass_through() {
             lined(vec![line(&[[x, 0.0], [x + 3.0, 20.0 + x], [x * 0.5, 44.0], [x, 60.0]])])
         })
         .collect();
-    let normal = normalise(figures.clone(), Some((DVec2::ZERO, DVec2::splat(70.0))));
+    let normal = normalise(figures.clone(), Some((DVec2::ZERO, DVec2::splat(70.0))), &[]);
     assert_eq!(counts(&normal), []);
     let same = normal.strokes.iter().zip(&figures).all(|(s, f)| s.samples == f.lines[0]);
     assert!(same && normal.strokes.len() == figures.len());
@@ -43,7 +43,7 @@ fn plain_strokes_pass_through() {
 #[test]
 fn solid_leaves_of_one_area_stay_outlines() {
     let leaves = (0..9).map(|k| ring(DVec2::new(30.0 * f64::from(k), 0.0), 10.0, 30)).collect();
-    let normal = normalise(vec![area(leaves, [0, 90, 0])], None);
+    let normal = normalise(vec![area(leaves, [0, 90, 0])], None, &[]);
     assert_eq!((normal.strokes.len(), counts(&normal)), (9, vec![]));
 }
 
@@ -63,7 +63,7 @@ fn neighbours_that_are_hatched_one_after_the_other_are_shaded_both() {
     let centres = [DVec2::ZERO, DVec2::new(20.5, 0.0)];
     let outlines = centres.map(|c| lined(vec![ring(c, 10.0, 40)]));
     let lines = centres.map(|c| hatches(c, 10.0)).concat();
-    let normal = normalise(outlines.into_iter().chain([lined(lines)]).collect(), None);
+    let normal = normalise(outlines.into_iter().chain([lined(lines)]).collect(), None, &[]);
     assert_eq!((normal.strokes.len(), counts(&normal)), (2, vec![(Change::Hatching, 14)]));
 }
 
@@ -85,7 +85,7 @@ fn an_outline_that_a_hand_drew_on_past_its_beginning_is_closed() {
 fn an_area_that_is_painted_twice_is_one_and_a_thin_ring_is_not_solid() {
     let paint = |lines, even_odd| {
         let fill = Some(Fill { color: Some([200, 0, 0]), said: true, opacity: 1.0, even_odd });
-        normalise(vec![Figure { lines, fill, ..Figure::default() }], None)
+        normalise(vec![Figure { lines, fill, ..Figure::default() }], None, &[])
     };
     let twice = vec![ring(DVec2::ZERO, 10.0, 40), ring(DVec2::new(0.1, 0.0), 10.1, 40)];
     assert_eq!(counts(&paint(twice.clone(), false)), [(Change::DrawnTwice, 1)]);
@@ -107,16 +107,16 @@ fn the_rim_of_a_sticker_is_left_out_and_a_leaf_under_its_spots_stays() {
         area(vec![(0..=60).map(bone).collect()], [255; 3])
     };
     let upon = |radius| discs(radius).map(|d| area(vec![d], [200, 0, 0])).to_vec();
-    let sticker = normalise([vec![rim(1.0)], upon(8.0)].concat(), None);
+    let sticker = normalise([vec![rim(1.0)], upon(8.0)].concat(), None, &[]);
     assert_eq!((sticker.strokes.len(), counts(&sticker)), (2, vec![(Change::Paper, 1)]));
-    let leaf = normalise([vec![rim(1.0)], upon(2.0)].concat(), None);
+    let leaf = normalise([vec![rim(1.0)], upon(2.0)].concat(), None, &[]);
     assert_eq!(leaf.strokes.len(), 3);
 }
 
 #[test]
 fn not_everything_is_paper() {
     let page = line(&[[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [0.0, 0.0]]);
-    let normal = normalise(vec![lined(vec![page])], Some((DVec2::ZERO, DVec2::splat(9.0))));
+    let normal = normalise(vec![lined(vec![page])], Some((DVec2::ZERO, DVec2::splat(9.0))), &[]);
     assert_eq!((normal.strokes.len(), counts(&normal)), (1, vec![]));
 }
 
@@ -132,6 +132,140 @@ fn wrong_numbers_do_no_harm() {
         }
     }
     for sheet in [None, Some((DVec2::ZERO, DVec2::NAN)), Some((DVec2::splat(-1e300), DVec2::splat(1e300)))] {
-        assert!(!normalise(figures.clone(), sheet).strokes.is_empty());
+        assert!(!normalise(figures.clone(), sheet, &[]).strokes.is_empty());
     }
+}
+
+#[test]
+fn pieces_of_a_few_points_that_go_on_are_one_line_and_lines_that_only_meet_are_not() {
+    let stem: Vec<InkSample> =
+        (0..=90_u32).map(|k| DVec2::new(9.0 * ops::sin(0.05 * f64::from(k)), f64::from(k)).into()).collect();
+    let pieces = (0..90).step_by(5).map(|k| lined(vec![stem[k..=k + 5].to_vec()])).collect();
+    let normal = normalise(pieces, None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (1, vec![(Change::Joined, 18)]));
+    assert_eq!(normal.strokes[0].samples, stem);
+    // A stem, and leaves that begin where it ends.
+    let leaf = |x: f64| line(&[[0.0, 90.0], [x, 100.0], [2.0 * x, 99.0]]);
+    let twig = vec![lined(vec![stem]), lined(vec![leaf(9.0)]), lined(vec![leaf(-9.0)])];
+    assert_eq!(normalise(twig, None, &[]).strokes.len(), 3);
+}
+
+#[test]
+fn lines_in_the_colour_of_the_page_are_not_seen_unless_they_lie_on_an_area() {
+    let page = area(vec![line(&[[0.0, 0.0], [90.0, 0.0], [90.0, 90.0], [0.0, 90.0], [0.0, 0.0]])], [255; 3]);
+    let drawn = |x: f64, color: [u8; 3]| {
+        let mut figure = lined(vec![line(&[[x, 10.0], [x + 9.0, 40.0], [x, 80.0]])]);
+        figure.like.color = Some(color);
+        figure
+    };
+    let lines = vec![drawn(20.0, [0; 3]), drawn(40.0, [254; 3]), drawn(60.0, [0; 3])];
+    let normal = normalise([vec![page.clone()], lines.clone()].concat(), None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (2, vec![(Change::Paper, 2)]));
+    let leaf = area(vec![ring(DVec2::splat(45.0), 30.0, 40)], [0, 120, 0]);
+    let veins = normalise([vec![page, leaf], lines].concat(), None, &[]);
+    assert_eq!(counts(&veins), [(Change::Paper, 1)]);
+}
+
+#[test]
+fn lines_from_words_are_left_out_with_their_heads_and_a_stem_over_its_name_stays() {
+    let stem = |x: f64| lined(vec![line(&[[x, 20.0], [x + 1.0, 50.0], [x, 80.0]])]);
+    let leaf = |y: f64| lined(vec![line(&[[30.0, y], [40.0, y + 9.0], [50.0, y]])]);
+    let plant = vec![stem(30.0), leaf(40.0), leaf(60.0)];
+    let arrow = |y: f64| {
+        let shaft = lined(vec![line(&[[88.0, y], [52.0, y]])]);
+        vec![shaft, lined(vec![line(&[[54.0, y + 1.5], [52.0, y], [54.0, y - 1.5]])])]
+    };
+    let words = |x: f64, y: f64| (DVec2::new(x, y - 2.0), DVec2::new(x + 20.0, y + 2.0));
+    let drawn = [plant.clone(), arrow(40.0), arrow(60.0)].concat();
+    let normal = normalise(drawn.clone(), None, &[words(90.0, 40.0), words(90.0, 60.0)]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (3, vec![(Change::Labels, 4)]));
+    assert_eq!(counts(&normalise(drawn, None, &[])), []);
+    let named = normalise(vec![stem(30.0), stem(60.0)], None, &[words(20.0, 15.0), words(50.0, 15.0)]);
+    assert_eq!(counts(&named), []);
+}
+
+#[test]
+fn frames_in_four_lines_and_crop_marks_are_paper_and_the_ground_is_not() {
+    let rule = |a: [f64; 2], b: [f64; 2]| lined(vec![line(&[a, b])]);
+    let plant = vec![
+        lined(vec![line(&[[50.0, 10.0], [52.0, 40.0], [50.0, 80.0]])]),
+        lined(vec![ring(DVec2::new(50.0, 80.0), 9.0, 30)]),
+    ];
+    let (low, high) = ([5.0, 5.0], [95.0, 95.0]);
+    let frame =
+        [rule(low, [95.0, 5.0]), rule([95.0, 5.0], high), rule(high, [5.0, 95.0]), rule([5.0, 95.0], low)];
+    let normal = normalise([plant.clone(), frame.to_vec()].concat(), None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (2, vec![(Change::Paper, 4)]));
+    let ground = normalise([plant, vec![rule([5.0, 9.0], [95.0, 9.0])]].concat(), None, &[]);
+    assert_eq!(counts(&ground), []);
+}
+
+#[test]
+fn a_ring_around_a_plant_is_a_badge_and_the_rind_of_a_slice_is_not() {
+    let rim = lined(vec![ring(DVec2::ZERO, 50.0, 60)]);
+    let stem = lined(vec![line(&[[0.0, -42.0], [1.0, 0.0], [0.0, 40.0]])]);
+    let plant = normalise(vec![rim.clone(), stem], None, &[]);
+    assert_eq!(counts(&plant), [(Change::Paper, 1)]);
+    let ray = |k: u32| {
+        let (sin, cos) = ops::sin_cos(ops::TAU * f64::from(k) / 9.0);
+        lined(vec![vec![DVec2::ZERO.into(), (DVec2::new(cos, sin) * 44.0).into()]])
+    };
+    let slice = normalise((0..9).map(ray).chain([rim]).collect(), None, &[]);
+    assert_eq!(counts(&slice), []);
+}
+
+#[test]
+fn small_outlines_are_hatched_where_large_ones_are_and_a_midrib_is_no_hatch() {
+    let (large, small) = (DVec2::ZERO, DVec2::new(40.0, 0.0));
+    let outlines = [lined(vec![ring(large, 10.0, 40)]), lined(vec![ring(small, 4.0, 30)])];
+    let few = hatches(small, 4.0)[2..5].to_vec();
+    let alone = normalise(vec![outlines[1].clone(), lined(few.clone())], None, &[]);
+    assert_eq!(alone.strokes.len(), 4);
+    let rib = lined(vec![line(&[[-9.9, 0.0], [9.9, 0.5]])]);
+    let drawn = [outlines.to_vec(), vec![lined(hatches(large, 10.0)), lined(few), rib]].concat();
+    let normal = normalise(drawn, None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (3, vec![(Change::Hatching, 10)]));
+}
+
+#[test]
+fn pens_strokes_in_one_path_that_cross_are_one_line_each() {
+    let stroke = |a: DVec2, b: DVec2| {
+        let side = (b - a).perp().normalize_or_zero() * 0.5;
+        let edge = |from: DVec2, to: DVec2| (0..=20).map(move |k| from.lerp(to, f64::from(k) / 20.0).into());
+        let mut ring: Vec<InkSample> = edge(a + side, b + side).chain(edge(b - side, a - side)).collect();
+        ring.push(ring[0]);
+        ring
+    };
+    let lines = vec![
+        stroke(DVec2::new(0.0, 0.0), DVec2::new(40.0, 40.0)),
+        stroke(DVec2::new(0.0, 40.0), DVec2::new(40.0, 0.0)),
+        stroke(DVec2::new(0.0, 20.0), DVec2::new(44.0, 21.0)),
+    ];
+    let mut figure = area(lines, [0; 3]);
+    figure.fill.as_mut().expect("an area").even_odd = false;
+    let normal = normalise(vec![figure], None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (3, vec![(Change::PenOutline, 3)]));
+}
+
+#[test]
+fn short_lines_in_segments_are_joined_where_long_ones_are() {
+    let chopped = |from: u32, to: u32| -> Vec<Figure> {
+        let at = |k: u32| [f64::from(k), 9.0 * ops::sin(0.3 * f64::from(k)) + f64::from(from)];
+        (from..to).map(|k| lined(vec![line(&[at(k), at(k + 1)])])).collect()
+    };
+    let drawn = [chopped(0, 40), chopped(60, 63)].concat();
+    assert_eq!(normalise(drawn, None, &[]).strokes.len(), 2);
+    let short = [vec![lined(vec![ring(DVec2::splat(90.0), 40.0, 40)])], chopped(60, 63)].concat();
+    assert_eq!(normalise(short, None, &[]).strokes.len(), 4);
+}
+
+#[test]
+fn dots_of_one_size_in_small_outlines_are_stipple_and_a_few_are_not() {
+    let centres = (0..8).map(|k| DVec2::new(30.0 * f64::from(k), 0.0));
+    let outlines = centres.clone().map(|c| lined(vec![ring(c, 10.0, 40)]));
+    let dots = |c: DVec2, n: u32| (0..n).map(move |k| area(vec![ring(c + f64::from(k), 0.3, 8)], [0; 3]));
+    let drawn = |n: u32| outlines.clone().chain(centres.clone().flat_map(move |c| dots(c, n))).collect();
+    let normal = normalise(drawn(4), None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (8, vec![(Change::Hatching, 32)]));
+    assert!(!counts(&normalise(drawn(1), None, &[])).iter().any(|(c, _)| *c == Change::Hatching));
 }

@@ -20,7 +20,7 @@ const TOLD: [&str; 9] = [
     "studio/src",
 ];
 /// Told in other ways than by a call of `warn` with the code in it.
-const NAMED: [(&str, &[&str]); 14] = [
+const NAMED: [(&str, &[&str]); 15] = [
     ("unlike-a-plant", &[]),
     ("edit-not-done", &["edit", "word", "why"]),
     ("sample-skipped", &["stroke", "count"]),
@@ -28,6 +28,7 @@ const NAMED: [(&str, &[&str]); 14] = [
     ("growth-too-much", &["year", "years", "joints", "next", "most"]),
     ("off-sheet", &["count"]),
     ("paper-left-out", &["count"]),
+    ("labels-left-out", &["count"]),
     ("filled-outline", &["count"]),
     ("traced-ink", &["count"]),
     ("drawn-twice", &["count"]),

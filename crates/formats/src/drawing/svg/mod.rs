@@ -37,6 +37,13 @@ const MAX_WORK: usize = 256 << 20;
 /// A curve's error as a share of the drawing's diagonal: a tenth of the step that cleaning resamples with.
 const FLATNESS: f64 = 5e-4;
 
+/// The size of letters where a file does not say, as browsers have it; their mean width, and their height above the line, as shares
+/// of the size. Most letters of a text that count.
+const USUAL_FONT: f64 = 16.0;
+const LETTER_WIDTH: f64 = 0.52;
+const ASCENT: f64 = 0.8;
+const MOST_LETTERS: usize = 200;
+
 /// A drawn element in the file's coordinates.
 struct Shape {
     paths: Vec<SubPath>,
@@ -55,6 +62,8 @@ struct Reader<'a> {
     sheet: Sheet,
     viewport: DVec2,
     shapes: Vec<Shape>,
+    /// Boxes around texts, in the file's coordinates.
+    words: Vec<(DVec2, DVec2)>,
     layers: Vec<Layer>,
     elements: usize,
     pieces: usize,
@@ -97,6 +106,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         sheet,
         viewport: viewport(root),
         shapes: Vec::new(),
+        words: Vec::new(),
         layers: Vec::new(),
         elements: 0,
         pieces: 0,
@@ -114,8 +124,11 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     // What is hidden comes last: numbers of strokes, and all that follows from them, are as if it were not there.
     let (hidden, seen): (Vec<Shape>, Vec<Shape>) = reader.shapes.into_iter().partition(|s| s.style.hidden);
     let corners = sheet_corners(root);
-    let mut all = strokes(&seen, &reader.layers, corners, report);
-    all.extend(strokes(&hidden, &reader.layers, corners, &mut Report::default()));
+    let words: Vec<(DVec2, DVec2)> =
+        reader.words.iter().map(|w| both((up(w.0), up(w.0)), (up(w.1), up(w.1)))).collect();
+    let around = Around { layers: &reader.layers, sheet: corners, words: &words };
+    let mut all = strokes(&seen, &around, report);
+    all.extend(strokes(&hidden, &around, &mut Report::default()));
     Ok(Drawing { name: name.to_owned(), strokes: all, layers: reader.layers })
 }
 
@@ -126,7 +139,7 @@ struct Depth {
 }
 
 impl<'a> Reader<'a> {
-    /// [`Self::enter`], and what of it a clip path leaves.
+    /// [`Self::enter`], turned in its own box, and what of it a clip path and a mask leave.
     fn walk(
         &mut self,
         node: Node<'a, 'a>,
@@ -136,12 +149,31 @@ impl<'a> Reader<'a> {
     ) -> Result<(), DrawingError> {
         let before = self.shapes.len();
         self.enter(node, inherited, parent, depth)?;
-        let Some(clip) = self.said(node, "clip-path") else { return Ok(()) };
-        let Some(clip) = style::reference(&clip).and_then(|(id, _)| self.target(node, id)) else {
+        if self.is_turned_in_own_box(node) {
+            self.turn_in_own_box(node, before, parent);
+        }
+        for window in ["clip-path", "mask"] {
+            self.cut(node, before, window, (parent, depth))?;
+        }
+        Ok(())
+    }
+
+    /// Leaves out what an element has drawn wholly outside its clip path or mask.
+    fn cut(
+        &mut self,
+        node: Node<'a, 'a>,
+        before: usize,
+        property: &str,
+        (parent, depth): (DAffine2, Depth),
+    ) -> Result<(), DrawingError> {
+        let Some(said) = self.said(node, property) else { return Ok(()) };
+        let Some(clip) = style::reference(&said).and_then(|(id, _)| self.target(node, id)) else {
             return Ok(());
         };
-        if clip.tag_name().name() != "clipPath"
-            || clip.attribute("clipPathUnits") == Some("objectBoundingBox")
+        let is_mask = clip.tag_name().name() == "mask";
+        let units = clip.attribute(if is_mask { "maskContentUnits" } else { "clipPathUnits" });
+        if !(is_mask || clip.tag_name().name() == "clipPath")
+            || units == Some("objectBoundingBox")
             || self.shapes.len() == before
             || depth.uses >= MAX_USE
         {
@@ -153,7 +185,12 @@ impl<'a> Reader<'a> {
         for child in clip.children().filter(Node::is_element) {
             self.walk(child, Style::default(), here, deeper)?;
         }
-        let window = self.shapes.split_off(drawn).iter().filter_map(extent).reduce(both);
+        // A mask shows through what is painted in it, but black.
+        let shows = |shape: &Shape| {
+            let paints = [shape.style.stroke, shape.style.fill];
+            !is_mask || paints.iter().any(|p| !matches!(p, Paint::None | Paint::Color([0, 0, 0])))
+        };
+        let window = self.shapes.split_off(drawn).iter().filter(|s| shows(s)).filter_map(extent).reduce(both);
         let inside = |shape: &Shape| match (window, extent(shape)) {
             (Some((lo, hi)), Some((from, to))) => from.cmple(hi).all() && to.cmpge(lo).all(),
             // Of a window that is not read, such as text, nothing is known.
@@ -165,6 +202,41 @@ impl<'a> Reader<'a> {
         }
         self.shapes.extend(kept);
         Ok(())
+    }
+
+    /// Whether an element has a transform about a place in its own box (`transform-box` of CSS).
+    fn is_turned_in_own_box(&self, node: Node<'_, '_>) -> bool {
+        let own =
+            |text: String| matches!(text.trim(), "fill-box" | "content-box" | "stroke-box" | "border-box");
+        self.said(node, "transform-box").is_some_and(own)
+    }
+
+    /// Applies the transform of an element to what it has drawn so far, about a place in the box of that.
+    fn turn_in_own_box(&mut self, node: Node<'_, '_>, before: usize, parent: DAffine2) {
+        let Some(turn) = self.said(node, "transform").and_then(|t| path::transform(&t, self.viewport)) else {
+            return;
+        };
+        let back = parent.inverse();
+        let drawn = self.shapes[before..].iter_mut();
+        let moved = |shape: &mut Shape, by: DAffine2| shape.paths.iter_mut().for_each(|p| p.transform(by));
+        let mut shapes: Vec<&mut Shape> = drawn.collect();
+        if !back.is_finite() {
+            return;
+        }
+        shapes.iter_mut().for_each(|s| moved(s, back));
+        let own = shapes.iter().filter_map(|s| extent(s)).reduce(both);
+        let (lo, hi) = own.unwrap_or_default();
+        let said = node.attribute("style").and_then(|s| style::declared(s, "transform-origin"));
+        let said = said.map(str::to_owned).or_else(|| self.sheet.value(node, "transform-origin"));
+        let said = said.or_else(|| node.attribute("transform-origin").map(str::to_owned));
+        let centre = lo + said.and_then(|text| origin(&text, hi - lo)).unwrap_or_default();
+        let turned =
+            DAffine2::from_translation(centre) * turn * DAffine2::from_translation(DVec2::ZERO - centre);
+        let scale = turn.matrix2.determinant().abs().sqrt();
+        for shape in shapes {
+            moved(shape, parent * turned);
+            shape.width = shape.width.map(|w| w * scale).filter(|w| w.is_finite() && *w > 0.0);
+        }
     }
 
     /// The element with this id.
@@ -265,12 +337,42 @@ impl<'a> Reader<'a> {
                 }
                 self.using.pop();
             }
-            "text" => self.leave_out("text"),
+            "text" => {
+                self.leave_out("text");
+                self.words.extend(self.box_of_words(node, here));
+            }
             "image" => self.leave_out("image"),
             "foreignObject" => self.leave_out("foreignObject"),
             _ => self.shape(node, style, here),
         }
         Ok(())
+    }
+
+    /// About where the words of a text lie, which only a font could say; `None` where they have no place.
+    fn box_of_words(&self, node: Node<'_, '_>, here: DAffine2) -> Option<(DVec2, DVec2)> {
+        let spans = || node.descendants().filter(|n| matches!(n.tag_name().name(), "text" | "tspan"));
+        let placed = |name: &str| spans().find_map(|n| n.attribute(name)).map(str::to_owned);
+        // Both are inherited.
+        let said = |name: &str| spans().chain(node.ancestors()).find_map(|n| self.said(n, name));
+        let at = DVec2::new(
+            placed("x").map_or(0.0, |v| self.length(&v, 0)),
+            placed("y").map_or(0.0, |v| self.length(&v, 1)),
+        );
+        let size = said("font-size").map_or(USUAL_FONT, |v| length(&v, USUAL_FONT));
+        let letters = node.descendants().filter_map(|n| n.text().filter(|_| n.is_text()));
+        let count = letters.map(|t| t.trim().chars().count()).sum::<usize>().min(MOST_LETTERS);
+        #[expect(clippy::cast_precision_loss, reason = "a few letters")]
+        let width = count as f64 * LETTER_WIDTH * size;
+        let before = match said("text-anchor").as_deref().map(str::trim) {
+            Some("middle") => 0.5 * width,
+            Some("end") => width,
+            _ => 0.0,
+        };
+        let from = at - DVec2::new(before, ASCENT * size);
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let placed = corners.map(|c| here.transform_point2(from + DVec2::from(c) * DVec2::new(width, size)));
+        let boxed = placed.into_iter().map(|p| (p, p)).reduce(both)?;
+        (count > 0 && boxed.0.is_finite() && boxed.1.is_finite()).then_some(boxed)
     }
 
     /// The row of a layer: new, with a name that no other has. `None` where there are too many.
@@ -297,6 +399,9 @@ impl<'a> Reader<'a> {
 
     fn own_transform(&mut self, node: Node<'_, '_>) -> DAffine2 {
         let Some(text) = self.said(node, "transform") else { return DAffine2::IDENTITY };
+        if self.is_turned_in_own_box(node) {
+            return DAffine2::IDENTITY;
+        }
         let Some(own) = path::transform(&text, self.viewport) else {
             self.broken(node, "transform");
             return DAffine2::IDENTITY;
@@ -561,12 +666,16 @@ fn both(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> (DVec2, DVec2) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-fn strokes(
-    shapes: &[Shape],
-    layers: &[Layer],
+/// What strokes lie on and among.
+struct Around<'a> {
+    layers: &'a [Layer],
+    /// The corners of the sheet, y up.
     sheet: Option<(DVec2, DVec2)>,
-    report: &mut Report,
-) -> Vec<Stroke> {
+    /// Boxes around texts, y up.
+    words: &'a [(DVec2, DVec2)],
+}
+
+fn strokes(shapes: &[Shape], around: &Around<'_>, report: &mut Report) -> Vec<Stroke> {
     let diagonal = shapes.iter().filter_map(extent).reduce(both).map_or(0.0, |(lo, hi)| (hi - lo).length());
     let tolerance = (diagonal * FLATNESS).max(f64::MIN_POSITIVE);
     let figure = |shape: &Shape| {
@@ -577,7 +686,7 @@ fn strokes(
             mode: style.mode,
             color: color.or_else(|| style.fill.color()),
             width: shape.width,
-            layer: style.layer.and_then(|row| layers.get(row)).map(|l| Arc::clone(&l.name)),
+            layer: style.layer.and_then(|row| around.layers.get(row)).map(|l| Arc::clone(&l.name)),
             hidden: style.hidden,
             id: shape.id.clone(),
         };
@@ -594,7 +703,7 @@ fn strokes(
             }),
         }
     };
-    plain_strokes(shapes.iter().map(figure).collect(), sheet, report)
+    plain_strokes(shapes.iter().map(figure).collect(), around.sheet, around.words, report)
 }
 
 /// The sheet's y points down, ours up.

@@ -410,7 +410,9 @@ pub(super) fn transform(text: &str, sheet: DVec2) -> Option<DAffine2> {
         let (name, after) = rest.split_once('(')?;
         let (inside, after) = after.split_once(')')?;
         rest = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
-        let v = css_numbers(inside, sheet)?;
+        // What is scaled is scaled by a share of itself, not of the sheet.
+        let whole = if name.trim().starts_with("scale") { DVec2::ONE } else { sheet };
+        let v = css_numbers(inside, whole)?;
         let radians = |deg: f64| deg % 360.0 * (ops::PI / 180.0);
         let matrix = |m: [f64; 6]| DAffine2::from_cols_array(&m);
         all *= match (name.trim(), v.as_slice()) {

@@ -35,7 +35,7 @@ pub(super) struct Style {
     /// Not inherited, but hides everything below.
     pub(super) displayed: bool,
     pub(super) mode: StrokeMode,
-    /// As attributes and `style` say it, in the units of the element; sheets of style are not asked.
+    /// In the units of the element.
     pub(super) width: Option<f64>,
     /// The line has no width: it is not seen.
     no_width: bool,
@@ -312,31 +312,49 @@ const MAX_RULES: usize = 20_000;
 const MAX_SELECTORS_OF_NAME: usize = 256;
 /// More simple selectors in a row than any drawing has.
 const MAX_SIMPLE: usize = 16;
+/// More rules within rules than any program writes.
+const MAX_NESTED: usize = 4;
 
 impl Sheet {
     pub(super) fn add(&mut self, text: &str) {
-        let plain = without_comments(text);
-        let mut rest = plain.as_str();
-        while let Some((selectors, after)) = rest.split_once('{') {
-            let Some((body, after)) = after.split_once('}') else { return };
-            rest = after;
-            let wanted: Vec<(String, String)> = declarations(body)
-                .filter(|(name, _)| CONCERNS.contains(name))
-                // No value that we understand is longer; every element reads them.
-                .map(|(name, value)| (name.to_owned(), value.chars().take(64).collect()))
-                .collect();
-            if wanted.is_empty() {
+        self.add_rules(&without_comments(text), 0);
+    }
+
+    /// Rules, and those within rules for screens, as deep as programs nest them.
+    fn add_rules(&mut self, text: &str, depth: usize) {
+        let mut rest = text;
+        while let Some((before, after)) = rest.split_once('{') {
+            // `@charset` and `@import` end where they stand.
+            let prelude = before.rsplit(';').next().unwrap_or_default().trim();
+            let end = block_end(after);
+            let body = &after[..end];
+            rest = after.get(end + 1..).unwrap_or_default();
+            match prelude.strip_prefix('@') {
+                Some(rule) if holds_on_screen(rule) && depth < MAX_NESTED => self.add_rules(body, depth + 1),
+                Some(_) => {}
+                None => self.add_block(prelude, body),
+            }
+        }
+    }
+
+    /// The declarations of one block for each of its selectors.
+    fn add_block(&mut self, selectors: &str, body: &str) {
+        let wanted: Vec<(String, String)> = declarations(body)
+            .filter(|(name, _)| CONCERNS.contains(name))
+            // No value that we understand is longer; every element reads them.
+            .map(|(name, value)| (name.to_owned(), value.chars().take(64).collect()))
+            .collect();
+        if wanted.is_empty() {
+            return;
+        }
+        for selector in selectors.split(',').map(str::trim) {
+            let read = selector_of(selector).filter(|_| self.count < MAX_RULES);
+            let Some(selector) = read else {
+                self.ignored += 1;
                 continue;
-            }
-            for selector in selectors.split(',').map(str::trim) {
-                let read = selector_of(selector).filter(|_| self.count < MAX_RULES);
-                let Some(selector) = read else {
-                    self.ignored += 1;
-                    continue;
-                };
-                self.count += 1;
-                self.add_rule(selector, &wanted);
-            }
+            };
+            self.count += 1;
+            self.add_rule(selector, &wanted);
         }
     }
 
@@ -398,6 +416,31 @@ impl Sheet {
     }
 }
 
+/// Where the block ends that `text` begins within: its closing brace, or the end of the text.
+fn block_end(text: &str) -> usize {
+    let mut open = 0_usize;
+    for (at, c) in text.char_indices() {
+        match c {
+            '{' => open += 1,
+            '}' if open == 0 => return at,
+            '}' => open -= 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// Whether the rules within an at-rule (its words after the `@`) count for a light screen.
+fn holds_on_screen(rule: &str) -> bool {
+    let rule = rule.to_ascii_lowercase();
+    let (name, query) = rule.split_once(|c: char| c.is_whitespace() || c == '(').unwrap_or((&rule, ""));
+    match name {
+        "media" => !["print", "speech", "dark", "not "].iter().any(|word| query.contains(word)),
+        "supports" | "layer" => true,
+        _ => false,
+    }
+}
+
 /// How many ids, classes and tags a selector names: the more, the weightier.
 fn weight_of(selector: &[Compound]) -> [usize; 3] {
     let simple = || selector.iter().flat_map(|c| &c.simple);
@@ -407,9 +450,10 @@ fn weight_of(selector: &[Compound]) -> [usize; 3] {
 }
 
 /// The properties that concern us.
-const CONCERNS: [&str; 13] = [
+const CONCERNS: [&str; 18] = [
     "color",
     "stroke",
+    "stroke-width",
     "fill",
     "visibility",
     "display",
@@ -420,7 +464,11 @@ const CONCERNS: [&str; 13] = [
     "stop-color",
     "transform",
     "transform-origin",
+    "transform-box",
     "clip-path",
+    "mask",
+    "font-size",
+    "text-anchor",
 ];
 
 /// A selector, taken apart; `None` if it asks for more than names, or for too much.

@@ -213,3 +213,41 @@ fn wrong_numbers_pass_or_are_named_but_never_hang() {
     assert_eq!(d.strokes.len(), 4);
     assert!(d.strokes.iter().all(|s| s.samples.len() < 2000));
 }
+
+#[test]
+fn rules_for_screens_count_and_those_after_them_too() {
+    let (d, w) = drawing(
+        "<style>@charset \"utf-8\"; @import url('a.css'); .a { stroke: #010203 } @media print { .b { display: none } }\
+         @font-face { font-family: x } @media screen and (min-width: 1px) { .b { stroke: #040506 } }\
+         @keyframes k { from { opacity: 0 } to { opacity: 1 } } .c { stroke: #070809; stroke-width: 3px }\
+         .d { stroke: red; stroke-width: 0 }</style>\
+         <g fill='none'><path class='a' d='M0 0L1 1'/><path class='b' d='M0 0L1 1'/><path class='c' d='M0 0L1 1'/>\
+         <path class='d' d='M0 0L1 1'/></g>",
+    );
+    let colors: Vec<_> = d.strokes.iter().filter_map(|s| s.color).collect();
+    assert_eq!(colors, [[1, 2, 3], [4, 5, 6], [7, 8, 9]]);
+    assert_eq!(d.strokes[2].width, Some(3.0));
+    assert!(w.iter().any(|w| w.contains("invisible (1)")), "{w:?}");
+}
+
+#[test]
+fn what_is_turned_in_its_own_box_stays_there() {
+    let (d, _) = drawing(
+        "<style>.t { transform-box: fill-box; transform-origin: center; transform: rotate(0.5turn) }\
+         .s { transform-box: fill-box; transform: scale(200%) }</style>\
+         <g transform='translate(5 0)'><g class='t'><path d='M10 10L30 50' stroke='red'/></g>\
+         <path class='s' d='M10 10L30 50' stroke='red' stroke-width='2'/></g>",
+    );
+    assert_eq!(ends(&d), [[[35.0, -50.0], [15.0, -10.0]], [[15.0, -10.0], [55.0, -90.0]]]);
+    assert_eq!(d.strokes[1].width, Some(4.0));
+}
+
+#[test]
+fn what_a_mask_takes_away_as_a_whole_is_left_out_and_said() {
+    let (d, w) = drawing(
+        "<mask id='m'><rect width='100' height='100' fill='black'/><circle cx='20' cy='20' r='10' fill='white'/></mask>\
+         <g mask='url(#m)'><path d='M15 15L25 25' stroke='red'/><path d='M60 60L90 90' stroke='red'/></g>",
+    );
+    assert_eq!(ends(&d), [[[15.0, -15.0], [25.0, -25.0]]]);
+    assert!(w.iter().any(|w| w.contains("clipped away (1)")), "{w:?}");
+}
