@@ -22,6 +22,7 @@ mod replay;
 mod scans;
 mod shape;
 mod signals;
+mod structure;
 mod times;
 mod tools;
 mod truth;
