@@ -99,7 +99,8 @@ impl Joints {
         let bearer = c.parent.map_or(0.0, |p| cylinders[p].radius);
         let whole = c.ends[0].distance(c.ends[1]);
         // Small gaps of an axis close at its next place.
-        let is_gap = if link == Link::Follows { apart > 0.5 * whole } else { apart > GAP * bearer };
+        let least = if link == Link::Follows { 0.5 * whole } else { GAP * bearer };
+        let is_gap = apart > least.max(SNAP * whole);
         let base_radius = radius_at(0.0);
         let mut add = |this: &mut Self, last: usize, at: DVec3, radius: f64| {
             let joint = Joint {
@@ -112,7 +113,7 @@ impl Joints {
             link = Link::Follows;
             this.push(joint)
         };
-        if is_gap && c.parent.is_some() && apart > 0.0 {
+        if is_gap && c.parent.is_some() {
             last = add(self, last, c.ends[0], radius_at(0.0));
         }
         let foot = last;

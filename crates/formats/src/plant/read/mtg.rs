@@ -123,6 +123,8 @@ struct Margin {
 struct Graph {
     vertices: Vec<Vertex>,
     symbols: Vec<String>,
+    /// The number of each symbol.
+    known: BTreeMap<String, usize>,
     said: (Option<f64>, Option<UpAxis>),
 }
 
@@ -327,8 +329,9 @@ impl Graph {
             let (what, advice) = ("the number of entities", "split the file");
             return Err((line, FileFault::TooMuch { what, limit: LIMITS.joints as u64, advice }));
         }
-        let symbol = self.symbols.iter().position(|s| s == step.symbol).unwrap_or_else(|| {
+        let symbol = self.known.get(step.symbol).copied().unwrap_or_else(|| {
             self.symbols.push(step.symbol.to_owned());
+            self.known.insert(step.symbol.to_owned(), self.symbols.len() - 1);
             self.symbols.len() - 1
         });
         self.vertices.push(Vertex { symbol, scale, edge: step.edge, hung_on, whole, row: None, line });

@@ -37,13 +37,17 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     let inward = Inward::new(spec, said);
     let meshes = Meshes::read(&document);
     let mut topology = Topology { cylinders: Vec::new(), organs: Vec::new(), entries: 0 };
-    topology.read(&document, &meshes, &inward, is_own)?;
+    let placed = |(at, fault): Fault| {
+        let line = if at > 0 { document.text_pos_at(at).row as usize } else { 0 };
+        (line, fault)
+    };
+    topology.read(&document, &meshes, &inward, is_own).map_err(placed)?;
     if topology.cylinders.is_empty() {
         let advice = "export the plant with its geometry: each internode needs a mesh and a matrix";
         return Err(fault_at(0, "there is no internode with a geometry in it", advice));
     }
-    let (joints, ends) = joined(&topology.cylinders)?;
-    let mut built = build(&joints)?;
+    let (joints, ends) = joined(&topology.cylinders).map_err(placed)?;
+    let mut built = build(&joints).map_err(placed)?;
     let mut shapes: BTreeMap<usize, Shapes> = BTreeMap::new();
     let mut added = 0_u64;
     for (bearer, found) in &topology.organs {
@@ -207,10 +211,11 @@ impl Topology {
         let mut ends: BTreeMap<usize, usize> = BTreeMap::new();
         for node in document.descendants().filter(is_entry) {
             self.entries += 1;
-            let line = || document.text_pos_at(node.range().start).row as usize;
+            // Its line is sought only for messages: that goes through the whole text.
+            let at = node.range().start;
             if self.entries > LIMITS.joints as u64 {
                 let (what, advice) = ("the number of elements", "split the file into one for each plant");
-                return Err((line(), FileFault::TooMuch { what, limit: LIMITS.joints as u64, advice }));
+                return Err((at, FileFault::TooMuch { what, limit: LIMITS.joints as u64, advice }));
             }
             let above = node.parent().filter(is_entry);
             let follows = node.has_tag_name("follow");
@@ -256,10 +261,10 @@ impl Topology {
                 parent: place.cylinder,
                 link,
                 kind: own.unwrap_or(AxisKind::Branch),
-                line: line(),
+                line: at,
                 ..cylinder(geometry, meshes, inward).ok_or_else(|| {
                     fault_at(
-                        line(),
+                        at,
                         "the matrix of the internode is none of 12 numbers, or its mesh is missing",
                         "export it again",
                     )

@@ -192,7 +192,8 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
 }
 
 struct Table {
-    columns: Vec<Column>,
+    /// Where the columns are that are read.
+    places: Vec<(Column, usize)>,
     separator: Separator,
     has_id: bool,
     has_branch: bool,
@@ -219,14 +220,16 @@ impl Table {
             return Err(fault_at(line, format!("there is no column {name}"), advice));
         }
         let [has_id, has_branch, has_extension] = [Column::Id, Column::Branch, Column::Extension].map(has);
-        Ok(Self { columns, separator, has_id, has_branch, has_extension, has_end })
+        let places = columns.into_iter().enumerate().filter(|(_, c)| *c != Column::Other);
+        let places = places.map(|(at, column)| (column, at)).collect();
+        Ok(Self { places, separator, has_id, has_branch, has_extension, has_end })
     }
 
     fn row(&self, line: &str, number: usize, before: usize) -> Result<Row, Fault> {
         let cells = self.separator.split(line);
         let of = |wanted: Column| {
-            let at = self.columns.iter().position(|c| *c == wanted)?;
-            self.separator.number(cells.get(at)?)
+            let (_, at) = self.places.iter().find(|(c, _)| *c == wanted)?;
+            self.separator.number(cells.get(*at)?)
         };
         let triple = |of_axis: fn(usize) -> Column| [0, 1, 2].map(|k| of(of_axis(k)));
         let advice = "give every cylinder a place: three numbers for its start, and for its end or its axis and length";
