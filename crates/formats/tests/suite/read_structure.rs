@@ -376,9 +376,14 @@ fn a_digitised_plant_of_our_own_is_read() {
     let p = back(&std::fs::read(path).unwrap(), StructureFormat::Mtg, &spec).plants.remove(0);
     assert_eq!(p.axes.len(), 3);
     let ys: Vec<f64> = p.axis_points(AxisId::new(0)).iter().map(|q| q.y).collect();
-    assert_eq!(ys, [0.0, 0.24, 0.47, 0.61, 0.655].map(|y: f64| y));
+    assert_eq!(ys.len(), 5);
+    for (y, expected) in ys.iter().zip([0.0, 0.24, 0.47, 0.61, 0.655]) {
+        assert!((y - expected).abs() < 1e-12, "{ys:?}");
+    }
     let bearers: Vec<f64> =
         p.axes.iter().filter_map(|a| a.bearer).map(|b| p.nodes.position[b.index()].y).collect();
-    assert_eq!(bearers, [0.24, 0.47]);
+    for (y, expected) in bearers.iter().zip([0.24, 0.47]) {
+        assert!((y - expected).abs() < 1e-12, "{bearers:?}");
+    }
     assert!((p.nodes.radius_m[0] - 0.02).abs() < 1e-12);
 }

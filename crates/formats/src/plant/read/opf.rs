@@ -184,6 +184,7 @@ fn organ_of(class: &str) -> Option<OrganKind> {
 
 fn axis_of(name: &str) -> Option<AxisKind> {
     Some(match name {
+        "trunk" | "branch" => AxisKind::Branch,
         "twig" => AxisKind::Twig,
         "stem" => AxisKind::Stem,
         "petiole" => AxisKind::Petiole,
