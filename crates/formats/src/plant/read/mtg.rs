@@ -107,7 +107,9 @@ pub(super) fn read(text: &str, spec: &StructureSpec, report: &mut Report) -> Res
     }
     built.tally.entries = graph.vertices.len() as u64;
     let nodes = built.nodes.iter().filter(|n| n.is_some()).count() as u64;
-    built.tally.used = nodes + added;
+    // Of a margin all points are in its blade.
+    let around: u64 = margins.iter().map(|m| m.points.len() as u64 - 1).sum();
+    built.tally.used = (nodes + added + around).min(built.tally.entries);
     built.tally.unit_said = graph.said.0.is_some();
     Ok(built)
 }
