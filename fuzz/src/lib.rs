@@ -36,6 +36,8 @@ pub const TARGETS: [(&str, Target); 26] = [
     ("cloud", readers::cloud),
     ("las", readers::las),
     ("marks", readers::marks),
+    ("structure", readers::structure),
+    ("sheet", readers::sheet),
     ("vein_graph", readers::vein_graph),
     ("project", readers::project),
     ("law", readers::law),

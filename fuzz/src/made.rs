@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use burgeon::bloom::{
     self, BloomError, GrowthLaw, LawSpec, Motion, MotionSpec, Offset, RegisterSpec, ScanOrgan, Series, Stage,
 };
-use burgeon::formats::read_growth;
+use burgeon::formats::{GrowthSpec, read_growth};
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{self, Drawing, Stroke, StrokeMode};
 use burgeon::plant::Plant;
@@ -13,7 +13,7 @@ use burgeon::shape::{AxisKey, Context, Destination, EditsFile, HandEdit, Mirror,
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    Budget, Counted, Evaluator, Report, Run, Seed, SketchOptions, Stopped, TreeOptions, Unit, make_tree,
+    Budget, Counted, Evaluator, Report, Run, Seed, SketchOptions, Stopped, TreeOptions, make_tree,
     read_tree_spec, reading as readings, sketch,
 };
 
@@ -249,7 +249,7 @@ pub fn law_after(bytes: &[u8]) -> bool {
 
 /// The laws of a growth table; none for what is none.
 fn fitted(bytes: &[u8]) -> Option<GrowthLaw> {
-    let mut rows = read_growth(bytes, Unit::Metre).ok()?.rows;
+    let mut rows = read_growth(bytes, &GrowthSpec::default()).ok()?.rows;
     rows.truncate(BOUNDS.rows);
     let mut series: std::collections::BTreeMap<String, Vec<(f64, f64)>> = std::collections::BTreeMap::new();
     for row in rows {

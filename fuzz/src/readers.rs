@@ -1,14 +1,15 @@
 //! Any bytes as a file of one format: what is read is sound and can be written, or there is an error that says something.
 
+use burgeon::Report;
 use burgeon::bloom::{self, GrowthLaw, Quantity};
 use burgeon::document;
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ReadMarks, SideFile,
-    is_rays, read_cloud, read_drawings, read_growth, read_marks, read_model, read_rays, read_vein_graph,
-    write_cloud_ply, write_drawing, write_glb,
+    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, GrowthSpec, MarksAxes, ModelFormat, ReadMarks,
+    SideFile, StructureFormat, StructureSpec, is_rays, read_cloud, read_drawings, read_growth, read_marks,
+    read_model, read_rays, read_structure, read_vein_graph, read_xlsx, write_cloud_ply, write_drawing,
+    write_glb,
 };
 use burgeon::mesh::MeshFault;
-use burgeon::{Report, Unit};
 
 use super::refused;
 
@@ -95,9 +96,42 @@ fn read_any_cloud(bytes: &[u8], format: CloudFormat) -> bool {
     }
 }
 
+/// The structure of plants in each of its formats: what is read is sound and can be measured.
+pub fn structure(bytes: &[u8]) -> bool {
+    let mut any = false;
+    for format in StructureFormat::ALL {
+        match read_structure(bytes, format, "fuzz", &StructureSpec::default(), &mut Report::default()) {
+            Ok(read) => {
+                for plant in &read.plants {
+                    assert_eq!(plant.validate().next(), None, "what was read is sound");
+                    assert!(plant.measure().height_m.is_finite(), "it can be measured");
+                }
+                any = true;
+            }
+            Err(e) => {
+                refused(&e);
+            }
+        }
+    }
+    any
+}
+
+/// A workbook of a spreadsheet, and the growth table in it.
+pub fn sheet(bytes: &[u8]) -> bool {
+    match read_xlsx(bytes, None) {
+        Ok(read) => {
+            if let Err(e) = read_growth(read.text.as_bytes(), &GrowthSpec::default()) {
+                refused(&e);
+            }
+            true
+        }
+        Err(e) => refused(&e),
+    }
+}
+
 /// Marks or chief veins of a leaf, and a growth table.
 pub fn marks(bytes: &[u8]) -> bool {
-    let any = match read_growth(bytes, Unit::Metre) {
+    let any = match read_growth(bytes, &GrowthSpec::default()) {
         Ok(read) => {
             let finite = read.rows.iter().all(|r| r.day.is_finite() && r.size >= 0.0 && r.size.is_finite());
             assert!(finite, "days and sizes are numbers");

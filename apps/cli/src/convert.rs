@@ -1,19 +1,19 @@
-//! `burgeon convert`: models to models, drawings to drawings.
+//! `burgeon convert`: models to models, drawings to drawings, the structure of plants to structure and models.
 
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, Room, read_drawings,
-    write_cloud_ply, write_drawing, write_svg,
+    CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, Room, StructureFormat,
+    read_drawings, write_cloud_ply, write_drawing, write_svg,
 };
-use burgeon::mesh::PointCloud;
-use burgeon::{ItemReport, Report, RunReport};
+use burgeon::mesh::{Model, PointCloud};
+use burgeon::{ItemReport, Report, RunReport, Seed, StructureModel, StructureOptions, Warning};
 
-use crate::args::{ConvertArgs, PackWord};
+use crate::args::{ConvertArgs, PackWord, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{inputs, picture, report, say};
+use crate::{inputs, picture, report, say, structure};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -27,12 +27,18 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         Opened::Points(cloud) => return points(args, cloud, outputs, &machine),
         Opened::Other(input, kind) => (input, kind),
     };
+    if let Kind::Structure(format) = kind {
+        return structure_file(args, (input, format), outputs, &machine);
+    }
+    args.given.refuse(&["plant", "thickness_unit"], "files of structure", "it is no such file")?;
     check_used(args, kind)?;
     let is = |wanted: &str| files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case(wanted));
     let to_drawing = is("json") || is("svg");
     let mut item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &mut outputs, &machine)?,
         (Kind::Project, true) => project(args, input, &mut outputs, &machine)?,
+        // It is written above.
+        (Kind::Structure(_), _) => return Err(Failure::Bug("the structure of a plant is no model".into())),
         (Kind::Model(_), false) => model(args, input, kind, &mut outputs, &machine)?,
         (Kind::Drawing(_), false) => {
             return Err(Failure::at(
@@ -65,7 +71,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
         let what = match kind {
             Kind::Model(_) => say::counted(item.counts.triangles, "triangle", "triangles"),
-            Kind::Drawing(_) | Kind::Project => format!("drawing \"{}\"", item.name),
+            Kind::Drawing(_) | Kind::Project | Kind::Structure(_) => format!("drawing \"{}\"", item.name),
         };
         say::line(&format!("{}: {what}; {:.0} ms", item.output, item.timings_ms.total));
     }
@@ -81,7 +87,7 @@ fn model(
 ) -> Outcome<ItemReport> {
     let format = files::plan_model(outputs, &args.output)?;
     args.given.only_if_holds(format.holds(Room::Packing), &["pack"], Room::Packing)?;
-    let read_axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
+    let read_axes = read_axes(args)?;
     let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
     outputs.check()?;
@@ -102,6 +108,87 @@ fn model(
     let mut item = picture::model_item(&model, &args.output, &warnings);
     item.timings_ms.add_io(read_ms, write_ms);
     Ok(item)
+}
+
+/// Axes and unit of a model or a cloud that is read.
+fn read_axes(args: &ConvertArgs) -> Outcome<ExportSpec> {
+    let unit = match args.structure.in_unit {
+        None => args.axes.unit,
+        Some(unit) => unit.unit().ok_or_else(|| {
+            Failure::Bad("--in-unit: only files of structure have this unit; give m, cm or mm".into())
+        })?,
+    };
+    Ok(files::axes(args.structure.in_up.or(args.axes.up), unit))
+}
+
+/// Converts the structure of a plant: to structure, where it stays in its place, or to a model.
+fn structure_file(
+    args: &ConvertArgs,
+    (input, format): (files::Input, StructureFormat),
+    mut outputs: Outputs,
+    machine: &Machine,
+) -> Outcome {
+    let written = files::plan_plant(&mut outputs, &args.output, 0)?;
+    let is_model = matches!(written, PlantFormat::Model(_));
+    args.given.check_picture(args.png.is_some(), &args.picture)?;
+    args.given.check_axes(written.holds(Room::Axes))?;
+    args.given.only_if_holds(written.holds(Room::Packing), &["pack"], Room::Packing)?;
+    let mut told = Report::default();
+    let (read, read_ms) =
+        machine.timed(|| structure::read(&args.input, input, format, &args.structure.spec(), &mut told));
+    let (mut plant, tally) = structure::choose(&args.input, read?, args.plant.as_deref())?;
+    outputs.check()?;
+    machine.cancel.check()?;
+    let mut item = ItemReport { name: plant.name.clone(), ..ItemReport::default() };
+    let mut model = Model::default();
+    if is_model || args.png.is_some() {
+        let (options, seed) = (StructureOptions::default(), Seed::new(args.seed));
+        let copy = plant.clone();
+        let StructureModel { made, foot } =
+            structure::make(&args.input, (copy, &tally), &options, seed, machine)?;
+        if is_model {
+            plant = made.plant;
+            told.warnings.extend(structure::moved(foot).map(|message| Warning {
+                code: "moved",
+                message,
+                fields: vec![],
+            }));
+        }
+        (model, item) = (made.model, made.item);
+    } else {
+        item.warnings = structure::doubts(&plant, &tally);
+    }
+    item.output = args.output.display().to_string();
+    item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
+    let goal = Goal { packing: args.pack.map(PackWord::packing), ..Goal::new("-o", &args.output) };
+    let cache = &mut PngCache::new();
+    let (done, write_ms) = machine
+        .timed(|| files::write_plant(&mut outputs, goal, (&plant, &model), written, &args.axes, cache));
+    item.warnings.extend(done?.iter().map(ToString::to_string));
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
+    }
+    if args.common.reports() {
+        item.plant = Some(plant.measure());
+    }
+    item.timings_ms.add_io(read_ms, write_ms);
+    item.timings_ms.total = machine.whole_ms();
+    let mut run = RunReport::new("convert", args.seed);
+    run.input.path = args.input.display().to_string();
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        let item = &run.items[0];
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
+        let nodes = say::counted(plant.nodes.position.len() as u64, "node", "nodes");
+        let axes = say::counted(plant.axes.len() as u64, "axis", "axes");
+        say::line(&format!("{}: {axes}, {nodes}; {:.0} ms", item.output, item.timings_ms.total));
+    }
+    Ok(())
 }
 
 /// Fails on options that nothing uses.
@@ -170,13 +257,20 @@ fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
         let Some(format) = files::extension(path).and_then(CloudFormat::from_extension) else {
             return other();
         };
+        if format == CloudFormat::Xyz && path.is_file() {
+            let (input, start) = files::peek(path)?;
+            // A table may hold cylinders as well as points.
+            if let Some(structure) = StructureFormat::sniff(&start) {
+                return Ok(Opened::Other(input, Kind::Structure(structure)));
+            }
+        }
         let only = !matches!(format, CloudFormat::Ply | CloudFormat::Obj);
         if !path.is_file() || (!only && files::has_faces(path)) {
             return other();
         }
         (files::open_bytes(path)?, format, only)
     };
-    let axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
+    let axes = read_axes(args)?;
     let mut report = Report::default();
     let (cloud, ms) = machine.timed(|| files::read_cloud(path, (input, format), &axes, &mut report));
     let mut cloud = match cloud {

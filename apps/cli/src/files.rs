@@ -18,7 +18,7 @@ use burgeon::{DrawnLine, Report, RobotError, Run, Spec, Unit, UpAxis, Warning, p
 use companions::{LIMITS, Named, NamedFault};
 use serde::Deserialize;
 
-use crate::args::{AxesArgs, PlantFormat};
+use crate::args::{AxesArgs, PlantFormat, structure_endings};
 use crate::failure::{Failure, Outcome, line_of};
 use crate::inputs;
 use crate::output::{self, Outputs};
@@ -29,6 +29,8 @@ use crate::signals::Stoppable;
 pub(crate) enum Kind {
     Drawing(DrawingFormat),
     Model(ModelFormat),
+    /// The structure of plants.
+    Structure(StructureFormat),
     /// A `.burgeon` file.
     Project,
 }
@@ -53,7 +55,8 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
         let project = e.eq_ignore_ascii_case("burgeon").then_some(Kind::Project);
-        drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model)).or(project)
+        let structure = StructureFormat::from_extension(e).map(Kind::Structure);
+        drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model)).or(structure).or(project)
     });
     if let Some(kind) = known {
         return Ok((open_bytes(path)?, kind));
@@ -73,8 +76,9 @@ pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
         Failure::at(
             path,
             format_args!(
-                "is neither a drawing ({drawings}), nor a project (.burgeon), nor a model ({models}); give the file the \
-                 extension of its format"
+                "is neither a drawing ({drawings}), nor a project (.burgeon), nor a model ({models}), nor the structure of a \
+                 plant ({}); give the file the extension of its format",
+                structure_endings()
             ),
         )
     })
@@ -86,7 +90,8 @@ pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
     // Other programs keep archives, too.
     let other = Foreign::sniff(start).is_some_and(|f| !matches!(f, Foreign::Project | Foreign::Zip));
     let project = (document::is_project(start) && !other).then_some(Kind::Project);
-    drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or(project)
+    let structure = || StructureFormat::sniff(start).map(Kind::Structure);
+    drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or_else(structure).or(project)
 }
 
 /// The format of standard input that is points alone. An OBJ may have its faces anywhere: it is taken for a model.
@@ -303,6 +308,13 @@ pub(crate) fn read_opened_model(
                 ),
             ));
         }
+        Kind::Structure(format) => {
+            let name = format.name();
+            let line = format_args!(
+                "is the structure of a plant ({name}), not a model; `burgeon shape` makes a model of it"
+            );
+            return Err(Failure::at(path, line));
+        }
         Kind::Project => {
             return Err(Failure::at(path, "is a project, not a model; `burgeon sketch` makes a model of it"));
         }
@@ -402,6 +414,11 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
 
 /// The format of a plant's file name, if we write it.
 pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
+    // A table of cylinders has an ending of two words, as a table may be anything.
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    if name.ends_with(&format!(".{}", StructureFormat::Qsm.extension())) {
+        return Ok(PlantFormat::Structure(StructureFormat::Qsm));
+    }
     match extension(path).and_then(PlantFormat::from_extension) {
         Some(format @ (PlantFormat::Structure(_) | PlantFormat::Robot(_))) => Ok(format),
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),

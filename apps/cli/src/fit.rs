@@ -1,19 +1,16 @@
 //! `burgeon bloom fit`: growth laws from scans of several days, or from a growth table.
 
-use std::collections::BTreeMap;
-
-use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Offset, Quantity, RegionLaw, Rival, Series, Trial};
+use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Quantity, RegionLaw, Rival, Trial};
 use burgeon::bloom::{MotionSpec, RegisterSpec, ShapeError};
-use burgeon::formats::read_growth;
 use burgeon::glam::DVec3;
-use burgeon::{RunReport, Seed, Warning, check_law};
+use burgeon::{RunReport, Seed, check_law};
 use serde::Serialize;
 
 use crate::args::FitArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{checks, files, poses, report, say, stages};
+use crate::{checks, files, poses, report, say, stages, table};
 
 /// A law as the report tells it, lengths in metres.
 #[derive(Debug, Serialize)]
@@ -123,18 +120,41 @@ struct FitReport {
     poses: Vec<poses::PoseReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     leave_one_out: Option<Vec<TrialReport>>,
+    /// Whether groups grow alike; of a growth table with --by.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    groups: Option<table::GroupReport>,
 }
 
 /// What was read and fitted.
-struct Fitted {
-    law: GrowthLaw,
-    warnings: Vec<String>,
-    stages: Vec<stages::StageReport>,
-    poses: Vec<poses::PoseReport>,
-    trials: Option<Vec<Trial>>,
-    offset_m: Option<[f64; 3]>,
-    read_ms: f64,
-    fit_ms: f64,
+pub(crate) struct Fitted {
+    pub(crate) law: GrowthLaw,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) stages: Vec<stages::StageReport>,
+    pub(crate) poses: Vec<poses::PoseReport>,
+    pub(crate) trials: Option<Vec<Trial>>,
+    pub(crate) offset_m: Option<[f64; 3]>,
+    pub(crate) read_ms: f64,
+    /// What tells groups apart.
+    pub(crate) groups: Option<table::GroupReport>,
+    pub(crate) fit_ms: f64,
+}
+
+impl Fitted {
+    /// Laws of a table, which has no scans.
+    pub(crate) fn of_law(law: GrowthLaw, warnings: Vec<String>, fit_ms: f64) -> Self {
+        let (stages, poses) = (vec![], vec![]);
+        Self {
+            law,
+            warnings,
+            stages,
+            poses,
+            trials: None,
+            offset_m: None,
+            read_ms: 0.0,
+            fit_ms,
+            groups: None,
+        }
+    }
 }
 
 pub(crate) fn fit(args: &FitArgs) -> Outcome {
@@ -145,9 +165,9 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;
-    let table = files::extension(&args.input)
-        .is_some_and(|e| ["csv", "tsv"].iter().any(|known| e.eq_ignore_ascii_case(known)));
-    let fitted = if table { of_table(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
+    let is_table = files::extension(&args.input)
+        .is_some_and(|e| ["csv", "tsv", "xlsx"].iter().any(|known| e.eq_ignore_ascii_case(known)));
+    let fitted = if is_table { table::fit(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
     let law = &fitted.law;
     let checked = check_law(law);
     let text = serde_json::to_string_pretty(law)
@@ -180,6 +200,7 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         stages: fitted.stages,
         poses: fitted.poses,
         leave_one_out: fitted.trials.as_ref().map(|t| t.iter().map(TrialReport::from).collect()),
+        groups: fitted.groups,
     };
     report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
@@ -188,12 +209,15 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         report.poses.iter().flat_map(poses::PoseReport::lines).for_each(|l| say::line(&l));
         tell_laws(law);
         fitted.trials.iter().flatten().for_each(tell_trial);
+        report.groups.iter().for_each(|g| say::line(&g.line()));
         say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
     }
     Ok(())
 }
 
 fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome<Fitted> {
+    let options = ["plant", "size", "by", "dates", "sheet"];
+    args.given.refuse(&options, "growth tables", "scans are fitted")?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let (loaded, read_ms) = machine.timed(|| {
         machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), machine))
@@ -232,80 +256,18 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
         trials: trials.transpose().map_err(Failure::bloom(&args.input))?,
         read_ms,
         fit_ms,
+        groups: None,
     })
 }
 
-/// Laws of a growth table: one for each organ of each plant.
-fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
-    let given = &args.given;
-    let this = "a growth table has neither parts nor shapes";
-    given.refuse(&["regions", "leave_one_out", "seed", "up"], "scans", this)?;
-    let (read, read_ms) = machine.timed(|| {
-        let input = files::open_bytes(&args.input)?;
-        read_growth(input, args.axes.unit).map_err(|e| Failure::at(&args.input, e))
-    });
-    let mut read = read?;
-    if read.unit.is_none() && !given.has("unit") {
-        let most = read.rows.iter().map(|r| r.size).fold(0.0, f64::max);
-        read.warnings.push(Warning {
-            code: "unit-taken",
-            message: format!(
-                "no unit is said: sizes were taken for metres, the largest for {most} m. Write a line `# unit: mm`, put the unit \
-                 into the heading (height_cm), or say --unit"
-            ),
-            fields: Vec::new(),
-        });
-    }
-    let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for row in read.rows {
-        let name = match (row.organ.is_empty(), row.plant.is_empty()) {
-            (true, true) => "plant".to_owned(),
-            (false, true) => row.organ,
-            // The number last: what is before it is the kind.
-            (true, false) => format!("plant {}", row.plant),
-            (false, false) => format!("plant {}: {}", row.plant, row.organ),
-        };
-        let place = *places.entry(name).or_insert_with_key(|name| {
-            series.push((name.clone(), vec![]));
-            series.len() - 1
-        });
-        series[place].1.push((row.day, row.size));
-    }
-    let mut warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
-    let mut able = Vec::new();
-    for (name, mut rows) in series {
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some(twice) = rows.windows(2).find(|w| w[0].0 >= w[1].0) {
-            let line = format!(
-                "{name} has two sizes on day {}; give one, or a column plant that tells them apart",
-                twice[0].0
-            );
-            return Err(Failure::at(&args.input, line));
-        }
-        if rows.len() < 3 {
-            warnings.push(format!(
-                "{name} has {}: a law needs 3",
-                say::counted(rows.len() as u64, "size", "sizes")
-            ));
-        }
-        let (days, values) = rows.into_iter().unzip();
-        able.push((name, Series { days, values }));
-    }
-    let (law, fit_ms) =
-        machine.timed(|| bloom::fit_sizes(&files::stem(&args.input), &able, Offset::Auto, &machine.run()));
-    let law = law.map_err(Failure::bloom(&args.input))?;
-    let (stages, poses) = (vec![], vec![]);
-    Ok(Fitted { law, warnings, stages, poses, trials: None, offset_m: None, read_ms, fit_ms })
-}
-
 fn tell_laws(law: &GrowthLaw) {
+    let time = law.time.word();
     for l in &law.laws {
         let mm = |x: f64| format!("{:.3} mm", x * 1e3);
         let error = |x: Option<f64>| x.map_or_else(|| "unknown".to_owned(), mm);
         let what = format!("{} region {} {}", l.organ, l.region, l.axis.word());
         let rivals = format!(
-            "each day predicted by the others: {} off, by a straight line {}, by the day before {}",
+            "each {time} predicted by the others: {} off, by a straight line {}, by the {time} before {}",
             error(l.loo_rmse),
             error(l.straight_rmse),
             error(l.last_rmse)
@@ -319,7 +281,7 @@ fn tell_laws(law: &GrowthLaw) {
                 |end| format!("{:.3}{} mm at the end", end * 1e3, se(0, 1e3)),
             );
             say::line(&format!(
-                "{what}: {}, {:.3}{} mm on day {}, {end}, r {:.4}{} a day, R2 {:.3}; {rivals}",
+                "{what}: {}, {:.3}{} mm on {time} {}, {end}, r {:.4}{} a {time}, R2 {:.3}; {rivals}",
                 l.form.word(),
                 l.value(0.0) * 1e3,
                 se(1, 1e3),
@@ -335,7 +297,7 @@ fn tell_laws(law: &GrowthLaw) {
                 _ => "a straight line",
             };
             say::line(&format!(
-                "{what}: {} days determine no law; {baseline} is the best guess: {:.3} mm and {change:+.3} mm by the last day; {rivals}",
+                "{what}: {} {time}s determine no law; {baseline} is the best guess: {:.3} mm and {change:+.3} mm by the last {time}; {rivals}",
                 l.days.len(),
                 l.value(0.0) * 1e3
             ));

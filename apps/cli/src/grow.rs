@@ -253,6 +253,15 @@ fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<O
     path.map(|p| crate::leaf_data::template_of(&p, args.seed, machine)).transpose()
 }
 
+/// A species whose leaves a plant that did not grow by it gets (`--leaves`).
+pub(crate) fn read_leaves(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
+    let spec = read_spec(what, told)?;
+    if spec.bare || spec.blade.file.is_some() {
+        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
+    }
+    Ok(spec)
+}
+
 /// A preset by its key, or a file.
 pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     let key = what.to_str().unwrap_or_default();

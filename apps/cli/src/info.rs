@@ -2,16 +2,20 @@
 
 use std::path::Path;
 
+use burgeon::Report;
 use burgeon::formats::Room;
-use burgeon::formats::{DrawingFormat, DrawingSummary, ModelSummary, read_drawings};
+use burgeon::formats::{
+    DrawingFormat, DrawingSummary, ModelSummary, ReadStructure, StructureTally, read_drawings,
+};
+use burgeon::plant::Measures;
 use serde::Serialize;
 
-use crate::args::InfoArgs;
+use crate::args::{InfoArgs, StructureArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{report, say};
+use crate::{report, say, structure};
 
 /// Drawings of a file that are listed one by one.
 const LISTED: usize = 20;
@@ -22,7 +26,15 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &[&args.input])?;
     let (input, kind) = files::open(&args.input)?;
-    args.given.check_axes(matches!(kind, Kind::Model(format) if format.holds(Room::Axes)))?;
+    let has_axes = match kind {
+        Kind::Model(format) => format.holds(Room::Axes),
+        Kind::Structure(_) => true,
+        Kind::Drawing(_) | Kind::Project => false,
+    };
+    args.given.check_axes(has_axes)?;
+    if !matches!(kind, Kind::Structure(_)) {
+        StructureArgs::refuse(&args.given, "it is no such file")?;
+    }
     // A pipe has no size.
     let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let (format, content) = match kind {
@@ -30,6 +42,12 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
             let axes = files::axes(args.axes.up, args.axes.unit);
             let (model, format, warnings) = files::read_opened_model(&args.input, input, kind, &axes)?;
             (format.word(), Content::Model(ModelSummary::of(&model, &warnings)))
+        }
+        Kind::Structure(format) => {
+            let mut told = Report::default();
+            let spec = args.structure.spec_of_input(&args.axes, &args.given);
+            let read = structure::read(&args.input, input, format, &spec, &mut told)?;
+            (format.word(), Content::Structure(Structure::new(&read, &told)))
         }
         Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, input, format)?)),
         Kind::Project => {
@@ -77,6 +95,73 @@ struct Info {
 enum Content {
     Model(ModelSummary),
     Drawings(Drawings),
+    Structure(Structure),
+}
+
+/// The structure of plants.
+#[derive(Serialize)]
+struct Structure {
+    /// Rows, vertices or elements, and those of which something is in a plant.
+    entries: u64,
+    used: u64,
+    plants: Vec<MeasuredPlant>,
+    warnings: Vec<String>,
+}
+
+/// One plant of a file of structure, as it stands there.
+#[derive(Serialize)]
+struct MeasuredPlant {
+    name: String,
+    axes: usize,
+    nodes: usize,
+    organs: usize,
+    measures: Measures,
+}
+
+impl Structure {
+    fn new(read: &ReadStructure, told: &Report) -> Self {
+        let mut warnings: Vec<String> = told.warnings.iter().map(ToString::to_string).collect();
+        let alone = read.plants.len() == 1;
+        let tally = if alone { read.tally } else { StructureTally::default() };
+        warnings.extend(read.plants.iter().flat_map(|plant| structure::doubts(plant, &tally)));
+        warnings.truncate(WARNINGS);
+        let plants = read.plants.iter().map(|plant| MeasuredPlant {
+            name: plant.name.clone(),
+            axes: plant.axes.len(),
+            nodes: plant.nodes.position.len(),
+            organs: plant.organs.len(),
+            measures: plant.measure(),
+        });
+        let StructureTally { entries, used, .. } = read.tally;
+        Self { entries, used, plants: plants.collect(), warnings }
+    }
+
+    fn lines(&self, out: &mut Vec<String>) {
+        let count = |n: usize, one, many| say::counted(n as u64, one, many);
+        let plants = count(self.plants.len(), "plant", "plants");
+        let [entries, used] = [self.entries, self.used].map(say::grouped);
+        out.push(format!("  {plants}; {used} of {entries} entries used"));
+        for plant in self.plants.iter().take(LISTED) {
+            let m = &plant.measures;
+            let axes = count(plant.axes, "axis", "axes");
+            let nodes = count(plant.nodes, "node", "nodes");
+            let organs = count(plant.organs, "organ", "organs");
+            let dbh = m.dbh_m.map_or_else(String::new, |d| format!(", DBH {} m", short(d)));
+            let name = &plant.name;
+            out.push(format!(
+                "  {name}: {axes}, {nodes}, {organs}, up to order {}",
+                m.orders.len().saturating_sub(1)
+            ));
+            let [height, volume, length, area] =
+                [m.height_m, m.wood_volume_m3, m.length_m, m.leaf_area_m2].map(short);
+            out.push(format!(
+                "    {height} m high{dbh}, {volume} m3 of wood in {length} m of branches, {area} m2 of leaves"
+            ));
+        }
+        if self.plants.len() > LISTED {
+            out.push(format!("  and {} more", say::grouped((self.plants.len() - LISTED) as u64)));
+        }
+    }
 }
 
 /// Counts over all drawings of a file, and the first of them.
@@ -222,6 +307,10 @@ impl Info {
             Content::Drawings(d) => {
                 d.lines(&mut out);
                 &d.warnings
+            }
+            Content::Structure(s) => {
+                s.lines(&mut out);
+                &s.warnings
             }
         };
         out.extend(warnings.iter().map(|w| format!("  warning: {w}")));

@@ -46,8 +46,10 @@ mod shape;
 mod signals;
 mod sketch;
 mod stages;
+mod structure;
 mod studio;
 mod sweep;
+mod table;
 
 use std::io::Write as _;
 use std::path::Path;

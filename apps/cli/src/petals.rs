@@ -32,6 +32,7 @@ pub(crate) fn drawing(path: &Path) -> Outcome<(Drawing, SketchOptions)> {
             Ok((read.drawing, SketchOptions::of_plant(plant)))
         }
         Kind::Model(_) => Err(Failure::at(path, "is a model, not a drawing")),
+        Kind::Structure(_) => Err(Failure::at(path, "is the structure of a plant, not a drawing")),
     }
 }
 

@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
-use burgeon::formats::Room;
+use burgeon::formats::{ExportSpec, Room};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, TriMesh};
 use burgeon::render::Picture;
-use burgeon::{Counts, Digest, ItemReport, RunReport, Warning};
+use burgeon::{Counts, Digest, ItemReport, Report, RunReport, Seed, StructureOptions, Warning};
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, StructureArgs};
 use crate::failure::{Failure, Outcome};
+use crate::files::Kind;
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, report, say};
+use crate::{files, report, say, structure};
 
 pub(crate) fn render(args: &RenderArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -21,9 +22,8 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     args.given.check_picture(true, &args.picture)?;
-    let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
-    let (model, format, warnings) = read?;
-    args.given.check_axes(format.holds(Room::Axes))?;
+    let (read, read_ms) = machine.timed(|| model_of(args, &axes, &machine));
+    let (model, warnings) = read?;
     outputs.check()?;
     let spec = args.picture.spec(args.seed);
     let (picture, draw_ms) = machine.timed(|| {
@@ -53,6 +53,27 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
         ));
     }
     Ok(())
+}
+
+/// The model of a file, or of the plant of a file of structure, with what is to be told of it.
+fn model_of(args: &RenderArgs, axes: &ExportSpec, machine: &Machine) -> Outcome<(Model, Vec<Warning>)> {
+    let path = &args.input;
+    let (input, kind) = files::open(path)?;
+    let Kind::Structure(format) = kind else {
+        StructureArgs::refuse(&args.given, "a model is shown")?;
+        args.given.refuse(&["plant"], "files of structure", "a model is shown")?;
+        let (model, format, warnings) = files::read_opened_model(path, input, kind, axes)?;
+        args.given.check_axes(format.holds(Room::Axes))?;
+        return Ok((model, warnings));
+    };
+    let mut told = Report::default();
+    let spec = args.structure.spec_of_input(&args.axes, &args.given);
+    let read = structure::read(path, input, format, &spec, &mut told)?;
+    let (plant, tally) = structure::choose(path, read, args.plant.as_deref())?;
+    let (options, seed) = (StructureOptions::default(), Seed::new(args.seed));
+    let made = structure::make(path, (plant, &tally), &options, seed, machine)?.made;
+    told.warnings.extend(made.item.told);
+    Ok((made.model, told.warnings))
 }
 
 /// Pictures are PNG, whatever the name says: so the name must say it.

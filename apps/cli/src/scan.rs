@@ -73,10 +73,7 @@ struct ScanRun {
 
 /// The options of the search and of the surface, and what was odd in them.
 pub(crate) fn options_of(args: &ScanArgs, told: &mut Report) -> Outcome<ScanTreeOptions> {
-    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, told)).transpose()?;
-    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
-        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
-    }
+    let leaves = args.leaves.as_deref().map(|what| grow::read_leaves(what, told)).transpose()?;
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     Ok(ScanTreeOptions {
         scan: TreeScanSpec { cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },

@@ -4,24 +4,25 @@ use std::path::Path;
 
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, PlantEdit};
-use burgeon::formats::{PngCache, Room, read_drawings};
+use burgeon::formats::{PngCache, Room, StructureFormat, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::skin::SkinSpec;
 use burgeon::{
     BranchRow, FlowerOptions, ItemReport, LevelSpec, Levels, MadePlant, MadeTree, Preset, Report, RunReport,
-    Seed, Stopped, TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_flower, make_tree,
+    Seed, Stopped, StructureModel, StructureOptions, TreeError, TreeOptions, branch_rows, edits_schema,
+    edits_template, make_flower, make_tree,
 };
 
-use crate::args::{PlantFormat, Seen, ShapeArgs};
+use crate::args::{PlantFormat, Seen, ShapeArgs, StructureArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::Kind;
 use crate::levels::{Form, Whole};
 use crate::machine::Machine;
 use crate::materials::Materials;
 use crate::output::Outputs;
-use crate::{bloom, checks, edits, files, grow, inputs, levels, picture, project, report, say};
+use crate::{bloom, checks, edits, files, grow, inputs, levels, picture, project, report, say, structure};
 
 /// A plant of any maker, with its meshes.
 struct Shaped {
@@ -43,7 +44,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         ("--save", args.save.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    let inputs = args.what.iter().chain(&args.edits);
+    let inputs = args.what.iter().chain(&args.edits).chain(&args.leaves);
     let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
     if let Some(path) = &args.schema {
         let text = serde_json::to_string_pretty(&edits_schema())
@@ -121,8 +122,10 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
 /// Fails on options that nothing uses.
 fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
-    let plants =
-        ["what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json"];
+    let plants = [
+        "what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json",
+        "leaves",
+    ];
     let users = "plants that are shaped";
     if args.template {
         given.refuse(&plants, users, "--template prints an example of edits")?;
@@ -148,6 +151,7 @@ fn make(
     machine: &Machine,
 ) -> Outcome<Shaped> {
     if let Some(spec) = bloom::species(what)? {
+        not_structure(args, "a flower is made")?;
         return flower(args, (what, edits), &spec, levels, machine);
     }
     let seed = Seed::new(args.seed.unwrap_or(1));
@@ -158,6 +162,7 @@ fn make(
     let piped = stdin.as_ref().map(|(_, start)| files::sniff(start));
     if is_preset || piped.map_or(is_spec, |kind| kind.is_none()) {
         no_project(args, what)?;
+        not_structure(args, "a tree is grown")?;
         let spec = match stdin {
             Some((input, _)) => grow::spec_of(what, &files::text_of(what, input)?, told)?,
             None => grow::read_spec(what, told)?,
@@ -175,7 +180,13 @@ fn make(
         Some((input, start)) => (input, files::kind_of(what, &start)?),
         None => files::open(what)?,
     };
+    if let (file, Kind::Structure(format)) = opened {
+        return measured(args, (what, edits), (file, format), levels, told, machine);
+    }
+    not_structure(args, "it is no such file")?;
     let (document, id) = match opened {
+        // It is made above.
+        (_, Kind::Structure(_)) => return Err(Failure::Bug("a plant that was read is no document".into())),
         (file, Kind::Drawing(format)) => {
             args.given.refuse(&["plant"], "projects (.burgeon)", "a drawing is one plant")?;
             let mut drawings = read_drawings(file, format, &files::stem(what));
@@ -213,6 +224,43 @@ fn make(
 fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
     let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     Ok(SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.spec() })
+}
+
+/// Options of files of structure are for nothing else, and everything else needs edits.
+fn not_structure(args: &ShapeArgs, this: &str) -> Outcome {
+    StructureArgs::refuse(&args.given, this)?;
+    args.given.refuse(&["leaves"], "files of structure", this)?;
+    if args.edits.is_none() && args.list.is_none() {
+        let line = "--edits EDITS.json is missing: `burgeon shape --template` prints one";
+        return Err(Failure::Bad(line.into()));
+    }
+    Ok(())
+}
+
+/// A plant of a file of structure.
+fn measured(
+    args: &ShapeArgs,
+    (what, edits): (&Path, Vec<PlantEdit>),
+    (file, format): (files::Input, StructureFormat),
+    levels: &LevelSpec,
+    told: &mut Report,
+    machine: &Machine,
+) -> Outcome<Shaped> {
+    let save = "is no project (.burgeon), which --save is for";
+    args.save.as_ref().map_or(Ok(()), |_| Err(Failure::at(what, save)))?;
+    let leaves = args.leaves.as_deref().map(|what| grow::read_leaves(what, told)).transpose()?;
+    let read = structure::read(what, file, format, &args.structure.spec(), told)?;
+    let (plant, tally) = structure::choose(what, read, args.plant.as_deref())?;
+    let seed = Seed::new(args.seed.unwrap_or(1));
+    let options = StructureOptions { leaves, skin: skin_of(args)?, edits };
+    let StructureModel { made, foot } = structure::make(what, (plant, &tally), &options, seed, machine)?;
+    let levels = made.levels(levels, &machine.run()).map_err(|stopped| match stopped {
+        Stopped::Cancelled(_) => Failure::Cancelled,
+        Stopped::OverBudget(much) => Failure::at(what, much),
+    })?;
+    let MadePlant { plant, model, mut item, .. } = made;
+    item.warnings.extend(structure::moved(foot));
+    Ok(Shaped { plant, model, levels, item, seed, edited: None })
 }
 
 /// A flower in full bloom.

@@ -585,6 +585,13 @@ fn open(path: &Path) -> Outcome<Source> {
             path,
             format_args!("is a model ({}), not a drawing; `burgeon render` makes its picture", format.word()),
         )),
+        (_, Kind::Structure(format)) => Err(Failure::at(
+            path,
+            format_args!(
+                "is the structure of a plant ({}), not a drawing; `burgeon shape` makes a model of it",
+                format.name()
+            ),
+        )),
     }
 }
 

@@ -57,5 +57,5 @@ pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,
     map_until_cancelled,
 };
-pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};
+pub use units::{Angle, NotFinite, TimeUnit, Tolerance, Unit, UpAxis};
 pub use words::either;

@@ -112,6 +112,30 @@ impl Unit {
     }
 }
 
+/// The unit in which a table counts time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TimeUnit {
+    /// Days.
+    #[default]
+    Day,
+    /// Weeks.
+    Week,
+    /// Months.
+    Month,
+    /// Years.
+    Year,
+}
+
+crate::words!(TimeUnit { Day = "day", Week = "week", Month = "month", Year = "year" });
+
+impl TimeUnit {
+    /// Whether it is the usual one, which files leave out.
+    pub fn is_day(&self) -> bool {
+        *self == Self::Day
+    }
+}
+
 /// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]

@@ -288,11 +288,15 @@ pub fn fit_shared(
     Ok(Some(fit))
 }
 
+/// How many curves of the grid [`fit_shared`] compares with each value.
+pub(crate) fn curves_of(form: Form, level: bool) -> u64 {
+    grid(form, level, 0.0, 1.0).len() as u64
+}
+
 /// How many curves of the grid [`choose`] compares with each value.
 pub(crate) fn curves_compared() -> u64 {
-    let of = |form, level| grid(form, level, 0.0, 1.0).len() as u64;
-    let laws = Form::LAWS.iter().map(|&form| of(form, false) + of(form, true));
-    laws.sum::<u64>() + of(Form::Straight, true)
+    let laws = Form::LAWS.iter().map(|&form| curves_of(form, false) + curves_of(form, true));
+    laws.sum::<u64>() + curves_of(Form::Straight, true)
 }
 
 /// Rates and times that are looked at first.

@@ -1,6 +1,6 @@
 //! Organs at several days -> growth laws, saved, plotted, and moved to another species.
 
-use base::{CancelToken, Counted, Run};
+use base::{CancelToken, Counted, Run, TimeUnit};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -121,6 +121,9 @@ pub struct GrowthLaw {
     pub first_day: f64,
     /// Days from the first to the last stage, above 0.
     pub span_days: f64,
+    /// What is called a day here and in the laws: of a table of ages in years, a year.
+    #[serde(default, skip_serializing_if = "TimeUnit::is_day")]
+    pub time: TimeUnit,
     /// Regions of each organ.
     pub regions: usize,
     /// Every law.
@@ -153,6 +156,7 @@ impl GrowthLaw {
             name: name.into(),
             first_day: 0.0,
             span_days,
+            time: TimeUnit::Day,
             regions: 1,
             laws: vec![row],
         }
@@ -485,7 +489,8 @@ pub fn fit_stages(
     check_sizes(&rows, run, "give fewer stages, or fewer regions of an organ")?;
     let span_days = stages[stages.len() - 1].day - first_day;
     let laws = fit_rows(rows, span_days, spec.offset, run.cancel)?;
-    Ok(GrowthLaw { schema: LAW_SCHEMA.into(), name: name.to_owned(), first_day, span_days, regions, laws })
+    let (schema, name, time) = (LAW_SCHEMA.into(), name.to_owned(), TimeUnit::Day);
+    Ok(GrowthLaw { schema, name, first_day, span_days, time, regions, laws })
 }
 
 /// Fits a law to each series of sizes: days, increasing strictly, with values in metres. Series of one kind share what
@@ -518,8 +523,8 @@ pub fn fit_sizes(
     let rows: Vec<Measured> = rows.collect();
     check_sizes(&rows, run, "split the table, or give fewer days of each organ")?;
     let laws = fit_rows(rows, last - first_day, offset, run.cancel)?;
-    let (schema, name) = (LAW_SCHEMA.into(), name.to_owned());
-    Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, regions: 1, laws })
+    let (schema, name, time) = (LAW_SCHEMA.into(), name.to_owned(), TimeUnit::Day);
+    Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, time, regions: 1, laws })
 }
 
 /// The kind of an organ: its name without number, plant and what marks it as new (`new-leaf-4` is a `leaf`, and so is

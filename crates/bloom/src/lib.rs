@@ -21,6 +21,7 @@
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
 //! | `coloured` | [`OrganPoints`]: points of a day with their colours |
 //! | `motion` | [`Motion`]: the shape at any day |
+//! | `groups` | [`fit_groups`]: curves of groups of plants, and whether one would do |
 //! | `wanted`, `parts` | [`FlowerSpec`], [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`], [`Cluster`], [`Foliage`]: what can be asked |
 //! | `flower`, `species` | whole flowers that open and wilt, day -> `Plant` |
 //! | `whorl`, `petal` | [`Whorl`]: rings of petals, nested within one another |
@@ -41,6 +42,7 @@ mod errors;
 mod flower;
 mod foliage;
 mod forms;
+mod groups;
 mod kernel;
 mod lattice;
 mod law;
@@ -69,6 +71,7 @@ pub use coloured::OrganPoints;
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
+pub use groups::{Group, GroupTest, Groups, Permuted, fit_groups};
 pub use lattice::{Lattice, Weights};
 pub use law::{
     GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Prediction, Quantity, RegionLaw, Stage, fit_sizes, fit_stages,

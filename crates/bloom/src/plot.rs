@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use base::escaped_xml;
+use base::{TimeUnit, escaped_xml};
 
 use crate::{GrowthLaw, RegionLaw};
 
@@ -10,8 +10,8 @@ const WIDTH: f64 = 300.0;
 const HEIGHT: f64 = 190.0;
 const COLUMNS: usize = 4;
 
-/// All laws as panels of an SVG: measured values as dots, the fit as a line, first and final value, r and R2 beside. Values in mm,
-/// days in the series' own count.
+/// All laws as panels of an SVG: measured values as dots, the fit as a line, first and final value, r and R2 beside, and the band in which
+/// 9 of 10 new measurements lie. Values in mm, times in the series' own count and unit.
 ///
 /// ```
 /// let svg = bloom::plot_svg(&bloom::GrowthLaw::logistic("lily", 6.0, 0.9));
@@ -25,8 +25,9 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
         s,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
          font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"12\" y=\"22\" font-size=\"15\">{}: growth laws (mm by day)</text>\n",
-        escaped_xml(&law.name)
+         <text x=\"12\" y=\"22\" font-size=\"15\">{}: growth laws (mm by {})</text>\n",
+        escaped_xml(&law.name),
+        law.time.word()
     );
     for (i, row) in law.laws.iter().enumerate() {
         let (x, y) = ((i % COLUMNS) as f64 * WIDTH, (i / COLUMNS) as f64 * HEIGHT + 34.0);
@@ -37,14 +38,27 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
 }
 
 /// What a panel says of its law: where it begins and ends, not K and p0 above some constant.
-fn figures(row: &RegionLaw) -> String {
+fn figures(row: &RegionLaw, time: TimeUnit) -> String {
+    let time = time.word();
     let start = row.value(0.0) * 1e3;
     let form = row.form.word();
     match row.final_value() {
-        Some(end) => format!("{form}: {start:.2} to {:.2} r {:.3} R2 {:.3}", end * 1e3, row.law.r, row.r2),
-        None if row.is_determined() => format!("{form}: from {start:.2} r {:.3} R2 {:.3}", row.law.r, row.r2),
+        Some(end) => {
+            format!("{form}: {start:.2} to {:.2} r {:.3} a {time} R2 {:.3}", end * 1e3, row.law.r, row.r2)
+        }
+        None if row.is_determined() => {
+            format!("{form}: from {start:.2} r {:.3} a {time} R2 {:.3}", row.law.r, row.r2)
+        }
         None => format!("not determined ({form})"),
     }
+}
+
+/// Between which values, mm, 9 of 10 new measurements lie on days of the span; nothing where too few values tell.
+fn law_band(law: &GrowthLaw, row: &RegionLaw) -> Vec<(f64, [f64; 2])> {
+    let days = (0..=30).map(|k| law.span_days * f64::from(k) / 30.0);
+    let band: Option<Vec<_>> =
+        days.map(|day| Some((day, row.predict(day).interval?.map(|v| v * 1e3)))).collect();
+    band.unwrap_or_default()
 }
 
 fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
@@ -74,7 +88,7 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
         escaped_xml(&row.organ),
         row.axis.word(),
         y0 + 29.0,
-        figures(row)
+        figures(row, law.time)
     );
     for (v, y) in [(low + pad, bottom - 2.0), (high - pad, top + 8.0)] {
         let _ = writeln!(s, "<text x=\"{:.0}\" y=\"{y:.0}\" text-anchor=\"end\">{v:.2}</text>", left - 4.0);
@@ -87,6 +101,16 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
             px(d),
             bottom + 14.0
         );
+    }
+    let ends = law_band(law, row);
+    if !ends.is_empty() {
+        let upper = ends.iter().map(|&(d, [_, high])| (d, high));
+        let lower = ends.iter().rev().map(|&(d, [low, _])| (d, low));
+        let within = |v: f64| v.clamp(low, high);
+        let around: Vec<String> =
+            upper.chain(lower).map(|(d, v)| format!("{:.1},{:.1}", px(d), py(within(v)))).collect();
+        let _ =
+            writeln!(s, "<polygon points=\"{}\" fill=\"#2a7d3f\" fill-opacity=\"0.14\"/>", around.join(" "));
     }
     let line: Vec<String> = curve.iter().map(|&(d, v)| format!("{:.1},{:.1}", px(d), py(v))).collect();
     let _ = writeln!(

@@ -1,8 +1,9 @@
-//! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
+//! Readers of strokes, readers and writers of models and of the structure of plants, on byte streams: no paths, no file
+//! system.
 //!
 //! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
-//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_structure`]
-//! -> bytes; [`mechanics::Mechanism`] -> [`robot_files`] -> bytes.
+//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; bytes -> [`read_structure`] ->
+//! `plant::Plant` -> [`write_structure`] -> bytes; [`mechanics::Mechanism`] -> [`robot_files`] -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -26,9 +27,10 @@ pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use foreign::Foreign;
 pub use leaves::{
-    GrowthEntry, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadGrowth, ReadMarks,
-    ReadProfile, ReadProfiles, ReadRays, is_rays, marks_template, read_growth, read_leaf_file, read_marks,
-    read_profiles, read_rays, read_vein_graph, write_marks, write_rays,
+    DateOrder, GrowthEntry, GrowthSpec, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph,
+    ReadGrowth, ReadMarks, ReadProfile, ReadProfiles, ReadRays, ReadSheet, is_rays, marks_template,
+    read_growth, read_leaf_file, read_marks, read_profiles, read_rays, read_vein_graph, read_xlsx,
+    write_marks, write_rays,
 };
 pub use model::{
     BesideFile, ExportSpec, FileStems, Level, MAX_MODEL_BYTES, ModelFiles, Morph, NoFile, ObjFiles, Packing,
@@ -37,7 +39,10 @@ pub use model::{
     write_glb_morph, write_glb_packed, write_glb_rigged, write_glb_scene, write_glb_with, write_model,
     write_ply, write_png, write_stl,
 };
-pub use plant::{write_mtg, write_opf, write_qsm, write_structure, write_swc};
+pub use plant::{
+    ReadStructure, StructureError, StructureSpec, StructureTally, read_structure, write_mtg, write_opf,
+    write_qsm, write_structure, write_swc,
+};
 pub use robots::{BodyMesh, robot_files};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};
 pub use table::{

@@ -276,14 +276,14 @@ formats! {
 }
 
 formats! {
-    /// The file formats that hold the structure of a plant, as text; written only.
+    /// The file formats that hold the structure of a plant, as text.
     StructureFormat {
         Mtg = "mtg" {
             name: "MTG",
             endings: &["mtg"],
             media_type: "text/plain",
             about: "Multiscale tree graph: axes, nodes and organs as text",
-            access: Write,
+            access: Both,
             holds: [Axes],
             beside: [],
         }
@@ -292,7 +292,7 @@ formats! {
             endings: &["opf"],
             media_type: "application/xml",
             about: "Open Plant Format: axes, internodes and organs with their meshes",
-            access: Write,
+            access: Both,
             holds: [Axes, OrganMeshes],
             beside: [],
         }
@@ -301,7 +301,7 @@ formats! {
             endings: &["qsm.csv"],
             media_type: "text/csv",
             about: "Quantitative structure model: a table of cylinders",
-            access: Write,
+            access: Both,
             holds: [Axes],
             beside: [],
         }
@@ -310,7 +310,7 @@ formats! {
             endings: &["swc"],
             media_type: "text/plain",
             about: "Skeleton: points with radii, each with the one that it grows from",
-            access: Write,
+            access: Both,
             holds: [Axes],
             beside: [],
         }

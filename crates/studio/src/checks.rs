@@ -5,6 +5,7 @@
 
 use base::{Bound, Check, Report, Severity, ops};
 use bloom::{GrowthLaw, Quantity, RegionLaw};
+use formats::StructureTally;
 use glam::DVec3;
 use growth::{Method, TreeSpec};
 use ink::Ink;
@@ -123,7 +124,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
 const BUCKLING: f64 = 80.1;
 
 /// The names of all checks, which are the codes of their warnings.
-pub const CHECKS: [&str; 30] = [
+pub const CHECKS: [&str; 31] = [
     "nothing-made",
     "size-large",
     "size-small",
@@ -154,6 +155,7 @@ pub const CHECKS: [&str; 30] = [
     "one-organ",
     "laws-undetermined",
     "laws-shrink",
+    "structure-unused",
 ];
 
 /// How a value is shown to people.
@@ -330,6 +332,30 @@ pub(crate) struct Sketched<'a> {
     pub(crate) extent: Option<f64>,
     /// Nobody said what the drawing shows.
     pub(crate) is_guessed: bool,
+}
+
+/// Checks of a plant as it was read from a file of structure. Cost: linear.
+pub fn check_read(plant: &Plant, tally: &StructureTally) -> Report {
+    let mut report = Report::default();
+    check_plant(plant, &mut report);
+    check_structure(tally, &mut report);
+    report
+}
+
+/// Checks of a plant of a file of structure.
+pub(crate) fn check_structure(tally: &StructureTally, report: &mut Report) {
+    if tally.entries == 0 {
+        return;
+    }
+    Test {
+        name: "structure-unused",
+        value: tally.entries.saturating_sub(tally.used) as f64 / tally.entries as f64,
+        bound: Bound::AtMost(PLAUSIBLE.unused_most),
+        figure: Figure::Share,
+        message: "{value} of the entries of the file are in no plant",
+        advice: "they have no place, or no size: export the plant with its geometry",
+    }
+    .tell(report);
 }
 
 /// Checks of a plant of a drawing.

@@ -52,11 +52,11 @@ mod venation;
 pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
-    NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning,
-    brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly, quoted, set_of,
-    sort_by_key, srgb_of_linear,
+    NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, TimeUnit, Told, Unit, UpAxis,
+    Warning, brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly, quoted,
+    set_of, sort_by_key, srgb_of_linear,
 };
-pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law};
+pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law, check_read};
 pub use days::ScannedDays;
 pub use drawn::{DrawnKind, DrawnLine, drawing_of, drawn};
 pub use evaluate::{Evaluator, FrontView, make_from_sketch, make_levels_from_sketch};
@@ -100,9 +100,10 @@ pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
     GUIDED_METHODS, HeightError, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
-    ScanTreeOptions, ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, age_of_height,
-    guided_methods, make_tree, make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec,
-    scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
+    ScanTreeOptions, ScannedTreeError, StructureModel, StructureModelError, StructureOptions, TreeError,
+    TreeEvaluator, TreeOptions, TreeSize, age_of_height, guided_methods, make_from_structure, make_tree,
+    make_tree_from_scan, make_tree_of_plot, method_word, read_tree_spec, scale_to_height, show_obstacles,
+    tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

@@ -1,6 +1,6 @@
 //! `burgeon bloom`.
 
-use burgeon::formats::{ModelFormat, Room};
+use burgeon::formats::{DateOrder, ModelFormat, Room};
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
@@ -49,6 +49,32 @@ pub(crate) struct BloomAtArgs {
     pub(crate) common: CommonArgs,
 }
 
+/// How a growth table is read.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Growth table")]
+pub(crate) struct TableArgs {
+    /// The heading of the column that tells plants apart [default: plant, tree, id or subject].
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) plant: Option<String>,
+    /// The heading of the column of sizes, of a table with several [default: size, length, height and the like].
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) size: Option<String>,
+    /// Fit one curve to each group of plants, as this column tells them, and test whether one would do for all
+    /// (docs/bloom.md).
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) by: Option<String>,
+    /// The order of dates such as 3/4/2024 [default: as one with a day after the twelfth tells].
+    #[arg(long, value_name = "dmy|mdy", value_parser = dates)]
+    pub(crate) dates: Option<DateOrder>,
+    /// The sheet of a workbook [default: the first].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) sheet: Option<String>,
+}
+
+fn dates(word: &str) -> Result<DateOrder, String> {
+    DateOrder::from_word(word).ok_or_else(|| "give dmy or mdy".to_owned())
+}
+
 #[derive(Args, Debug)]
 #[command(after_long_help = "Stages file (TOML):
   name = \"tomato\"
@@ -67,18 +93,20 @@ pub(crate) struct BloomAtArgs {
   # base = [x, y, z]     # where the organ is attached
   # crop = [[x, y, z], [x, y, z]]
 
-Growth table (CSV or TSV): day,size[,organ][,plant], one line a measurement; or a column for each organ or plant, or for each
-day. Days are numbers or dates. Sizes are in --unit, in that of a line `# unit: mm`, or in that of a heading (height_cm).
+Growth table (CSV, TSV or a workbook, .xlsx): day,size[,organ][,plant], one line a measurement; or a column for each organ or
+plant, or for each day. Days are numbers, with the unit of a heading (age_years), or dates. Sizes are in --unit, in that of a line
+`# unit: mm`, or in that of a heading (height_cm).
 
 Examples:
   burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg
   burgeon bloom fit stages.toml -o tomato.law.json --leave-one-out     how far the model is from each day left out
-  burgeon bloom fit lengths.csv -o leaves.law.json --unit mm")]
+  burgeon bloom fit lengths.csv -o leaves.law.json --unit mm
+  burgeon bloom fit trial.xlsx -o trial.law.json --plant Seed --by treatment --plot trial.svg")]
 pub(crate) struct FitArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// The stages file, or a growth table (.csv, .tsv).
+    /// The stages file, or a growth table (.csv, .tsv, .xlsx).
     #[arg(value_name = "STAGES.toml|TABLE.csv")]
     pub(crate) input: PathBuf,
     /// The law: .json.
@@ -93,9 +121,11 @@ pub(crate) struct FitArgs {
     /// Leave each stage out in turn, and print how far the model, no law, the nearest day and straight lines are from it.
     #[arg(long)]
     pub(crate) leave_one_out: bool,
-    /// Seed of the search for the ground.
+    /// Seed of the search for the ground, and of plants that change their groups.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) table: TableArgs,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
     #[command(flatten)]

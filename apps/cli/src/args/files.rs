@@ -1,24 +1,25 @@
 //! `burgeon render`, `convert`, `info` and `studio`.
 
-use burgeon::{Unit, UpAxis};
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::given::Given;
 use super::lists;
-use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, seed, unit_words, up_words};
+use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, seed};
+use super::structure::StructureArgs;
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
   burgeon render daisy.glb -o daisy.png
   burgeon render tree.obj -o tree.png --view turntable --size 1600x900
-  burgeon render tree.glb -o tree.png --background transparent --no-shadow")]
+  burgeon render tree.glb -o tree.png --background transparent --no-shadow
+  burgeon render walnut.mtg -o walnut.png --in-unit cm --thickness-unit mm")]
 pub(crate) struct RenderArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    #[arg(value_name = "MODEL", help = lists::model_input())]
+    #[arg(value_name = "MODEL", help = lists::render_input())]
     pub(crate) input: PathBuf,
     /// The picture: .png.
     #[arg(long, short, value_name = "PNG")]
@@ -31,6 +32,11 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
+    pub(crate) structure: StructureArgs,
+    /// Which plant of a file that holds the structure of several: its number from 1.
+    #[arg(long, value_name = "N")]
+    pub(crate) plant: Option<String>,
+    #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
 
@@ -38,7 +44,9 @@ pub(crate) struct RenderArgs {
 #[command(after_long_help = "Examples:
   burgeon convert oak.glb -o oak.obj
   burgeon convert scan.ply -o scan.glb --up z --unit mm
-  burgeon convert scan.ply -o scan.obj --in-unit mm --unit m")]
+  burgeon convert scan.ply -o scan.obj --in-unit mm --unit m
+  burgeon convert cylinders.csv -o tree.mtg                      from a table of cylinders to an MTG
+  burgeon convert tree.mtg -o tree.qsm.csv")]
 pub(crate) struct ConvertArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
@@ -51,12 +59,11 @@ pub(crate) struct ConvertArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
-    /// Axis that points up in the input, where it differs from --up.
-    #[arg(long, value_parser = up_words(), value_name = "UP", help_heading = "Geometry")]
-    pub(crate) in_up: Option<UpAxis>,
-    /// Unit of length in the input, where it differs from --unit.
-    #[arg(long, value_parser = unit_words(), value_name = "UNIT", help_heading = "Geometry")]
-    pub(crate) in_unit: Option<Unit>,
+    #[command(flatten)]
+    pub(crate) structure: StructureArgs,
+    /// Which plant of a file that holds the structure of several: its number from 1.
+    #[arg(long, value_name = "N")]
+    pub(crate) plant: Option<String>,
     /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
     /// (docs/exports.md).
     #[arg(long, value_enum, value_name = "HOW")]
@@ -82,6 +89,8 @@ pub(crate) struct InfoArgs {
     pub(crate) input: PathBuf,
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) structure: StructureArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

@@ -3,6 +3,7 @@
 use burgeon::formats::{DrawingFormat, ModelFormat, RobotFormat, Room};
 
 use super::plant_format::PlantFormat;
+use super::structure;
 
 /// A plant as a model, as its structure or as a robot.
 pub(crate) fn plant_output() -> String {
@@ -40,13 +41,21 @@ pub(crate) fn wind(of: &str) -> String {
     )
 }
 
-pub(crate) fn model_input() -> String {
-    format!("The model: {}.", ModelFormat::read_endings())
+/// A model, or the structure of a plant.
+pub(crate) fn render_input() -> String {
+    format!(
+        "The model ({}), or the structure of a plant ({}).",
+        ModelFormat::read_endings(),
+        structure::endings()
+    )
 }
 
 pub(crate) fn info_input() -> String {
     let (models, drawings) = (ModelFormat::read_endings(), DrawingFormat::read_endings());
-    format!("The file: a model ({models}), a drawing ({drawings}) or a project (.burgeon).")
+    let structures = structure::endings();
+    format!(
+        "The file: a model ({models}), a drawing ({drawings}), the structure of a plant ({structures}) or a project (.burgeon)."
+    )
 }
 
 pub(crate) fn obstacle() -> String {
@@ -69,8 +78,10 @@ pub(crate) fn leaf_template(subject: &str) -> String {
 pub(crate) fn convert() -> String {
     let (read, written) = (ModelFormat::read_endings(), ModelFormat::written_endings());
     let (drawn, kept) = (DrawingFormat::read_endings(), DrawingFormat::written_endings());
+    let structures = structure::endings();
     format!(
-        "Convert a model or a drawing to another format\n\nModels: {read} to {written}. Drawings: {drawn} to {kept}. A \
-         drawing becomes a model with `burgeon sketch`."
+        "Convert a model, a drawing or the structure of a plant to another format\n\nModels: {read} to {written}. Drawings: \
+         {drawn} to {kept}. A drawing becomes a model with `burgeon sketch`. Structure of plants: {structures} to the same (a \
+         table of cylinders as .qsm.csv) and to models; `burgeon shape` has all options of their surface."
     )
 }

@@ -19,6 +19,7 @@ mod settings;
 mod shape;
 mod shared;
 mod sketch;
+mod structure;
 
 pub(crate) use bloom::{BloomAtArgs, BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
 pub(crate) use compare::{CompareArgs, CompareWord};
@@ -38,6 +39,7 @@ pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
+pub(crate) use structure::{StructureArgs, endings as structure_endings};
 
 use clap::{Args, Parser, Subcommand};
 
@@ -95,7 +97,8 @@ pub(crate) enum Command {
     Light(Box<LightArgs>),
     /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
     ///
-    /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays
+    /// Works on a species, a spec, a drawing, a project or the structure of a plant that was measured (MTG, OPF, QSM, SWC), which
+    /// may also get leaves. The edits stand in a JSON file; the rest of the plant stays
     /// as it is.
     Shape(Box<ShapeArgs>),
     /// Replay gestures recorded in a headset: a record that the Studio wrote
@@ -110,16 +113,16 @@ pub(crate) enum Command {
     /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
     /// bytes, and what Yang et al. (2019) printed.
     Compare(Box<CompareArgs>),
-    /// Make a picture of a model
+    /// Make a picture of a model or of a plant
     ///
-    /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
+    /// The model, or the plant of an MTG, OPF, QSM or SWC file, fills the picture but for a margin and stands on the ground in the light of a soft sun.
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
     #[command(long_about = lists::convert())]
     Convert(ConvertArgs),
-    /// Describe a model, a drawing or a project
+    /// Describe a model, a drawing, a project or the structure of a plant
     ///
-    /// Counts, bounds, units, parts and materials, and what is wrong with it.
+    /// Counts, bounds, units, parts and materials, measures of plants, and what is wrong with it.
     Info(InfoArgs),
     /// Grow organs through scans of several days; flowers that open
     #[command(subcommand)]

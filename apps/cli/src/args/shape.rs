@@ -9,6 +9,7 @@ use super::given::Given;
 use super::lists;
 use super::settings;
 use super::shared::{AxesArgs, CheckArgs, CommonArgs, PictureArgs, seed};
+use super::structure::StructureArgs;
 use crate::failure::Outcome;
 
 #[derive(Args, Debug)]
@@ -18,15 +19,20 @@ pub(crate) struct ShapeArgs {
     #[command(flatten)]
     pub(crate) given: Given,
     /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in
-    /// full bloom, a drawing, or a project (.burgeon).
-    #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING", required_unless_present_any = ["template", "schema"])]
+    /// full bloom, a drawing, a project (.burgeon), or the structure of a plant that was measured (.mtg, .opf, .swc, a table of
+    /// cylinders as .csv or .txt), which needs no edits.
+    #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING|STRUCTURE", required_unless_present_any = ["template", "schema"])]
     pub(crate) what: Option<PathBuf>,
     /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
-    #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
+    #[arg(long, value_name = "EDITS.json")]
     pub(crate) edits: Option<PathBuf>,
+    /// Leaves and bark of a species of `burgeon presets`, or of a spec (.toml), for a plant of a file of structure [default:
+    /// the leaves of the file].
+    #[arg(long, value_name = "PRESET|SPEC.toml")]
+    pub(crate) leaves: Option<PathBuf>,
     #[arg(long, short, value_name = "OUT", help = lists::plant_output(), required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
     pub(crate) output: Option<PathBuf>,
-    /// Which plant of a project that holds several: its name, or its number from 1.
+    /// Which plant of a project, or of a file of structure, that holds several: its name, or its number from 1.
     #[arg(long, value_name = "NAME|N")]
     pub(crate) plant: Option<String>,
     /// Also save a project: the drawing with the edits, or the project with the edits after those that it has.
@@ -54,6 +60,8 @@ pub(crate) struct ShapeArgs {
     #[command(flatten)]
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
+    pub(crate) structure: StructureArgs,
+    #[command(flatten)]
     pub(crate) checks: CheckArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
@@ -64,6 +72,8 @@ const SHAPE_EXAMPLES: &str = "Examples:
   burgeon shape oak --list                                       which branch has which path?
   burgeon shape oak --edits edits.json -o oak.glb --png oak.png
   burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
+  burgeon shape walnut.mtg --in-unit cm --thickness-unit mm --leaves walnut -o walnut.glb
+  burgeon shape cylinders.csv --leaves oak --edits edits.json -o oak.glb
   burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
 
 Edits are done one after another; one that cannot be done says why and changes nothing. If none can be done

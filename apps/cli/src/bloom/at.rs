@@ -2,7 +2,7 @@
 
 use burgeon::Warning;
 use burgeon::bloom::{Form, GrowthLaw, Quantity, RegionLaw};
-use burgeon::{Report, RunReport};
+use burgeon::{Report, RunReport, TimeUnit};
 use serde::Serialize;
 
 use crate::args::BloomAtArgs;
@@ -45,7 +45,7 @@ impl Row {
         }
     }
 
-    fn line(&self) -> String {
+    fn line(&self, time: TimeUnit) -> String {
         let interval = match (self.low_m, self.high_m) {
             (Some(low), Some(high)) => format!(" ({:.3} to {:.3})", 1e3 * low, 1e3 * high),
             _ => " (too few days for an interval)".to_owned(),
@@ -57,7 +57,8 @@ impl Row {
         };
         let (organ, region, axis) = (&self.organ, self.region, self.axis.word());
         format!(
-            "day {}: {organ} region {region} {axis} {:.3} mm{interval}{doubt}",
+            "{} {}: {organ} region {region} {axis} {:.3} mm{interval}{doubt}",
+            time.word(),
             self.day,
             1e3 * self.value_m
         )
@@ -89,7 +90,7 @@ pub(super) fn tell_days(args: &BloomAtArgs) -> Outcome {
     report::finish(&whole, &args.common, outputs)?;
     if !machine.quiet {
         whole.run.warnings.iter().for_each(|w| say::warning(w));
-        whole.values.iter().for_each(|row| say::line(&row.line()));
+        whole.values.iter().for_each(|row| say::line(&row.line(law.time)));
     }
     Ok(())
 }

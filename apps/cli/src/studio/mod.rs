@@ -115,6 +115,13 @@ fn checked(path: &Path) -> Outcome<PathBuf> {
         Kind::Drawing(_) | Kind::Model(_) | Kind::Project => {
             path.canonicalize().map_err(|e| Failure::io(path, "read", &e))
         }
+        Kind::Structure(format) => Err(Failure::at(
+            path,
+            format_args!(
+                "is the structure of a plant ({}), which the Studio does not read; `burgeon shape` makes a model of it",
+                format.name()
+            ),
+        )),
     }
 }
 

@@ -292,6 +292,8 @@ export const zhWarnings: Record<string, string> = {
     '测得的点有 {value} 离叶片超过 2 毫米（最多 {bound}）：请检查单位，并确认是一片展开的叶',
   'scan-unused':
     '地面以上的点有 {value} 不属于这棵树（最多 {bound}）：请把树裁出来，指明它的位置，或允许跨过更大的空隙',
+  'structure-unused':
+    '文件的条目有 {value} 不在任何植物中（最多 {bound}）：它们没有位置或大小，请连同几何形状一起导出植物',
   'scan-radii-unseen':
     '树的截面只有 {value} 显出半径（至少 {bound}）：半径和体积是推测的，请靠近、从多侧或在无叶时扫描',
   'several-stems':
@@ -341,6 +343,7 @@ export const zhWarnings: Record<string, string> = {
   outliers: '远离其他点的 {count} 个点已略去',
   'points-not-finite': '有些点不是可用的数字或离得太远，已略去',
   'scan-unlike': '点云离所找到的叶有 {rms_mm} 毫米：这是一片展开的叶吗？请从中裁出一片叶',
+  'leaves-replaced': '文件中的 {leaves} 片叶已由所选树种的叶代替',
   'scan-table': '叶下面一个平面（桌子）的 {points} 个点未计入',
   'scan-apart': '有 {points} 个点属于离最大的那个物体较远的别的东西，未计入；若叶是另一个，请把它裁出来',
   'no-stalk': '没有找到叶柄：把较宽的一端当作叶基，可能不对',

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use base::{Unit, Warning, ops};
+use base::{TimeUnit, Unit, Warning, ops};
 
 use super::LeafFileError;
 use super::fields::Fields;
@@ -25,7 +25,35 @@ pub struct GrowthEntry {
     pub organ: String,
     /// The plant; empty without that column.
     pub plant: String,
+    /// The group; empty unless [`GrowthSpec::by`] names its column.
+    pub group: String,
 }
+
+/// How a growth table is read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct GrowthSpec {
+    /// The unit of sizes, where the table says none.
+    pub unit: Unit,
+    /// The heading of the column of plants, where it is not one of the usual ones.
+    pub plant: Option<String>,
+    /// The heading of the column of sizes: of a table with several.
+    pub size: Option<String>,
+    /// The heading of the column of groups.
+    pub by: Option<String>,
+    /// The order of day, month and year in dates such as 3/4/2024; none: as a date with a day after the twelfth tells.
+    pub dates: Option<DateOrder>,
+}
+
+/// The order of the numbers of a date.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DateOrder {
+    /// Day, month, year.
+    Dmy,
+    /// Month, day, year.
+    Mdy,
+}
+
+base::words!(DateOrder { Dmy = "dmy", Mdy = "mdy" });
 
 /// What was in a growth table.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +62,8 @@ pub struct ReadGrowth {
     pub rows: Vec<GrowthEntry>,
     /// The unit that the file says, in a heading or in a line `# unit: mm`.
     pub unit: Option<Unit>,
+    /// The unit of time that a heading says (`age_years`); days otherwise, and where days are dates.
+    pub time: TimeUnit,
     /// What was odd and what was done about it.
     pub warnings: Vec<Warning>,
 }
@@ -50,8 +80,9 @@ const MISSING: [&str; 4] = ["", "na", "nan", "-"];
 ///
 /// The first line names the columns, in any order; `day` may also be called age, time or date, `size` length, height, width,
 /// circumference, diameter or value, `plant` tree or id. A heading may have its unit (`height_cm`, `Height (cm)`), which wins
-/// over a line `# unit: mm`, which wins over `unit`. Days are numbers or dates (2024-03-05, 05.03.2024), which count from the first
-/// one. Without a column of sizes a table is wide: each column besides the day is an organ or a plant, or each column is a day
+/// over a line `# unit: mm`, which wins over `unit`; that of `day` may have one of time (`age_years`, `Time (weeks)`). Days are
+/// numbers or dates (2024-03-05, 05.03.2024; 5/3/2024 where one of them is after the twelfth, or [`GrowthSpec::dates`] tells), which
+/// count from the first one. Without a column of sizes a table is wide: each column besides the day is an organ or a plant, or each column is a day
 /// (`plant,0,3,7`) and each line an organ or a plant. Other columns are left out with a warning. Fields are separated as in
 /// [`read_marks`](crate::read_marks). Cells without a size are left out: a day on which nothing was measured; and so are empty
 /// lines, also those that spreadsheets pad with separators.
@@ -59,20 +90,22 @@ const MISSING: [&str; 4] = ["", "na", "nan", "-"];
 /// # Errors
 /// [`LeafFileError`] with the line, for columns that are missing or there twice, numbers that are none, and sizes that
 /// are negative.
-pub fn read_growth(input: impl Read, unit: Unit) -> Result<ReadGrowth, LeafFileError> {
+pub fn read_growth(input: impl Read, spec: &GrowthSpec) -> Result<ReadGrowth, LeafFileError> {
     let text = super::text(input)?;
     let mut header: Option<Header> = None;
-    let mut out = ReadGrowth { rows: vec![], unit: None, warnings: vec![] };
+    let mut out = ReadGrowth { rows: vec![], unit: None, time: TimeUnit::Day, warnings: vec![] };
+    let order = spec.dates.or_else(|| order_in(&text));
     let mut found = Found::default();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
         let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
-        let bare = line.trim_matches(|c: char| [',', ';', '\t', '"', ' '].contains(&c));
-        if let Some(comment) = bare.strip_prefix('#') {
+        if let Some(comment) = super::comment_of(line) {
             out.unit = unit_of(comment).map_err(placed)?.or(out.unit);
-        } else if !bare.is_empty() {
+        } else if !super::is_blank(line) {
             let Some(header) = &header else {
-                header = Some(Header::read(line, &mut out.warnings).map_err(placed)?);
+                let read = Header::read(line, spec, order, &mut out.warnings).map_err(placed)?;
+                out.time = read.time;
+                header = Some(read);
                 continue;
             };
             header.add(line, &mut found).map_err(placed)?;
@@ -91,9 +124,10 @@ pub fn read_growth(input: impl Read, unit: Unit) -> Result<ReadGrowth, LeafFileE
     }
     let own = found.rows.iter().find_map(|r| r.unit);
     out.unit = own.or(out.unit);
-    let fallback = out.unit.filter(|_| own.is_none()).unwrap_or(unit);
+    let fallback = out.unit.filter(|_| own.is_none()).unwrap_or(spec.unit);
     let first = found.dates.then(|| found.rows.iter().map(|r| r.entry.day).fold(f64::INFINITY, f64::min));
     if let Some(first) = first {
+        out.time = TimeUnit::Day;
         let message = format!("days count from the first date, {}", date_of(first));
         out.warnings.push(Warning { code: "days-from-dates", message, fields: Vec::new() });
     }
@@ -143,6 +177,7 @@ enum Column {
     Size(Option<Unit>),
     Organ,
     Plant,
+    Group,
     /// Sizes of one organ or plant.
     Series(String, Option<Unit>),
     /// Sizes on one day.
@@ -160,6 +195,24 @@ enum Moment {
 struct Header {
     fields: Fields,
     columns: Vec<Column>,
+    time: TimeUnit,
+    order: Option<DateOrder>,
+}
+
+/// A heading of time without its unit, and that unit: `age_years`, `Time (weeks)`.
+fn without_time(heading: &str) -> Option<(String, TimeUnit)> {
+    let word = heading.to_ascii_lowercase();
+    let bare = word.trim_end_matches([')', ']']).trim_end();
+    let (name, end) = bare.rfind(['_', '(', '[', ' ']).map_or(("", bare), |at| bare.split_at(at));
+    let end = end.trim_matches(['_', '(', '[', ' ']);
+    let singular = end.strip_suffix('s').unwrap_or(end);
+    let unit = TimeUnit::from_word(singular).or(match singular {
+        "d" => Some(TimeUnit::Day),
+        "wk" => Some(TimeUnit::Week),
+        "yr" | "a" => Some(TimeUnit::Year),
+        _ => None,
+    })?;
+    Some((name.trim_end_matches(['_', '(', '[', ' ']).to_owned(), unit))
 }
 
 /// A heading without its unit, in small letters, and that unit: `height_cm`, `Height (cm)`, `height [cm]`.
@@ -174,21 +227,55 @@ fn without_unit(heading: &str) -> (String, Option<Unit>) {
     found.unwrap_or((word, None))
 }
 
+/// Whether a heading is the one that was asked for: as it is written, but for its case and its unit.
+fn is_heading(name: &str, wanted: &str) -> bool {
+    name.eq_ignore_ascii_case(wanted) || without_unit(name).0.eq_ignore_ascii_case(wanted)
+}
+
+/// What a column holds by its heading, and the unit of time that it says.
+fn column_of(name: &str, spec: &GrowthSpec) -> (Column, Option<TimeUnit>) {
+    let asked = |wanted: &Option<String>| wanted.as_deref().is_some_and(|w| is_heading(name, w));
+    let (word, unit) = without_unit(name);
+    let timed = without_time(name);
+    let is = |known: &[&str]| known.contains(&word.as_str());
+    let is_day =
+        is(&DAY) || timed.as_ref().is_some_and(|(bare, _)| bare.is_empty() || DAY.contains(&bare.as_str()));
+    let column = match () {
+        () if asked(&spec.by) => Column::Group,
+        () if asked(&spec.plant) => Column::Plant,
+        () if asked(&spec.size) => Column::Size(unit),
+        () if is_day => Column::Day,
+        () if is(&SIZE) && spec.size.is_none() => Column::Size(unit),
+        () if is(&ORGAN) => Column::Organ,
+        () if is(&PLANT) && spec.plant.is_none() => Column::Plant,
+        () => Column::Other,
+    };
+    let time = timed.map(|t| t.1).filter(|_| column == Column::Day);
+    (column, time)
+}
+
 impl Header {
-    fn read(line: &str, warnings: &mut Vec<Warning>) -> Result<Self, FileFault> {
+    fn read(
+        line: &str,
+        spec: &GrowthSpec,
+        order: Option<DateOrder>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self, FileFault> {
         let fields = Fields::of_header(line);
-        let mut columns: Vec<Column> = Vec::new();
         let names: Vec<&str> = fields.split(line).iter().map(|f| f.trim_matches('"').trim()).collect();
+        let (mut columns, mut time) = (Vec::new(), TimeUnit::Day);
         for name in &names {
-            let (word, unit) = without_unit(name);
-            let is = |known: &[&str]| known.contains(&word.as_str());
-            columns.push(match () {
-                () if is(&DAY) => Column::Day,
-                () if is(&SIZE) => Column::Size(unit),
-                () if is(&ORGAN) => Column::Organ,
-                () if is(&PLANT) => Column::Plant,
-                () => Column::Other,
-            });
+            let (column, unit) = column_of(name, spec);
+            columns.push(column);
+            time = unit.unwrap_or(time);
+        }
+        for (option, wanted) in [("--plant", &spec.plant), ("--size", &spec.size), ("--by", &spec.by)] {
+            let Some(wanted) = wanted else { continue };
+            if !names.iter().any(|n| is_heading(n, wanted)) {
+                let there: Vec<&str> = names.iter().copied().filter(|n| !n.is_empty()).collect();
+                let what = format!("there is no column `{wanted}` ({option}), but {}", there.join(", "));
+                return Err(FileFault::malformed(what, "name one of these"));
+            }
         }
         let kinds: [(&str, IsColumn); 4] = [
             ("day", |c| *c == Column::Day),
@@ -223,7 +310,7 @@ impl Header {
             let message = format!("the columns {} were left out", others.join(", "));
             warnings.push(Warning { code: "column-unknown", message, fields: Vec::new() });
         }
-        Ok(Self { fields, columns })
+        Ok(Self { fields, columns, time, order })
     }
 
     /// Adds what a line has.
@@ -260,18 +347,22 @@ impl Header {
             }
             let day = found.day(day)?;
             let organ = series.cloned().unwrap_or_else(|| name(&Column::Organ));
-            found
-                .rows
-                .push(Row { entry: GrowthEntry { day, size, organ, plant: name(&Column::Plant) }, unit });
+            let (plant, group) = (name(&Column::Plant), name(&Column::Group));
+            found.rows.push(Row { entry: GrowthEntry { day, size, organ, plant, group }, unit });
         }
         Ok(())
     }
 
     fn moment(&self, text: &str) -> Result<Moment, FileFault> {
         let number = self.fields.number(text).map(Moment::Number);
-        number.or_else(|| date(text).map(Moment::Date)).ok_or_else(|| {
+        let dated = || date(text).or_else(|| slashed(text, self.order?)).map(Moment::Date);
+        number.or_else(dated).ok_or_else(|| {
             let what = format!("the day `{text}` is no number and no date");
-            FileFault::malformed(what, "give a number of days, or a date such as 2024-03-05")
+            let advice = match numbers_of(text, '/') {
+                Some(_) => "the day may be the first or the second number: --dates dmy or --dates mdy tells",
+                None => "give a number of days, or a date such as 2024-03-05",
+            };
+            FileFault::malformed(what, advice)
         })
     }
 }
@@ -344,18 +435,53 @@ fn day_heading(name: &str) -> Option<Moment> {
     number.map(Moment::Number).or_else(|| date(name).map(Moment::Date))
 }
 
-/// Days since 1 March of the year 0 of a date: 2024-03-05, 2024/03/05 or 05.03.2024, also with a time behind it.
-fn date(text: &str) -> Option<f64> {
+/// Three numbers with a sign between them, also with a time behind them.
+fn numbers_of(text: &str, sign: char) -> Option<[u32; 3]> {
     let head = text.split(['T', ' ']).next()?;
-    let part = |sep: char| -> Option<[u32; 3]> {
-        let parts: Vec<u32> = head.split(sep).map(|p| p.parse().ok()).collect::<Option<_>>()?;
-        parts.try_into().ok()
-    };
-    let [year, month, day] = match (part('-').or_else(|| part('/')), part('.')) {
-        (Some(ymd), _) => ymd,
-        (None, Some([d, m, y])) => [y, m, d],
-        _ => return None,
-    };
+    let parts: Vec<u32> = head.split(sign).map(|p| p.parse().ok()).collect::<Option<_>>()?;
+    parts.try_into().ok()
+}
+
+/// The order of dates such as 3/4/2024 in a text, if one of them has a day after the twelfth.
+fn order_in(text: &str) -> Option<DateOrder> {
+    let cells = text.split([',', ';', '\t', '\n', '\r', '"']).map(str::trim);
+    let dates = cells.filter_map(|cell| numbers_of(cell, '/')).filter(|[_, _, year]| *year >= 1000);
+    let mut found = None;
+    for [a, b, _] in dates {
+        let own = match (a > 12, b > 12) {
+            (true, false) => DateOrder::Dmy,
+            (false, true) => DateOrder::Mdy,
+            _ => continue,
+        };
+        // Two that contradict each other tell nothing.
+        if found.is_some_and(|f| f != own) {
+            return None;
+        }
+        found = Some(own);
+    }
+    found
+}
+
+/// [`date`] of 3/4/2024.
+fn slashed(text: &str, order: DateOrder) -> Option<f64> {
+    let [a, b, year] = numbers_of(text, '/')?;
+    match order {
+        DateOrder::Dmy => day_of([year, b, a]),
+        DateOrder::Mdy => day_of([year, a, b]),
+    }
+}
+
+/// Days since 1 March of the year 0 of a date: 2024-03-05, 2024/03/05 or 05.03.2024, also with a time behind it.
+pub(super) fn date(text: &str) -> Option<f64> {
+    match (numbers_of(text, '-').or_else(|| numbers_of(text, '/')), numbers_of(text, '.')) {
+        (Some(ymd), _) => day_of(ymd),
+        (None, Some([d, m, y])) => day_of([y, m, d]),
+        _ => None,
+    }
+}
+
+/// Days since 1 March of the year 0.
+fn day_of([year, month, day]: [u32; 3]) -> Option<f64> {
     let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     let days = [31, if is_leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
     let last = *days.get((month as usize).checked_sub(1)?)?;
@@ -368,7 +494,7 @@ fn date(text: &str) -> Option<f64> {
 }
 
 /// The date of a day that [`date`] gave.
-fn date_of(day: f64) -> String {
+pub(super) fn date_of(day: f64) -> String {
     let day = ops::whole(day);
     // The year whose first of March is the last one before.
     let mut y = day / 366;
@@ -388,14 +514,19 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<ReadGrowth, String> {
-        read_growth(text.as_bytes(), Unit::Metre).map_err(|e| e.to_string())
+        read_as(text, &GrowthSpec::default())
+    }
+
+    fn read_as(text: &str, spec: &GrowthSpec) -> Result<ReadGrowth, String> {
+        read_growth(text.as_bytes(), spec).map_err(|e| e.to_string())
     }
 
     #[test]
     fn columns_have_the_names_that_people_give_them() {
         let t = read("\"rownames\",\"Tree\",\"age\",\"circumference\"\n1,\"3\",118,30\n2,\"3\",484,NA\n")
             .unwrap();
-        assert_eq!(t.rows, [GrowthEntry { day: 118.0, size: 30.0, organ: String::new(), plant: "3".into() }]);
+        let (organ, group) = (String::new(), String::new());
+        assert_eq!(t.rows, [GrowthEntry { day: 118.0, size: 30.0, organ, plant: "3".into(), group }]);
         assert_eq!(t.warnings.len(), 2, "{:?}", t.warnings);
         let t = read("# unit: mm\nday;size;organ\n1;2,5;leaf-1\n").unwrap();
         assert!((t.rows[0].size - 0.0025).abs() < 1e-15 && t.rows[0].organ == "leaf-1");
@@ -429,10 +560,44 @@ mod tests {
         assert!((t.rows[0].size - 0.015).abs() < 1e-15 && t.rows[1].plant == "a", "{:?}", t.rows);
         assert!(t.warnings.iter().any(|w| w.message.contains("2024-02-27")), "{:?}", t.warnings);
         // 3/5/2024 is May or March.
-        assert!(read("date,size\n3/5/2024,1\n").unwrap_err().contains("no date"));
+        assert!(read("date,size\n3/5/2024,1\n").unwrap_err().contains("--dates dmy"));
         assert!(read("date,size\n2024-03-05,1\n7,2\n").unwrap_err().contains("one way"));
         let t = read("day\theight_mm\n1\t2\n").unwrap();
         assert!((t.rows[0].size - 0.002).abs() < 1e-15);
+    }
+
+    #[test]
+    fn any_column_may_hold_plants_sizes_or_groups() {
+        let text = "Seed,Treatment,Age (years),height_cm,width_cm\n7,dry,1,10,4\n8,wet,2,20,5\n";
+        let spec = GrowthSpec {
+            plant: Some("seed".into()),
+            by: Some("Treatment".into()),
+            size: Some("width".into()),
+            ..GrowthSpec::default()
+        };
+        let t = read_as(text, &spec).unwrap();
+        assert_eq!(t.time, TimeUnit::Year);
+        let of = |r: &GrowthEntry| (r.plant.clone(), r.group.clone(), (r.size * 1e3).round());
+        assert_eq!(
+            t.rows.iter().map(of).collect::<Vec<_>>(),
+            [("7".to_owned(), "dry".to_owned(), 40.0), ("8".to_owned(), "wet".to_owned(), 50.0)]
+        );
+        let gone =
+            read_as(text, &GrowthSpec { by: Some("block".into()), ..GrowthSpec::default() }).unwrap_err();
+        assert!(gone.contains("`block` (--by)") && gone.contains("Treatment"), "{gone}");
+    }
+
+    #[test]
+    fn dates_with_slashes_are_read_where_they_are_not_open() {
+        let days = |text: &str, dates| -> Vec<f64> {
+            let spec = GrowthSpec { dates, ..GrowthSpec::default() };
+            read_as(text, &spec).unwrap().rows.iter().map(|r| r.day).collect()
+        };
+        assert_eq!(days("date,size\n1/3/2024,1\n13/3/2024,2\n", None), [0.0, 12.0]);
+        assert_eq!(days("date,size\n3/1/2024,1\n3/13/2024,2\n", None), [0.0, 12.0]);
+        let open = "date,size\n1/3/2024,1\n2/3/2024,2\n";
+        assert_eq!(days(open, Some(DateOrder::Dmy)), [0.0, 1.0]);
+        assert_eq!(days(open, Some(DateOrder::Mdy)), [0.0, 31.0]);
     }
 
     #[test]

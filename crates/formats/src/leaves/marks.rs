@@ -83,10 +83,10 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
     let mut entries: BTreeMap<(usize, usize), Entry> = BTreeMap::new();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
-        if let Some(comment) = line.strip_prefix('#') {
+        if let Some(comment) = super::comment_of(line) {
             setting(comment, &mut axes, &mut out.name, &mut out.thickness)
                 .map_err(|e| LeafFileError::new(Place::line(k + 1), e))?;
-        } else if !line.is_empty() {
+        } else if !super::is_blank(line) {
             let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
             match &columns {
                 None => {
@@ -457,6 +457,18 @@ mod tests {
         let mut bytes = Vec::new();
         write_marks(&sample(), "a leaf", &mut bytes).unwrap();
         String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn a_spreadsheet_may_save_the_template() {
+        let padded = |text: &str| -> String {
+            let line = |l: &str| {
+                if l.starts_with('#') { format!("\"{l}\",,,,,,\n,,,,,,\n") } else { format!("{l}\n") }
+            };
+            text.lines().map(line).collect()
+        };
+        let back = read(&padded(&written())).unwrap();
+        assert_eq!((back.name.as_str(), back.marks), ("a leaf", read(&written()).unwrap().marks));
     }
 
     #[test]

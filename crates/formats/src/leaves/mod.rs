@@ -6,6 +6,7 @@ mod growth;
 mod marks;
 mod profiles;
 mod rays;
+mod sheet;
 
 use std::io::Read;
 
@@ -14,10 +15,11 @@ use crate::error::{FileFault, Place, Placed};
 use crate::foreign::Foreign;
 
 pub use graph::{ReadGraph, read_vein_graph};
-pub use growth::{GrowthEntry, ReadGrowth, read_growth};
+pub use growth::{DateOrder, GrowthEntry, GrowthSpec, ReadGrowth, read_growth};
 pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
 pub use profiles::{ReadProfile, ReadProfiles, read_profiles};
 pub use rays::{ReadRays, is_rays, read_rays, write_rays};
+pub use sheet::{ReadSheet, read_xlsx};
 
 /// Largest file of a leaf that is read: 16 MiB, far more than a person can measure.
 pub const MAX_LEAF_BYTES: u64 = 16 << 20;
@@ -72,6 +74,19 @@ pub fn read_leaf_file(input: impl Read, name: &str, axes: MarksAxes) -> Result<L
         true => LeafFile::Graph(read_vein_graph(text.as_bytes())?),
         false => LeafFile::Profiles(read_profiles(text.as_bytes(), name, axes)?),
     })
+}
+
+/// What spreadsheets put around a text of one cell: quotes, and separators of the cells that are empty.
+const PADDING: [char; 5] = [',', ';', '\t', '"', ' '];
+
+/// The comment of a line, also of one that a spreadsheet saved.
+fn comment_of(line: &str) -> Option<&str> {
+    line.trim_matches(PADDING).strip_prefix('#')
+}
+
+/// A line without a cell in it.
+fn is_blank(line: &str) -> bool {
+    line.trim_matches(PADDING).is_empty()
 }
 
 /// All of a file of a leaf.

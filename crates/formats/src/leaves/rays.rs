@@ -32,7 +32,7 @@ pub struct ReadRays {
 pub fn is_rays(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
     let mut lines = text.lines().map(|l| l.trim_start_matches('\u{feff}').trim());
-    let first = lines.find(|l| !l.is_empty() && !l.starts_with('#')).unwrap_or_default();
+    let first = lines.find(|l| !super::is_blank(l) && super::comment_of(l).is_none()).unwrap_or_default();
     first.split([',', ';', '\t']).any(|f| f.trim().eq_ignore_ascii_case("vein"))
 }
 
@@ -54,11 +54,11 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
         let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
-        if let Some(comment) = line.strip_prefix('#') {
+        if let Some(comment) = super::comment_of(line) {
             super::marks::setting(comment, &mut axes, &mut out.name, &mut out.thickness).map_err(placed)?;
             continue;
         }
-        if line.is_empty() {
+        if super::is_blank(line) {
             continue;
         }
         let Some((fields, columns)) = &columns else {

@@ -1,13 +1,15 @@
-//! [`plant::Plant`] -> bytes: the text formats in which the field keeps the structure of plants.
+//! [`plant::Plant`] <-> bytes: the text formats in which the field keeps the structure of plants.
 
 mod mtg;
 mod opf;
 mod qsm;
+mod read;
 mod swc;
 
 pub use mtg::write_mtg;
 pub use opf::write_opf;
 pub use qsm::write_qsm;
+pub use read::{ReadStructure, StructureError, StructureSpec, StructureTally, read_structure};
 pub use swc::write_swc;
 
 use std::io::Write;

@@ -12,7 +12,9 @@ use crate::{ExportSpec, WriteError};
 /// for what stands on the ground), `extension` (the row that goes on with the branch; 0 at its end), `branch` (from
 /// 1), `BranchOrder` (0 for the trunk), `PositionInBranch` (from 1). After these, which stay where they are, come the
 /// names under which R has the same numbers and without which rTwig refuses a table: `UnmodRadius` (the radius before
-/// a correction), `start.x` to `axis.z`, and `added` (1 for a cylinder that closes a gap: none does).
+/// a correction), `start.x` to `axis.z`, and `added` (1 for a cylinder that closes a gap: none does). Last come the radii at
+/// both ends of the internode, `start_radius` and `end_radius`, by which [`read_structure`](crate::read_structure) gives the
+/// same nodes back.
 ///
 /// One cylinder for each internode with a length, base first, bearers before what they bear; its radius gives it the
 /// internode's volume. Lengths are in `spec`'s unit. Not written: roots, leaf stalks, organs. Cost: linear.
@@ -27,14 +29,15 @@ use crate::{ExportSpec, WriteError};
 /// p.nodes.radius_m = vec![0.1, 0.1];
 /// let mut out = Vec::new();
 /// formats::write_qsm(&p, &formats::ExportSpec::default(), &mut out)?;
-/// assert!(String::from_utf8(out)?.ends_with("\n0.1,2,0,0,0,0,1,0,0,0,1,0,1,0.1,0,0,0,0,1,0,0\n"));
+/// assert!(String::from_utf8(out)?.ends_with("\n0.1,2,0,0,0,0,1,0,0,0,1,0,1,0.1,0,0,0,0,1,0,0,0.1,0.1\n"));
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
     writeln!(
         out,
         "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent,extension,branch,BranchOrder,\
-         PositionInBranch,UnmodRadius,start.x,start.y,start.z,axis.x,axis.y,axis.z,added"
+         PositionInBranch,UnmodRadius,start.x,start.y,start.z,axis.x,axis.y,axis.z,added,\
+         start_radius,end_radius"
     )?;
     let shoot = plant.shoot();
     // The cylinder that ends at each node, from 1.
@@ -66,12 +69,12 @@ pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
             let extension = if Some(k) == last { 0 } else { row + 1 };
             let long = length(spec, w[0].distance(w[1]));
             // A radius to 10 nanometres: twigs are thin.
-            let radius = decimal(radius, 8);
+            let [radius, from, to] = [radius, length(spec, r), length(spec, s)].map(|r| decimal(r, 8));
             let [x, y, z] = start.to_array().map(|x| micrometres(spec, x));
             let [u, v, w] = axis_of.to_array().map(|x| decimal(x, 8));
             let (line, order) = (format!("{x},{y},{z},{u},{v},{w}"), axis.order);
             write!(out, "{radius},{},{line},{parent},{extension},", micrometres(spec, long))?;
-            writeln!(out, "{branch},{order},{position},{radius},{line},0")?;
+            writeln!(out, "{branch},{order},{position},{radius},{line},0,{from},{to}")?;
             ends_at[node.index()] = row;
             parent = row;
         }

@@ -2,16 +2,22 @@
 
 use std::io::Write;
 
+use base::UpAxis;
 use plant::{AxisKind, Plant};
 
 use super::{decimal, length, micrometres, numbered, place, standing_on};
 use crate::{ExportSpec, WriteError};
 
 /// The first of the types that SWC leaves to its users.
-const FIRST_OWN: u32 = 5;
+pub(super) const FIRST_OWN: u32 = 5;
+/// The comment that says what types mean; by it our reader knows that the rows of an axis stand one after another.
+pub(super) const TYPES: &str = "type: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root, 10 stub";
+/// What the comment begins with that lists axes of which the first row stands right after the row that bears it: without it
+/// they would be more of their bearer.
+pub(super) const TIPS: &str = "begin on the row before:";
 
 /// Writes the axes of a sound plant as SWC: after a head of comments a row for each node, `id type x y z radius parent`,
-/// separated by spaces. `id` counts from 1, bearers come before what they bear, and `parent` is -1 for what stands on the
+/// separated by spaces. The comments say the unit, the axis that points up, and what types mean. `id` counts from 1, bearers come before what they bear, and `parent` is -1 for what stands on the
 /// ground. `type`: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root (0 to 4 are words of neurons). The first node of a borne
 /// axis lies on its bearer and has no row of its own.
 ///
@@ -32,7 +38,16 @@ const FIRST_OWN: u32 = 5;
 /// ```
 pub fn write_swc(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
     writeln!(out, "# SWC: id type x y z radius parent")?;
-    writeln!(out, "# type: 5 branch, 6 twig, 7 stem, 8 petiole, 9 root, 10 stub")?;
+    let up = match spec.up {
+        UpAxis::Y => 'Y',
+        UpAxis::Z => 'Z',
+    };
+    writeln!(out, "# Lengths in {} and {up} upwards", spec.unit.plural())?;
+    writeln!(out, "# {TYPES}")?;
+    let tips = tips(plant);
+    if !tips.is_empty() {
+        writeln!(out, "# {TIPS} {}", tips.join(" "))?;
+    }
     let mut row_of = vec![0_usize; plant.nodes.position.len()];
     let mut row = 0;
     for (id, _) in numbered(plant) {
@@ -59,4 +74,22 @@ pub fn write_swc(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
         }
     }
     Ok(())
+}
+
+/// The first rows of axes that begin right after the row that bears them.
+fn tips(plant: &Plant) -> Vec<String> {
+    let mut row_of = vec![0_usize; plant.nodes.position.len()];
+    let (mut row, mut tips) = (0, Vec::new());
+    for (id, _) in numbered(plant) {
+        let axis = plant.axis(id);
+        let bearer = axis.bearer.map_or(0, |b| row_of[standing_on(plant, b).index()]);
+        if bearer > 0 && bearer == row {
+            tips.push((row + 1).to_string());
+        }
+        for node in axis.node_ids().skip(usize::from(bearer > 0)) {
+            row += 1;
+            row_of[node.index()] = row;
+        }
+    }
+    tips
 }

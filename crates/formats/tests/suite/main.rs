@@ -11,6 +11,7 @@ mod mtg_reader;
 mod mutations;
 mod opf;
 mod opf_reader;
+mod read_structure;
 mod scans;
 mod structure;
 mod tiles;

@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use base::{Draw, Report, Seed, Stream};
 use formats::{
     CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ModelSummary, NoFile,
-    SideFile, is_rays, no_files, obj_files, read_cloud, read_drawings, read_marks, read_model, read_rays,
-    read_vein_graph, write_cloud_ply, write_drawing, write_glb, write_model,
+    SideFile, StructureFormat, StructureSpec, is_rays, no_files, obj_files, read_cloud, read_drawings,
+    read_marks, read_model, read_rays, read_structure, read_vein_graph, write_cloud_ply, write_drawing,
+    write_glb, write_model, write_structure,
 };
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
@@ -328,6 +329,40 @@ fn scans() {
     each_mutant(24, PCD, |b| clouds(CloudFormat::Pcd, b));
     each_mutant(25, OBJ, |b| clouds(CloudFormat::Obj, b));
     each_mutant(26, &las(), |b| clouds(CloudFormat::Las, b));
+}
+
+/// Whatever plants are read are sound and can be measured and written.
+fn structure(format: StructureFormat, bytes: &[u8]) -> bool {
+    let mut report = Report::default();
+    match read_structure(bytes, format, "m", &StructureSpec::default(), &mut report) {
+        Ok(read) => {
+            for plant in &read.plants {
+                assert_eq!(plant.validate().next(), None, "what was read is sound");
+                assert!(!plant.axes.is_empty() && plant.measure().height_m.is_finite(), "it can be measured");
+                write_structure(plant, &[], format, &ExportSpec::default(), std::io::sink()).expect("writes");
+            }
+            true
+        }
+        Err(e) => {
+            assert!(e.to_string().len() > 10, "the error says something");
+            false
+        }
+    }
+}
+
+#[test]
+fn structures() {
+    let mut plant = plant::Plant::default();
+    let up = glam::DVec3::Y;
+    plant.add_axis(plant::AxisKind::Branch, None, 1, &[up * 0.0, up, up * 2.0], None);
+    let bearer = plant.axes[0].node_ids().nth(1);
+    plant.add_axis(plant::AxisKind::Branch, bearer, 2, &[up, glam::DVec3::ONE], None);
+    plant.nodes.radius_m = vec![0.2, 0.1, 0.0, 0.05, 0.01];
+    for (k, format) in (31..).zip(StructureFormat::ALL) {
+        let mut bytes = Vec::new();
+        write_structure(&plant, &[], format, &ExportSpec::default(), &mut bytes).expect("written");
+        each_mutant(k, &bytes, |b| structure(format, b));
+    }
 }
 
 /// Whatever marks are read are completed or refused.

@@ -193,7 +193,7 @@ proptest! {
         let words: Vec<&str> = head.split(',').collect();
         prop_assert_eq!(words[..5].join(" "), "radius length start_x start_y start_z");
         prop_assert_eq!(words[5..13].join(" "), "axis_x axis_y axis_z parent extension branch BranchOrder PositionInBranch");
-        prop_assert_eq!(words[13..].join(" "), "UnmodRadius start.x start.y start.z axis.x axis.y axis.z added");
+        prop_assert_eq!(words[13..].join(" "), "UnmodRadius start.x start.y start.z axis.x axis.y axis.z added start_radius end_radius");
         let rows: Vec<Vec<f64>> =
             text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
         let m = p.measure();
@@ -202,7 +202,7 @@ proptest! {
         prop_assert!((volume - m.wood_volume_m3).abs() < 1e-5 * (1.0 + m.wood_volume_m3), "{} {:?}", volume, m);
         prop_assert!((length - m.length_m).abs() < 1e-4 * (1.0 + m.length_m));
         for (i, r) in rows.iter().enumerate() {
-            prop_assert!(r.len() == 21 && r[13] == r[0] && r[14..20] == r[2..8] && r[20] == 0.0);
+            prop_assert!(r.len() == 23 && r[13] == r[0] && r[14..20] == r[2..8] && r[20] == 0.0);
             let (start, axis) = (DVec3::new(r[2], r[3], r[4]), DVec3::new(r[5], r[6], r[7]));
             prop_assert!((axis.length() - 1.0).abs() < 1e-6 && r[0] >= 0.0 && r[1] > 0.0);
             let parent = r[8] as usize;

@@ -9,6 +9,7 @@
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `scanned` | trees of laser scans |
+//! | `structured` | trees of files of structure |
 //! | `scenery` | obstacles in a picture |
 //! | `compare` | one oak by three methods |
 
@@ -22,6 +23,7 @@ mod look;
 mod presets;
 mod scanned;
 mod scenery;
+mod structured;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
@@ -46,6 +48,7 @@ pub use height::{HeightError, age_of_height};
 pub use presets::{PRESETS, Preset};
 pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan, make_tree_of_plot};
 pub use scenery::show_obstacles;
+pub use structured::{StructureModel, StructureModelError, StructureOptions, make_from_structure};
 
 /// How a tree is meshed. Not saved with it.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,14 +3,14 @@
 use base::{Cancelled, Report, Run, Seed, Stopped, UpAxis};
 use formats::ExportSpec;
 use glam::DVec3;
-use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
+use growth::{GrowthError, Look, TreeSpec};
 use plant::BladeForm;
 use scan::{FoundTree, Plot, ScanTreeError, TreeScanSpec, find_tree};
 use skin::SkinSpec;
 
 use super::evaluate::skinned;
-use super::look::{dressed, tint};
-use super::tree_blade;
+use super::look::dressed;
+use super::structured::bear_leaves;
 use crate::checks::check_scan;
 use crate::made::MadePlant;
 
@@ -127,17 +127,7 @@ fn made(
     plant.name = name.into();
     let look = options.leaves.as_ref().map_or_else(Look::default, |s| s.look.clone());
     if let Some(species) = &options.leaves {
-        let mut foliage = species.leaves.clone();
-        // A scan's thinnest twigs are thicker than a species': leaves sit on what is thin here.
-        let mut tips: Vec<f64> =
-            plant.axes.iter().map(|a| plant.nodes.radius_m[a.nodes.end as usize - 1]).collect();
-        base::sort_numbers(&mut tips);
-        let thin = tips.get(tips.len() / 2).copied().unwrap_or(0.0);
-        foliage.max_radius_m = foliage.max_radius_m.max(2.0 * thin);
-        let blade = tree_blade(&species.blade);
-        let none = Obstacles::none();
-        add_leaves(&mut plant, &foliage, blade, &[], &none, seed, run, &mut report)?;
-        tint(&look, &mut plant, false, seed);
+        bear_leaves(&mut plant, species, seed, run, &mut report)?;
     }
     let form = options.leaves.as_ref().map_or_else(BladeForm::default, |s| s.blade.form);
     let from = (dressed(options.skin.clone(), &look, form), look, None);

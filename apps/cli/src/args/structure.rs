@@ -1,0 +1,87 @@
+//! How files with the structure of plants are read: MTG, OPF, QSM and SWC.
+
+use burgeon::formats::{StructureFormat, StructureSpec};
+use burgeon::{Unit, UpAxis};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use super::given::Given;
+use super::shared::{AxesArgs, up_words};
+use crate::failure::Outcome;
+
+/// What the file does not say itself.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Input")]
+pub(crate) struct StructureArgs {
+    /// Axis that points up in the input, where it differs from --up; MTG, OPF, QSM and SWC files may say it, and have z
+    /// otherwise.
+    #[arg(long, value_parser = up_words(), value_name = "UP")]
+    pub(crate) in_up: Option<UpAxis>,
+    /// Unit of length in the input, where it differs from --unit; MTG, OPF, QSM and SWC files may say it, and have metres
+    /// otherwise. 0.1mm and um are for these.
+    #[arg(long, value_parser = length_words(), value_name = "UNIT")]
+    pub(crate) in_unit: Option<LengthUnit>,
+    /// Unit of radii and diameters in an MTG, OPF, QSM or SWC file, where it is another than that of lengths: digitised trees
+    /// often have places in cm and diameters in mm.
+    #[arg(long, value_parser = length_words(), value_name = "UNIT")]
+    pub(crate) thickness_unit: Option<LengthUnit>,
+}
+
+/// The options of [`StructureArgs`], by the names of their fields.
+const OPTIONS: [&str; 3] = ["in_up", "in_unit", "thickness_unit"];
+
+impl StructureArgs {
+    pub(crate) fn spec(&self) -> StructureSpec {
+        StructureSpec {
+            up: self.in_up,
+            metres: self.in_unit.map(|u| u.metres),
+            thickness_metres: self.thickness_unit.map(|u| u.metres),
+        }
+    }
+
+    /// The same where `--up` and `--unit` are those of the input, too.
+    pub(crate) fn spec_of_input(&self, axes: &AxesArgs, given: &Given) -> StructureSpec {
+        let own = self.spec();
+        let unit = given.has("unit").then(|| axes.unit.metres());
+        StructureSpec { up: own.up.or(axes.up), metres: own.metres.or(unit), ..own }
+    }
+
+    /// Fails on these options where no such file is read.
+    pub(crate) fn refuse(given: &Given, this: &str) -> Outcome {
+        given.refuse(&OPTIONS, &format!("files of structure ({})", endings()), this)
+    }
+}
+
+/// How files of structure may end, for messages.
+pub(crate) fn endings() -> String {
+    format!("{} or a table of cylinders (.csv, .txt)", StructureFormat::read_endings())
+}
+
+/// A unit of length that a file may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LengthUnit {
+    word: &'static str,
+    pub(crate) metres: f64,
+}
+
+const LENGTHS: [(LengthUnit, &str); 5] = [
+    (LengthUnit { word: "m", metres: 1.0 }, "Metres"),
+    (LengthUnit { word: "cm", metres: 0.01 }, "Centimetres"),
+    (LengthUnit { word: "mm", metres: 0.001 }, "Millimetres"),
+    (LengthUnit { word: "0.1mm", metres: 0.000_1 }, "Tenths of a millimetre"),
+    (LengthUnit { word: "um", metres: 0.000_001 }, "Micrometres"),
+];
+
+impl LengthUnit {
+    /// The same as a unit that all files may have.
+    pub(crate) fn unit(self) -> Option<Unit> {
+        Unit::from_word(self.word)
+    }
+}
+
+/// The words of [`LengthUnit`].
+fn length_words() -> impl TypedValueParser<Value = LengthUnit> {
+    let words = LENGTHS.map(|(unit, help)| PossibleValue::new(unit.word).help(help));
+    let find = |word: String| LENGTHS.iter().map(|l| l.0).find(|u| u.word == word).ok_or("no unit");
+    PossibleValuesParser::new(words).try_map(find)
+}

@@ -1,0 +1,400 @@
+//! Measurements of several plants in groups -> a curve for each group, and whether one curve would do for all.
+//!
+//! All groups have one form of curve, each its own numbers. The test compares them with one curve for all: the extra sum of
+//! squares (Bates and Watts 1988, section 3.10) as F. Values of one plant are alike, which F takes for evidence; so plants
+//! change their groups at random, too, as often as the budget allows.
+
+use base::{CancelToken, Counted, Draw, Run, Seed, ops};
+
+use crate::forms::{curves_compared, curves_of, rms_of};
+use crate::{
+    BloomError, FitError, Form, GrowthLaw, LAW_SCHEMA, Logistic, Quantity, RegionLaw, Series, SharedFit,
+    fit_shared,
+};
+
+/// What was measured on the plants of one group.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// A series for each plant; days in any order, also the same day twice. Values in metres.
+    pub plants: Vec<Series>,
+}
+
+/// Whether groups grow alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupTest {
+    /// The sum of squared residuals of one curve for all groups, and of a curve for each, square metres.
+    pub squares: [f64; 2],
+    /// Degrees of freedom: the numbers that a curve for each group has more, and what is left of the values.
+    pub freedom: [u32; 2],
+    /// The extra sum of squares over that of a curve for each group, both by their degrees of freedom.
+    pub f: f64,
+    /// How often F is as large where all grow alike, if all values are independent: plants measured once.
+    pub p: f64,
+    /// How many times plants changed their groups at random, and the share of these (and of what was found) that fits groups as
+    /// well: right also for plants that were measured again and again. None for too few plants, or too many values.
+    pub permuted: Option<Permuted>,
+}
+
+/// What became of plants that change their groups.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Permuted {
+    /// How often they did.
+    pub times: u32,
+    /// The share of them, counting what was found, in which groups fit as well.
+    pub p: f64,
+}
+
+/// Curves of groups, and what tells them apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Groups {
+    /// A law for each group, with its name as organ.
+    pub law: GrowthLaw,
+    /// None for one group.
+    pub test: Option<GroupTest>,
+}
+
+/// Plants change their groups so often: the least p is one in 200.
+const PERMUTATIONS: u32 = 199;
+/// Fewer of them tell nothing.
+const FEWEST_PERMUTATIONS: u32 = 19;
+/// Days of a group on which something was measured, at least.
+const FEWEST_DAYS: usize = 3;
+
+/// Fits a curve to each group: of the forms that all of them share the one with the least information criterion of Akaike,
+/// corrected for few values (Hurvich and Tsai 1989).
+///
+/// Guaranteed: the same bits for the same groups and seed. Cost: some 11,000 curves for each value, and 2,000 more for each time
+/// that plants change their groups.
+///
+/// # Errors
+/// [`FitError::TooFew`] for a group with fewer than 3 days; [`BloomError::OverBudget`], before anything is fitted, and
+/// [`BloomError::Cancelled`].
+pub fn fit_groups(name: &str, groups: &[Group], seed: Seed, run: &Run<'_>) -> Result<Groups, BloomError> {
+    let all: Vec<&Series> = groups.iter().flat_map(|g| &g.plants).collect();
+    let values: u64 = all.iter().map(|s| s.values.len() as u64).sum();
+    let each = curves_compared();
+    run.budget.check(Counted::Comparisons, 2 * values * each, "split the table, or give fewer days")?;
+    let first_day = all.iter().flat_map(|s| &s.days).copied().fold(f64::INFINITY, f64::min);
+    let last_day = all.iter().flat_map(|s| &s.days).copied().fold(f64::NEG_INFINITY, f64::max);
+    let pooled: Vec<Series> = groups.iter().map(|g| joined(g.plants.iter(), first_day)).collect();
+    for series in &pooled {
+        let mut days = series.days.clone();
+        days.dedup();
+        if days.len() < FEWEST_DAYS {
+            return Err(FitError::TooFew { got: days.len() }.into());
+        }
+    }
+    let Some(best) = chosen(&pooled, run.cancel)? else {
+        return Err(FitError::TooFew { got: pooled.len() }.into());
+    };
+    let span_days = last_day - first_day;
+    let laws = groups.iter().zip(&pooled).zip(&best).map(|((g, s), fit)| law_of(g, s, fit, span_days));
+    let law = GrowthLaw {
+        schema: LAW_SCHEMA.into(),
+        name: name.to_owned(),
+        first_day,
+        span_days,
+        time: base::TimeUnit::default(),
+        regions: 1,
+        laws: laws.collect(),
+    };
+    let test = if groups.len() > 1 { test(groups, &pooled, &best, (first_day, seed), run)? } else { None };
+    Ok(Groups { law, test })
+}
+
+/// All values of some plants by day, from the first day on.
+fn joined<'a>(plants: impl Iterator<Item = &'a Series>, first_day: f64) -> Series {
+    let mut pairs: Vec<(f64, f64)> = plants
+        .flat_map(|s| s.days.iter().zip(&s.values))
+        .map(|(&day, &value)| (day - first_day, value))
+        .collect();
+    base::sort_by(&mut pairs, |a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let (days, values) = pairs.into_iter().unzip();
+    Series { days, values }
+}
+
+/// A curve of one form for each group; none where it does not move on the days of one.
+fn fits(
+    (form, level): (Form, bool),
+    pooled: &[Series],
+    cancel: &CancelToken,
+) -> Result<Option<Vec<SharedFit>>, BloomError> {
+    let mut out = Vec::with_capacity(pooled.len());
+    for series in pooled {
+        match fit_shared(form, level, core::slice::from_ref(series), cancel)? {
+            Some(fit) => out.push(fit),
+            None => return Ok(None),
+        }
+    }
+    Ok(Some(out))
+}
+
+/// The fits of the form with the least criterion.
+fn chosen(pooled: &[Series], cancel: &CancelToken) -> Result<Option<Vec<SharedFit>>, BloomError> {
+    let values: usize = pooled.iter().map(|s| s.values.len()).sum();
+    let laws = Form::LAWS.iter().flat_map(|&form| [(form, false), (form, true)]);
+    let mut best: Option<(f64, Vec<SharedFit>)> = None;
+    for of in laws.chain([(Form::Straight, true)]) {
+        let Some(found) = fits(of, pooled, cancel)? else { continue };
+        let criterion = criterion(&found, values);
+        let is_able = of.0 == Form::Straight || found.iter().all(|f| !f.on_bound && f.freedom > 0);
+        if is_able && best.as_ref().is_none_or(|(least, _)| criterion < *least) {
+            best = Some((criterion, found));
+        }
+    }
+    Ok(best.map(|b| b.1))
+}
+
+/// Akaike's criterion for few values; the scatter is one of the numbers.
+fn criterion(fits: &[SharedFit], values: usize) -> f64 {
+    let n = values as f64;
+    let squares: f64 = fits.iter().map(|f| f.sse).sum();
+    let freedom: f64 = fits.iter().map(|f| f.freedom as f64).sum();
+    let k = n - freedom + 1.0;
+    let few = if n - k - 1.0 > 0.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
+    n * ops::ln((squares / n).max(f64::MIN_POSITIVE)) + 2.0 * k + few
+}
+
+fn law_of(group: &Group, series: &Series, fit: &SharedFit, span: f64) -> RegionLaw {
+    let at = |day: f64| fit.value(0, day);
+    let [_, slope] = fit.linear[0];
+    let law = match fit.form {
+        Form::Straight | Form::Still => Logistic { k: at(span), p0: at(0.0), r: slope, offset: 0.0 },
+        _ => {
+            let [k, p0] = fit.states(0);
+            Logistic { k, p0, r: fit.r, offset: at(0.0) - p0 }
+        }
+    };
+    let values = &series.values;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let total: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    let errors = fit.errors.as_ref().map(|(states, both)| [states[0][0], states[0][1], both[0]]);
+    let is_sure = errors.is_some_and(|[_, _, r]| fit.r.abs() > 2.0 * r);
+    RegionLaw {
+        organ: group.name.clone(),
+        region: 0,
+        axis: Quantity::Size,
+        form: fit.form,
+        law,
+        determined: Some(fit.form != Form::Straight && is_sure),
+        straight_rmse: None,
+        last_rmse: None,
+        standard_errors: errors.filter(|_| fit.form != Form::Straight),
+        r2: if total > 0.0 { 1.0 - fit.sse / total } else { 1.0 },
+        r2_adjusted: None,
+        loo_rmse: rms_of(&fit.left_out[0]),
+        days: series.days.clone(),
+        values: values.clone(),
+    }
+}
+
+fn test(
+    groups: &[Group],
+    pooled: &[Series],
+    best: &[SharedFit],
+    (first_day, seed): (f64, Seed),
+    run: &Run<'_>,
+) -> Result<Option<GroupTest>, BloomError> {
+    let form = (best[0].form, best[0].level);
+    let whole = joined(groups.iter().flat_map(|g| &g.plants), first_day);
+    let Some(one) = fits(form, &[whole], run.cancel)? else { return Ok(None) };
+    let squares = [one[0].sse, best.iter().map(|f| f.sse).sum()];
+    let left: i64 = best.iter().map(|f| f.freedom).sum();
+    let (Ok(more), Ok(left)) = (u32::try_from(one[0].freedom - left), u32::try_from(left)) else {
+        return Ok(None);
+    };
+    if more == 0 || left == 0 {
+        return Ok(None);
+    }
+    let (d1, d2) = (f64::from(more), f64::from(left));
+    let extra = (squares[0] - squares[1]).max(0.0);
+    let f = (extra / d1) / (squares[1] / d2).max(f64::MIN_POSITIVE);
+    let p = incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
+    let values: u64 = pooled.iter().map(|s| s.values.len() as u64).sum();
+    let permuted = permuted(groups, form, squares[1], (first_day, values, seed), run)?;
+    Ok(Some(GroupTest { squares, freedom: [more, left], f, p, permuted }))
+}
+
+/// Lets plants change their groups, and counts how often curves for these fit as well.
+fn permuted(
+    groups: &[Group],
+    form: (Form, bool),
+    found: f64,
+    (first_day, values, seed): (f64, u64, Seed),
+    run: &Run<'_>,
+) -> Result<Option<Permuted>, BloomError> {
+    let sizes: Vec<usize> = groups.iter().map(|g| g.plants.len()).collect();
+    let mut plants: Vec<&Series> = groups.iter().flat_map(|g| &g.plants).collect();
+    // Half of the budget; each fit looks through the whole grid of one form.
+    let half = run.budget.limit(Counted::Comparisons) / 2;
+    let affordable = half / (values.max(1) * curves_of(form.0, form.1)).max(1);
+    let times = u32::try_from(affordable).unwrap_or(u32::MAX).min(PERMUTATIONS);
+    if times < FEWEST_PERMUTATIONS || ways(&sizes) < f64::from(FEWEST_PERMUTATIONS + 1) {
+        return Ok(None);
+    }
+    let mut stream = seed.stream(Draw::Test);
+    let mut as_well = 1;
+    for _ in 0..times {
+        run.cancel.check()?;
+        for k in (1..plants.len()).rev() {
+            plants.swap(k, stream.below(k + 1));
+        }
+        let mut rest = plants.as_slice();
+        let mut mixed = Vec::with_capacity(sizes.len());
+        for &size in &sizes {
+            let (own, others) = rest.split_at(size);
+            mixed.push(joined(own.iter().copied(), first_day));
+            rest = others;
+        }
+        let squares: Option<f64> = fits(form, &mixed, run.cancel)?.map(|f| f.iter().map(|f| f.sse).sum());
+        // Groups to which no curve of the form can be fitted tell nothing apart.
+        as_well += u32::from(squares.is_some_and(|s| s <= found * (1.0 + 1e-9)));
+    }
+    Ok(Some(Permuted { times, p: f64::from(as_well) / f64::from(times + 1) }))
+}
+
+/// In how many ways plants can be shared among groups of these sizes.
+fn ways(sizes: &[usize]) -> f64 {
+    let (mut all, mut ways) = (0, 1.0);
+    for &size in sizes {
+        for k in 1..=size {
+            all += 1;
+            ways *= f64::from(all) / k as f64;
+        }
+    }
+    ways
+}
+
+/// The regularised incomplete beta function, by its continued fraction (Lentz 1976; Press et al. 2007, section 6.4).
+fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
+    if x <= 0.0 || x >= 1.0 {
+        return if x >= 1.0 { 1.0 } else { 0.0 };
+    }
+    let front = ops::exp(ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * ops::ln(x) + b * ops::ln(1.0 - x));
+    if x < (a + 1.0) / (a + b + 2.0) {
+        front * fraction(a, b, x) / a
+    } else {
+        1.0 - front * fraction(b, a, 1.0 - x) / b
+    }
+}
+
+fn fraction(a: f64, b: f64, x: f64) -> f64 {
+    const TINY: f64 = 1e-300;
+    let away = |x: f64| if x.abs() < TINY { TINY } else { x };
+    let mut c = 1.0;
+    let mut d = 1.0 / away(1.0 - (a + b) * x / (a + 1.0));
+    let mut h = d;
+    for m in 1..500 {
+        let m = f64::from(m);
+        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+        for step in [even, odd] {
+            d = 1.0 / away(1.0 + step * d);
+            c = away(1.0 + step / c);
+            h *= d * c;
+        }
+        if (d * c - 1.0).abs() < 1e-14 {
+            break;
+        }
+    }
+    h
+}
+
+/// The logarithm of the gamma function of a positive number (Lanczos 1964).
+fn ln_gamma(x: f64) -> f64 {
+    const G: [f64; 6] = [
+        76.180_091_729_471_46,
+        -86.505_320_329_416_77,
+        24.014_098_240_830_91,
+        -1.231_739_572_450_155,
+        0.001_208_650_973_866_179,
+        -0.000_005_395_239_384_953,
+    ];
+    let base = x + 5.5;
+    let mut sum = 1.000_000_000_190_015;
+    let mut at = x;
+    for g in G {
+        at += 1.0;
+        sum += g / at;
+    }
+    (x + 0.5) * ops::ln(base) - base + ops::ln(2.506_628_274_631_000_5 * sum / x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn normal(s: &mut base::Stream) -> f64 {
+        (0..4).map(|_| s.range(-0.5, 0.5)).sum::<f64>() * 3.0_f64.sqrt()
+    }
+
+    /// Plants of a logistic; each is larger or smaller as a whole by `own`.
+    fn group(name: &str, truth: &Logistic, own: f64, plants: usize, seed: u64) -> Group {
+        let mut s = Seed::new(seed).stream(Draw::Test);
+        let plant = |_| {
+            let size = 1.0 + own * normal(&mut s);
+            let days: Vec<f64> = (0..7).map(|d| 5.0 * f64::from(d)).collect();
+            let values = days.iter().map(|&d| size * truth.value(d) + 0.8 * normal(&mut s)).collect();
+            Series { days, values }
+        };
+        Group { name: name.into(), plants: (0..plants).map(plant).collect() }
+    }
+
+    const TALL: Logistic = Logistic { k: 60.0, p0: 4.0, r: 0.25, offset: 0.0 };
+    const SHORT: Logistic = Logistic { k: 50.0, p0: 4.0, r: 0.25, offset: 0.0 };
+
+    /// Plants change their groups some 40 times, which takes a second and not ten.
+    fn brief() -> Run<'static> {
+        Run { budget: base::Budget { times: 0.03, raise: None }, ..Run::plain() }
+    }
+
+    #[test]
+    fn the_tails_of_f_are_those_of_tables() {
+        // 5 % points of F (Snedecor and Cochran 1989).
+        for (d1, d2, f) in [(1.0, 10.0, 4.965), (3.0, 20.0, 3.098), (6.0, 60.0, 2.254)] {
+            let p = incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
+            assert!((p - 0.05).abs() < 1e-4, "{d1} {d2}: {p}");
+        }
+        assert_eq!((incomplete_beta(2.0, 3.0, 0.0), incomplete_beta(2.0, 3.0, 1.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn groups_that_grow_apart_are_told_apart() {
+        let groups = [group("a", &TALL, 0.0, 6, 1), group("b", &SHORT, 0.0, 6, 2)];
+        let found = fit_groups("t", &groups, Seed::new(1), &brief()).unwrap();
+        let test = found.test.unwrap();
+        assert!(test.p < 1e-6 && test.permuted.is_some_and(|p| p.times > 30 && p.p < 0.035), "{test:?}");
+        for (law, truth) in found.law.laws.iter().zip([TALL, SHORT]) {
+            assert!(law.is_determined() && law.form == Form::Logistic, "{law:?}");
+            assert!((law.final_value().unwrap() - truth.k).abs() < 2.0, "{law:?}");
+        }
+        assert_eq!(found.law.validate().count(), 0);
+        let again = fit_groups("t", &groups, Seed::new(1), &brief()).unwrap();
+        assert_eq!(again.test, Some(test));
+    }
+
+    /// Plants of one kind differ as wholes: F finds groups where there are none, and plants that change their groups do not.
+    #[test]
+    fn plants_that_differ_are_no_groups() {
+        let (mut by_f, mut by_plants) = (0, 0);
+        for seed in 0..20 {
+            let both = [group("a", &TALL, 0.1, 4, 2 * seed), group("b", &TALL, 0.1, 4, 2 * seed + 1)];
+            let test = fit_groups("t", &both, Seed::new(seed), &brief()).unwrap().test.unwrap();
+            by_f += u32::from(test.p < 0.05);
+            by_plants += u32::from(test.permuted.unwrap().p < 0.05);
+        }
+        println!("told apart: {by_f} of 20 by F, {by_plants} of 20 by plants");
+        assert!(by_plants <= 4 && by_f > by_plants, "{by_f} {by_plants}");
+    }
+
+    #[test]
+    fn a_group_of_two_days_is_too_little() {
+        let two = Series { days: vec![0.0, 1.0, 1.0], values: vec![1.0, 2.0, 2.1] };
+        let groups = [group("a", &TALL, 0.0, 2, 1), Group { name: "b".into(), plants: vec![two] }];
+        let failed = fit_groups("t", &groups, Seed::new(1), &brief()).unwrap_err();
+        assert_eq!(failed, BloomError::Fit(FitError::TooFew { got: 2 }));
+        assert_eq!(ways(&[2, 2]), 6.0);
+    }
+}
