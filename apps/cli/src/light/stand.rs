@@ -109,6 +109,13 @@ fn document(args: &LightArgs, told: &mut Report) -> Outcome<Document> {
             args.given.refuse(&["seed"], "species, specs and drawings", this)?;
             files::read_project(what, file)
         }
+        (_, Kind::Structure(format)) => {
+            let what_it_is = format_args!(
+                "is the structure of a plant ({}), whose leaves have no surface; give a preset, a spec, a drawing or a project",
+                format.word()
+            );
+            Err(Failure::at(what, what_it_is))
+        }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
                 "is a model ({}), of which is not known what its organs are; give a preset, a spec, a drawing or a project",

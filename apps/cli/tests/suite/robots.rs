@@ -18,7 +18,7 @@ fn values<'a>(text: &'a str, tag: &str, attribute: &str) -> Vec<&'a str> {
 /// Every mesh that a file names lies beside it as a binary STL with triangles.
 fn check_meshes(dir: &Path, text: &str, (tag, attribute): (&str, &str)) {
     let files = values(text, tag, attribute);
-    assert!(!files.is_empty());
+    assert!(!files.is_empty(), "no mesh");
     for file in files {
         let bytes = fs::read(dir.join(file)).unwrap();
         let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
