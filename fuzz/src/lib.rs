@@ -24,7 +24,7 @@ pub type Target = fn(&[u8]) -> bool;
 pub const SAYS: &str = "BURGEON_KEPT_SAYS";
 
 /// Every target by its name, but for `request`, which takes a private file of the command line.
-pub const TARGETS: [(&str, Target); 26] = [
+pub const TARGETS: [(&str, Target); 28] = [
     ("svg", readers::svg),
     ("inkml", readers::inkml),
     ("ndjson", readers::ndjson),
