@@ -1,4 +1,5 @@
 //! Rods and forks against the theory of beams.
+#![expect(clippy::disallowed_methods, reason = "tests")]
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,5 @@
 //! Whole plants: mass, joints, fruits, names.
+#![expect(clippy::disallowed_methods, reason = "tests")]
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
