@@ -126,34 +126,25 @@ struct FitReport {
 }
 
 /// What was read and fitted.
-pub(crate) struct Fitted {
-    pub(crate) law: GrowthLaw,
-    pub(crate) warnings: Vec<String>,
-    pub(crate) stages: Vec<stages::StageReport>,
-    pub(crate) poses: Vec<poses::PoseReport>,
-    pub(crate) trials: Option<Vec<Trial>>,
-    pub(crate) offset_m: Option<[f64; 3]>,
-    pub(crate) read_ms: f64,
+struct Fitted {
+    law: GrowthLaw,
+    warnings: Vec<String>,
+    stages: Vec<stages::StageReport>,
+    poses: Vec<poses::PoseReport>,
+    trials: Option<Vec<Trial>>,
+    offset_m: Option<[f64; 3]>,
+    read_ms: f64,
     /// What tells groups apart.
-    pub(crate) groups: Option<table::GroupReport>,
-    pub(crate) fit_ms: f64,
+    groups: Option<table::GroupReport>,
+    fit_ms: f64,
 }
 
-impl Fitted {
-    /// Laws of a table, which has no scans.
-    pub(crate) fn of_law(law: GrowthLaw, warnings: Vec<String>, fit_ms: f64) -> Self {
-        let (stages, poses) = (vec![], vec![]);
-        Self {
-            law,
-            warnings,
-            stages,
-            poses,
-            trials: None,
-            offset_m: None,
-            read_ms: 0.0,
-            fit_ms,
-            groups: None,
-        }
+impl From<table::TableFit> for Fitted {
+    /// A table has no scans.
+    fn from(table: table::TableFit) -> Self {
+        let table::TableFit { law, warnings, groups, read_ms, fit_ms } = table;
+        let (stages, poses, trials, offset_m) = (vec![], vec![], None, None);
+        Self { law, warnings, stages, poses, trials, offset_m, read_ms, groups, fit_ms }
     }
 }
 
@@ -167,7 +158,8 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;
     let is_table = files::extension(&args.input)
         .is_some_and(|e| ["csv", "tsv", "xlsx"].iter().any(|known| e.eq_ignore_ascii_case(known)));
-    let fitted = if is_table { table::fit(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
+    let fitted =
+        if is_table { table::fit(args, &machine)?.into() } else { of_scans(args, &mut outputs, &machine)? };
     let law = &fitted.law;
     let checked = check_law(law);
     let text = serde_json::to_string_pretty(law)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use burgeon::bloom::{self, Group, GroupTest, Offset, Series};
+use burgeon::bloom::{self, Group, GroupTest, GrowthLaw, Offset, Series};
 use burgeon::formats::{GrowthEntry, GrowthSpec, ReadGrowth, read_growth, read_xlsx};
 use burgeon::{Seed, Warning};
 use serde::Serialize;
@@ -10,9 +10,18 @@ use serde::Serialize;
 use crate::args::FitArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files;
-use crate::fit::Fitted;
 use crate::machine::Machine;
 use crate::say;
+
+/// The laws of a growth table.
+pub(crate) struct TableFit {
+    pub(crate) law: GrowthLaw,
+    pub(crate) warnings: Vec<String>,
+    /// Whether groups grow alike, where there are groups.
+    pub(crate) groups: Option<GroupReport>,
+    pub(crate) read_ms: f64,
+    pub(crate) fit_ms: f64,
+}
 
 /// Whether groups grow alike, as the report tells it.
 #[derive(Debug, Serialize)]
@@ -70,7 +79,7 @@ impl GroupReport {
 }
 
 /// Fits the laws of a growth table.
-pub(crate) fn fit(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
+pub(crate) fn fit(args: &FitArgs, machine: &Machine) -> Outcome<TableFit> {
     let this = "a growth table has neither parts nor shapes";
     args.given.refuse(&["regions", "leave_one_out", "up"], "scans", this)?;
     args.given.only_if(
@@ -159,7 +168,7 @@ fn gathered(rows: &[GrowthEntry], name: impl Fn(&GrowthEntry) -> String) -> Vec<
 }
 
 /// A law for each organ of each plant.
-fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<Fitted> {
+fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut able = Vec::new();
     for (name, mut rows) in gathered(&rows, name_of) {
@@ -182,11 +191,11 @@ fn of_plants(args: &FitArgs, rows: Vec<GrowthEntry>, machine: &Machine) -> Outco
     let (law, fit_ms) =
         machine.timed(|| bloom::fit_sizes(&files::stem(&args.input), &able, Offset::Auto, &machine.run()));
     let law = law.map_err(Failure::bloom(&args.input))?;
-    Ok(Fitted::of_law(law, warnings, fit_ms))
+    Ok(TableFit { law, warnings, groups: None, read_ms: 0.0, fit_ms })
 }
 
 /// A law for each group of plants.
-fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<Fitted> {
+fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine) -> Outcome<TableFit> {
     let mut warnings = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for row in rows.iter().filter(|r| !r.group.is_empty()) {
@@ -231,7 +240,7 @@ fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine
         warnings.push(format!("there is one group by {by}: nothing is compared"));
     }
     let report = found.test.map(|test| GroupReport::new(by, &groups, &test));
-    Ok(Fitted { groups: report, ..Fitted::of_law(found.law, warnings, fit_ms) })
+    Ok(TableFit { law: found.law, warnings, groups: report, read_ms: 0.0, fit_ms })
 }
 
 /// Groups that are compared at most: a column of more tells something else.

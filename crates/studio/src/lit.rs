@@ -353,7 +353,7 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
             "{} of the leaf area are leaves that fewer than {LINES_FEWEST} lines of light cross",
             share(rough)
         ),
-        "sums are sound, but figures of single leaves are rough: give more lines (--rays)",
+        "sums are sound, but figures of single leaves are rough: give more lines of light",
     );
     let measured: f64 =
         stand.iter().map(|s| s.plant.measure().leaf_area_m2 * s.standing.scale * s.standing.scale).sum();
@@ -376,7 +376,7 @@ fn check(organs: &[LitOrgan], figures: &LightFigures, stand: &[Stood<'_>], repor
             Bound::AtMost(LEAF_AREA_INDEX_MOST),
             [format!("{lai:.1}"), format!("{LEAF_AREA_INDEX_MOST}")],
             format!("the stand has a leaf area index of {lai:.1}"),
-            "no stand is so dense: repeat it in larger cells (--repeat)",
+            "no stand is so dense: repeat it in larger cells",
         );
     }
 }

@@ -1,9 +1,13 @@
 //! Help texts that list formats, from the table of formats.
 
-use burgeon::formats::{DrawingFormat, ModelFormat, RobotFormat, Room};
+use burgeon::formats::{DrawingFormat, ModelFormat, RobotFormat, Room, StructureFormat};
 
 use super::plant_format::PlantFormat;
-use super::structure;
+
+/// How files of the structure of plants may end, for messages.
+pub(crate) fn structure_endings() -> String {
+    format!("{} or a table of cylinders (.csv, .txt)", StructureFormat::read_endings())
+}
 
 /// A plant as a model, as its structure or as a robot.
 pub(crate) fn plant_output() -> String {
@@ -46,13 +50,13 @@ pub(crate) fn render_input() -> String {
     format!(
         "The model ({}), or the structure of a plant ({}).",
         ModelFormat::read_endings(),
-        structure::endings()
+        structure_endings()
     )
 }
 
 pub(crate) fn info_input() -> String {
     let (models, drawings) = (ModelFormat::read_endings(), DrawingFormat::read_endings());
-    let structures = structure::endings();
+    let structures = structure_endings();
     format!(
         "The file: a model ({models}), a drawing ({drawings}), the structure of a plant ({structures}) or a project (.burgeon)."
     )
@@ -78,7 +82,7 @@ pub(crate) fn leaf_template(subject: &str) -> String {
 pub(crate) fn convert() -> String {
     let (read, written) = (ModelFormat::read_endings(), ModelFormat::written_endings());
     let (drawn, kept) = (DrawingFormat::read_endings(), DrawingFormat::written_endings());
-    let structures = structure::endings();
+    let structures = structure_endings();
     format!(
         "Convert a model, a drawing or the structure of a plant to another format\n\nModels: {read} to {written}. Drawings: \
          {drawn} to {kept}. A drawing becomes a model with `burgeon sketch`. Structure of plants: {structures} to the same (a \

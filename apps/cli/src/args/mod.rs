@@ -32,6 +32,7 @@ pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };
 pub(crate) use light::{LightArgs, SkyWord, SourceArgs};
+pub(crate) use lists::structure_endings;
 pub(crate) use plant_format::{FormatWord, PlantFormat};
 pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
@@ -39,7 +40,7 @@ pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
-pub(crate) use structure::{StructureArgs, endings as structure_endings};
+pub(crate) use structure::StructureArgs;
 
 use clap::{Args, Parser, Subcommand};
 

@@ -1,11 +1,12 @@
 //! How files with the structure of plants are read: MTG, OPF, QSM and SWC.
 
-use burgeon::formats::{StructureFormat, StructureSpec};
+use burgeon::formats::StructureSpec;
 use burgeon::{Unit, UpAxis};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::given::Given;
+use super::lists::structure_endings;
 use super::shared::{AxesArgs, up_words};
 use crate::failure::Outcome;
 
@@ -48,13 +49,8 @@ impl StructureArgs {
 
     /// Fails on these options where no such file is read.
     pub(crate) fn refuse(given: &Given, this: &str) -> Outcome {
-        given.refuse(&OPTIONS, &format!("files of structure ({})", endings()), this)
+        given.refuse(&OPTIONS, &format!("files of structure ({})", structure_endings()), this)
     }
-}
-
-/// How files of structure may end, for messages.
-pub(crate) fn endings() -> String {
-    format!("{} or a table of cylinders (.csv, .txt)", StructureFormat::read_endings())
 }
 
 /// A unit of length that a file may have.

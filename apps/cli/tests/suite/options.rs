@@ -36,11 +36,13 @@ const VALUES: &[(&str, &str)] = &[
     ("ball", "2,3,0,0,0.02"),
     ("bounces", "1"),
     ("branch-depth", "paper"),
+    ("by", "block"),
     ("cell", "0.2"),
     ("classes", "classes.csv"),
     ("compare", "end.xyz"),
     ("curl", "0.4"),
     ("date", "2026-05-11"),
+    ("dates", "dmy"),
     ("day", "0.3"),
     ("days", "1,2"),
     ("density", "3"),
@@ -111,6 +113,7 @@ const VALUES: &[(&str, &str)] = &[
     ("season", "0.5"),
     ("seconds", "2"),
     ("side-veins", "3"),
+    ("sheet", "Notes"),
     ("sides", "5"),
     ("size", "30x20"),
     ("sky", "uniform"),
@@ -122,6 +125,7 @@ const VALUES: &[(&str, &str)] = &[
     ("step", "0.05"),
     ("subdivisions", "3"),
     ("sun", "170,40"),
+    ("thickness-unit", "mm"),
     ("supersample", "2"),
     ("surface", "bezier"),
     ("texture", "veins"),
@@ -197,6 +201,8 @@ const NOTHING_TO_STEER: &[(&str, &[&str])] = &[
     ("one.burgeon", &["branch-depth", "density", "tropism", "phototropism", "gravity", "sides", "plant"]),
     // From the front at eye level the ground, and a shadow on it, is a line.
     ("--view", &["no-shadow"]),
+    // Its days are numbers.
+    ("growth.csv", &["dates"]),
     // The scan is of a bare stem.
     ("--plant", &["materials"]),
     // A stem is bare and has no gap, and a trunk its sides by its girth.

@@ -48,7 +48,10 @@ fn a_drawn_tomato_is_a_robot_with_fruits_that_come_off() {
 fn makers_write_both_files_and_the_same_bytes_each_time() {
     let dir = folder("robots-makers");
     fs::write(dir.join("flower.svg"), FLOWER).unwrap();
-    for maker in [&["grow", "wheat"][..], &["sketch", "flower.svg"], &["shape", "flower.svg"]] {
+    let edits = good(&dir, &["shape", "--template"]);
+    fs::write(dir.join("edits.json"), edits).unwrap();
+    let shaped = ["shape", "oak", "--edits", "edits.json", "--detail", "0.1"];
+    for maker in [&["grow", "wheat"][..], &["sketch", "flower.svg"], &shaped] {
         good(&dir, &[maker, &["-o", "x.urdf", "-q"]].concat());
         let text = fs::read_to_string(dir.join("x.urdf")).unwrap();
         let turning = values(&text, "joint", "type").into_iter().filter(|t| *t == "revolute").count();

@@ -64,8 +64,9 @@ fn what_a_file_does_not_say_is_asked_for() {
     let out = burgeon(&f, &["info", "tree.swc", "--in-unit", "cm", "--thickness-unit", "mm"]);
     assert_eq!(status(&out), 0);
     assert!(String::from_utf8_lossy(&out.stdout).contains("9 m high"), "{out:?}");
-    let out = burgeon(&f, &["info", "tree.swc", "--in-unit", "cm"]);
-    assert!(String::from_utf8_lossy(&out.stdout).contains("--thickness-unit"), "too thick: {out:?}");
+    fs::write(f.join("thick.swc"), "1 1 0 0 0 500 -1\n2 1 0 0 900 300 1\n").unwrap();
+    let out = burgeon(&f, &["info", "thick.swc", "--in-unit", "cm"]);
+    assert!(String::from_utf8_lossy(&out.stdout).contains("--thickness-unit"), "10 m thick: {out:?}");
     // Two plants: which one?
     fs::write(f.join("two.swc"), "1 1 0 0 0 1 -1\n2 1 0 0 9 1 1\n3 1 50 0 0 1 -1\n4 1 50 0 8 1 3\n").unwrap();
     assert!(bad(&f, &["convert", "two.swc", "-o", "x.mtg"]).contains("--plant 1 to --plant 2"));
@@ -84,10 +85,10 @@ fn what_a_file_does_not_say_is_asked_for() {
     assert!(bad(&f, &["sketch", "two.swc", "-o", "x.glb"]).contains("burgeon shape"));
 }
 
-/// Heights of eight plants by treatment, in years; four of them grow to about half as much.
+/// Heights of twelve plants by treatment, in years; six of them grow to about half as much.
 fn trial(separator: char) -> String {
     let mut text = format!("Seed{separator}treatment{separator}Age (years){separator}height_cm\n");
-    for plant in 0..8_u32 {
+    for plant in 0..12_u32 {
         let (treatment, end) = if plant % 2 == 0 { ("wet", 80.0) } else { ("dry", 45.0) };
         for year in 0..7 {
             let age = 2.0 * f64::from(year);

@@ -269,11 +269,11 @@ impl Header {
             columns.push(column);
             time = unit.unwrap_or(time);
         }
-        for (option, wanted) in [("--plant", &spec.plant), ("--size", &spec.size), ("--by", &spec.by)] {
+        for (of, wanted) in [("plants", &spec.plant), ("sizes", &spec.size), ("groups", &spec.by)] {
             let Some(wanted) = wanted else { continue };
             if !names.iter().any(|n| is_heading(n, wanted)) {
                 let there: Vec<&str> = names.iter().copied().filter(|n| !n.is_empty()).collect();
-                let what = format!("there is no column `{wanted}` ({option}), but {}", there.join(", "));
+                let what = format!("there is no column `{wanted}` of {of}, but {}", there.join(", "));
                 return Err(FileFault::malformed(what, "name one of these"));
             }
         }
@@ -359,7 +359,7 @@ impl Header {
         number.or_else(dated).ok_or_else(|| {
             let what = format!("the day `{text}` is no number and no date");
             let advice = match numbers_of(text, '/') {
-                Some(_) => "the day may be the first or the second number: --dates dmy or --dates mdy tells",
+                Some(_) => "the day may be the first or the second number: say which (dmy or mdy), or write 2024-03-05",
                 None => "give a number of days, or a date such as 2024-03-05",
             };
             FileFault::malformed(what, advice)
@@ -560,7 +560,7 @@ mod tests {
         assert!((t.rows[0].size - 0.015).abs() < 1e-15 && t.rows[1].plant == "a", "{:?}", t.rows);
         assert!(t.warnings.iter().any(|w| w.message.contains("2024-02-27")), "{:?}", t.warnings);
         // 3/5/2024 is May or March.
-        assert!(read("date,size\n3/5/2024,1\n").unwrap_err().contains("--dates dmy"));
+        assert!(read("date,size\n3/5/2024,1\n").unwrap_err().contains("dmy or mdy"));
         assert!(read("date,size\n2024-03-05,1\n7,2\n").unwrap_err().contains("one way"));
         let t = read("day\theight_mm\n1\t2\n").unwrap();
         assert!((t.rows[0].size - 0.002).abs() < 1e-15);
@@ -584,7 +584,7 @@ mod tests {
         );
         let gone =
             read_as(text, &GrowthSpec { by: Some("block".into()), ..GrowthSpec::default() }).unwrap_err();
-        assert!(gone.contains("`block` (--by)") && gone.contains("Treatment"), "{gone}");
+        assert!(gone.contains("`block` of groups") && gone.contains("Treatment"), "{gone}");
     }
 
     #[test]

@@ -61,7 +61,12 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let has_rib = rib.is_some_and(|(_, base)| base.distance(root) < LEAF.rib_base * length);
     let likelihood = match has_rib {
         true => LEAF.likelihood[0],
-        false if face.shape.slenderness < LEAF.without_rib && scene.marks_of(row).next().is_none() => {
+        // Two lines below an empty outline are the sides of a trunk as well.
+        false
+            if petioles.len() == 1
+                && face.shape.slenderness < LEAF.without_rib
+                && scene.marks_of(row).next().is_none() =>
+        {
             LEAF.likelihood[1]
         }
         false => return None,
