@@ -2355,7 +2355,7 @@ export type StrokeTurn = {
   scale: [number, number];
 };
 
-/** The file formats that hold the structure of a plant, as text; written only. */
+/** The file formats that hold the structure of a plant, as text. */
 export type StructureFormat =
   | /** Multiscale tree graph: axes, nodes and organs as text. */
   "mtg"
