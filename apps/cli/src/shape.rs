@@ -123,8 +123,21 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
 fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     let given = &args.given;
     let plants = [
-        "what", "edits", "output", "plant", "save", "png", "seed", "list", "strict", "report", "json",
+        "what",
+        "edits",
+        "output",
+        "plant",
+        "save",
+        "png",
+        "seed",
+        "list",
+        "strict",
+        "report",
+        "json",
         "leaves",
+        "in_up",
+        "in_unit",
+        "thickness_unit",
     ];
     let users = "plants that are shaped";
     if args.template {

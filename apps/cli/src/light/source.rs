@@ -43,6 +43,9 @@ pub(super) fn beams(args: &SourceArgs) -> Outcome<(Beams, LightUnit, Sources)> {
     if let Some(path) = &args.sky_table {
         return measured(path);
     }
+    if args.date.is_some() && args.place.is_none() {
+        return Err(Failure::Bad("--date is for the sun of a place: say --place instead of --sun".into()));
+    }
     let turbidity = args.turbidity.unwrap_or(3.0);
     let Some(([latitude_deg, longitude_deg, altitude_m], date)) = args.place.zip(args.date) else {
         let sun = args.sun.map(|[azimuth_deg, elevation_deg]| SunPosition { azimuth_deg, elevation_deg });

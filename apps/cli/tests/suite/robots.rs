@@ -50,7 +50,7 @@ fn makers_write_both_files_and_the_same_bytes_each_time() {
     fs::write(dir.join("flower.svg"), FLOWER).unwrap();
     let edits = good(&dir, &["shape", "--template"]);
     fs::write(dir.join("edits.json"), edits).unwrap();
-    let shaped = ["shape", "oak", "--edits", "edits.json", "--detail", "0.1"];
+    let shaped = ["shape", "oak", "--edits", "edits.json"];
     for maker in [&["grow", "wheat"][..], &["sketch", "flower.svg"], &shaped] {
         good(&dir, &[maker, &["-o", "x.urdf", "-q"]].concat());
         let text = fs::read_to_string(dir.join("x.urdf")).unwrap();
