@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use burgeon::bloom::{self, Group, GroupTest, GrowthLaw, Offset, Series};
+use burgeon::bloom::{self, GroupTest, GrowthLaw, Offset, PlantGroup, Series};
 use burgeon::formats::{GrowthEntry, GrowthSpec, ReadGrowth, read_growth, read_xlsx};
 use burgeon::{Seed, Warning};
 use serde::Serialize;
@@ -40,7 +40,7 @@ pub(crate) struct GroupReport {
 }
 
 impl GroupReport {
-    fn new(by: &str, groups: &[Group], test: &GroupTest) -> Self {
+    fn new(by: &str, groups: &[PlantGroup], test: &GroupTest) -> Self {
         Self {
             by: by.to_owned(),
             groups: groups.iter().map(|g| g.name.clone()).collect(),
@@ -227,7 +227,7 @@ fn of_groups(args: &FitArgs, by: &str, rows: Vec<GrowthEntry>, machine: &Machine
             let (days, values) = pairs.into_iter().unzip();
             Series { days, values }
         });
-        groups.push(Group { name: name.to_owned(), plants: plants.collect() });
+        groups.push(PlantGroup { name: name.to_owned(), plants: plants.collect() });
     }
     if groups.is_empty() {
         return Err(Failure::at(&args.input, format!("no group by {by} was measured on 3 days or more")));

@@ -14,7 +14,7 @@ use crate::{
 
 /// What was measured on the plants of one group.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Group {
+pub struct PlantGroup {
     /// Its name.
     pub name: String,
     /// A series for each plant; days in any order, also the same day twice. Values in metres.
@@ -71,7 +71,12 @@ const FEWEST_DAYS: usize = 3;
 /// # Errors
 /// [`FitError::TooFew`] for a group with fewer than 3 days; [`BloomError::OverBudget`], before anything is fitted, and
 /// [`BloomError::Cancelled`].
-pub fn fit_groups(name: &str, groups: &[Group], seed: Seed, run: &Run<'_>) -> Result<Groups, BloomError> {
+pub fn fit_groups(
+    name: &str,
+    groups: &[PlantGroup],
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<Groups, BloomError> {
     let all: Vec<&Series> = groups.iter().flat_map(|g| &g.plants).collect();
     let values: u64 = all.iter().map(|s| s.values.len() as u64).sum();
     let each = curves_compared();
@@ -157,7 +162,7 @@ fn criterion(fits: &[SharedFit], values: usize) -> f64 {
     n * ops::ln((squares / n).max(f64::MIN_POSITIVE)) + 2.0 * k + few
 }
 
-fn law_of(group: &Group, series: &Series, fit: &SharedFit, span: f64) -> RegionLaw {
+fn law_of(group: &PlantGroup, series: &Series, fit: &SharedFit, span: f64) -> RegionLaw {
     let at = |day: f64| fit.value(0, day);
     let [_, slope] = fit.linear[0];
     let law = match fit.form {
@@ -191,7 +196,7 @@ fn law_of(group: &Group, series: &Series, fit: &SharedFit, span: f64) -> RegionL
 }
 
 fn test(
-    groups: &[Group],
+    groups: &[PlantGroup],
     pooled: &[Series],
     best: &[SharedFit],
     (first_day, seed): (f64, Seed),
@@ -219,7 +224,7 @@ fn test(
 
 /// Lets plants change their groups, and counts how often curves for these fit as well.
 fn permuted(
-    groups: &[Group],
+    groups: &[PlantGroup],
     form: (Form, bool),
     found: f64,
     (first_day, values, seed): (f64, u64, Seed),
@@ -331,7 +336,7 @@ mod tests {
     }
 
     /// Plants of a logistic; each is larger or smaller as a whole by `own`.
-    fn group(name: &str, truth: &Logistic, own: f64, plants: usize, seed: u64) -> Group {
+    fn group(name: &str, truth: &Logistic, own: f64, plants: usize, seed: u64) -> PlantGroup {
         let mut s = Seed::new(seed).stream(Draw::Test);
         let plant = |_| {
             let size = 1.0 + own * normal(&mut s);
@@ -339,7 +344,7 @@ mod tests {
             let values = days.iter().map(|&d| size * truth.value(d) + 0.8 * normal(&mut s)).collect();
             Series { days, values }
         };
-        Group { name: name.into(), plants: (0..plants).map(plant).collect() }
+        PlantGroup { name: name.into(), plants: (0..plants).map(plant).collect() }
     }
 
     const TALL: Logistic = Logistic { k: 60.0, p0: 4.0, r: 0.25, offset: 0.0 };
@@ -392,7 +397,7 @@ mod tests {
     #[test]
     fn a_group_of_two_days_is_too_little() {
         let two = Series { days: vec![0.0, 1.0, 1.0], values: vec![1.0, 2.0, 2.1] };
-        let groups = [group("a", &TALL, 0.0, 2, 1), Group { name: "b".into(), plants: vec![two] }];
+        let groups = [group("a", &TALL, 0.0, 2, 1), PlantGroup { name: "b".into(), plants: vec![two] }];
         let failed = fit_groups("t", &groups, Seed::new(1), &brief()).unwrap_err();
         assert_eq!(failed, BloomError::Fit(FitError::TooFew { got: 2 }));
         assert_eq!(ways(&[2, 2]), 6.0);

@@ -71,7 +71,7 @@ pub use coloured::OrganPoints;
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
-pub use groups::{Group, GroupTest, Groups, Permuted, fit_groups};
+pub use groups::{GroupTest, Groups, Permuted, PlantGroup, fit_groups};
 pub use lattice::{Lattice, Weights};
 pub use law::{
     GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Prediction, Quantity, RegionLaw, Stage, fit_sizes, fit_stages,

@@ -7,7 +7,7 @@ use plant::{AxisId, AxisKind, OrganKind, Plant};
 use crate::choice::{Bend, choose};
 use crate::line::{Line, Lines, Weight, place_of};
 use crate::mechanism::{Runs, outer, parallel};
-use crate::{Body, Capsule, Joint, MechanicsError, Mechanism, Stalk, WoodGroup};
+use crate::{Body, Capsule, MechanicsError, Mechanism, SpringJoint, Stalk, WoodGroup};
 
 /// How a plant becomes a mechanism.
 ///
@@ -222,7 +222,7 @@ impl Build<'_> {
             let tangent = line.tangent(bend.arc);
             let across = tangent.any_orthonormal_vector();
             draft.body.axis = Some(AxisId::new(row));
-            draft.body.joint = Some(Joint {
+            draft.body.joint = Some(SpringJoint {
                 axes: [across, tangent.cross(across)],
                 stiffness: 1.0 / bend.compliance,
                 damping: 0.0,

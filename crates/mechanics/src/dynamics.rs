@@ -245,7 +245,7 @@ impl Mechanism {
 
     fn hinges(&self) -> Vec<Hinge> {
         let rows = self.bodies.iter().enumerate().filter_map(|(row, body)| Some((row, body, body.joint?)));
-        let both = |(body, b, j): (usize, &crate::Body, crate::Joint)| {
+        let both = |(body, b, j): (usize, &crate::Body, crate::SpringJoint)| {
             j.axes.map(|axis| Hinge { body, axis, at: b.origin, stiffness: j.stiffness })
         };
         rows.flat_map(both).collect()

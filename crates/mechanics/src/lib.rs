@@ -22,5 +22,5 @@ mod tissue;
 pub use build::{MechanicsSpec, articulate};
 pub use dynamics::Frequencies;
 pub use error::MechanicsError;
-pub use mechanism::{Body, Capsule, Joint, Mechanism, Stalk};
+pub use mechanism::{Body, Capsule, Mechanism, SpringJoint, Stalk};
 pub use tissue::{Tissue, WoodGroup};

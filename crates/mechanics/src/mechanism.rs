@@ -5,7 +5,7 @@ use plant::{AxisId, OrganId, Plant};
 
 /// A place where a limb bends: two hinges at right angles, the second borne by the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
+pub struct SpringJoint {
     /// Unit vectors of the two hinges, at right angles to the limb and to one another.
     pub axes: [DVec3; 2],
     /// Stiffness of each hinge, newton metres per radian: k = 1 / (integral of ds / E I), which is E I / L of an even run.
@@ -56,7 +56,7 @@ pub struct Body {
     /// The origin of its coordinates: where its joint is, or its stalk.
     pub origin: DVec3,
     /// How it moves on its parent; none where it is fixed.
-    pub joint: Option<Joint>,
+    pub joint: Option<SpringJoint>,
     /// Of a fruit, the stalk by which it hangs on its parent.
     pub stalk: Option<Stalk>,
     /// Kilograms, above 0 but for a first body that has no part above the ground.

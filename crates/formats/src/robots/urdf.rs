@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use mechanics::{Body, Capsule, Joint, Mechanism};
+use mechanics::{Body, Capsule, Mechanism, SpringJoint};
 
 use super::{MOST_TURN_RAD, Seen, attribute, number, triple, turned, turned_inertia};
 
@@ -125,7 +125,7 @@ impl Writer<'_> {
         self.line(2, &format!(r#"<child link="{child}"/>"#));
     }
 
-    fn hinge(&mut self, name: &str, links: (&str, &str), place: DVec3, joint: &Joint, side: usize) {
+    fn hinge(&mut self, name: &str, links: (&str, &str), place: DVec3, joint: &SpringJoint, side: usize) {
         let [effort, speed] = LIMITS.map(number);
         let range = number(MOST_TURN_RAD);
         self.line(1, &format!(r#"<joint name="{name}" type="revolute">"#));
