@@ -43,7 +43,7 @@ impl WoodGroup {
     }
 
     /// The group that a plant shows to belong to: conifers by their needles, herbs by the names of the species that come
-    /// with Burgeon or by having stems and stalks alone, all others hardwood. Green stems and stalks are green in any group ([`Self::of_axis`]).
+    /// with Burgeon or by having stems and stalks alone, all others hardwood. Green stems and stalks are green in any group.
     pub fn seen_in(plant: &Plant) -> Self {
         let name = plant.name.trim().to_lowercase();
         let has_needles = |s: &Shape| matches!(s, Shape::Blade(blade) if blade.needles.is_some());
