@@ -292,6 +292,7 @@ fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
 /// Converts a cloud: to PLY in double precision.
 fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machine) -> Outcome {
     args.given.refuse(&["pack"], "models with faces", "points are converted")?;
+    args.given.refuse(&["plant", "thickness_unit"], "files of structure", "points are converted")?;
     // Axes and unit are always of use: no cloud fixes them.
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     let format = files::writable(&args.output)?;

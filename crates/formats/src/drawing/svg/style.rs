@@ -372,7 +372,12 @@ impl Sheet {
             let weight = weight_of(&selector);
             rules.push(Rule { selector, weight, wanted: Vec::new() });
         }
-        for (name, value) in wanted {
+        let [ids, classes, _] = rules[row].weight;
+        // The width of all paths alike is that of the pen, and says nothing of a stroke; our own files have it.
+        let is_usual = |name: &str, value: &str| {
+            name == "stroke-width" && ids + classes == 0 && value.trim_start_matches(['0', '.']) != ""
+        };
+        for (name, value) in wanted.iter().filter(|(name, value)| !is_usual(name, value)) {
             rules[row].wanted.retain(|d| d.name != *name);
             rules[row].wanted.push(Declared { name: name.clone(), value: value.clone(), order });
         }
