@@ -375,7 +375,7 @@ impl Sheet {
         let [ids, classes, _] = rules[row].weight;
         // The width of all paths alike is that of the pen, and says nothing of a stroke; our own files have it.
         let is_usual = |name: &str, value: &str| {
-            name == "stroke-width" && ids + classes == 0 && value.trim_start_matches(['0', '.']) != ""
+            name == "stroke-width" && ids + classes == 0 && !value.trim_start_matches(['0', '.']).is_empty()
         };
         for (name, value) in wanted.iter().filter(|(name, value)| !is_usual(name, value)) {
             rules[row].wanted.retain(|d| d.name != *name);
