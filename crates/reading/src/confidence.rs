@@ -24,6 +24,11 @@ pub struct ConfidenceLimits {
     /// The least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see: of 60 by people
     /// whose kind is known 48 are right (`cargo xtask train-confidence`, and `--end`).
     pub by_arrangement_least: f64,
+    /// The most confidence in a tangle of bare lines ([`crate::tangled_length`]): of 49 in line art by people one is right.
+    pub tangle_most: f64,
+    /// The confidence in a drawing of so many strokes that no kind is weighed against another: both such drawings among the line
+    /// art by people are read wrong.
+    pub not_weighed: f64,
     /// The strokes of a botanical illustration, where a doodle has fewer.
     pub many_strokes: usize,
 }
@@ -35,6 +40,8 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     by_structure_least: 0.35,
     by_structure_of_many: 0.65,
     by_arrangement_least: 0.8,
+    tangle_most: 0.05,
+    not_weighed: 0.35,
     many_strokes: 15,
 };
 
@@ -53,6 +60,8 @@ pub struct Evidence {
     pub by_structure: bool,
     /// Whether its parts were cut by a reader of arrangements.
     pub by_arrangement: bool,
+    /// Whether most of its axes lead to nothing.
+    pub is_tangle: bool,
 }
 
 /// Names of the numbers of [`Evidence::row`], in their order.
@@ -71,6 +80,9 @@ impl Evidence {
         let Some(coefficients) = fitted() else { return self.share };
         let sum: f64 = self.row().iter().zip(coefficients).map(|(x, c)| x * c).sum();
         let chance = 1.0 / (1.0 + ops::exp(-sum));
+        if self.is_tangle {
+            return chance.min(CONFIDENCE_LIMITS.tangle_most);
+        }
         if self.by_arrangement {
             return chance.max(CONFIDENCE_LIMITS.by_arrangement_least);
         }
@@ -121,6 +133,7 @@ mod tests {
             strokes: 4,
             by_structure: false,
             by_arrangement: false,
+            is_tangle: false,
         };
         let now = own.confidence();
         assert!(now > 0.0 && now < 1.0);
@@ -142,8 +155,11 @@ mod tests {
             strokes: 40,
             by_structure: true,
             by_arrangement: false,
+            is_tangle: false,
         };
         assert!(own.confidence() >= CONFIDENCE_LIMITS.by_structure_of_many);
         assert!(Evidence { by_structure: false, ..own }.confidence() < own.confidence());
+        let tangle = Evidence { is_tangle: true, ..own }.confidence();
+        assert!(tangle <= CONFIDENCE_LIMITS.tangle_most);
     }
 }

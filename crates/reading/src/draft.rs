@@ -17,7 +17,7 @@ use crate::structure::{Hidden, STRUCTURE, Structure};
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
     Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
-    PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
+    PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, palette, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
@@ -39,8 +39,6 @@ const SHUT: f64 = 0.1;
 const ONE_SIDE: f64 = 0.45;
 /// Gaps between the halves of a fruit, a share of its outline.
 pub(crate) const HALVES_GAPS: f64 = 0.2;
-/// Green is larger by more than this than red and blue, of 255: grey and what is nearly black differ by less.
-const GREEN: u8 = 15;
 
 /// Lines are wood where more than so many of those that branch off a branch come to one leaf or fruit.
 const TWIGS_PER_ORGAN: usize = 2;
@@ -358,7 +356,7 @@ impl<'a> Draft<'a> {
 
     /// Blades drawn in green are leaves where others, or a corolla, were drawn in another colour.
     pub(crate) fn green_leaves(&mut self) {
-        let green = |k: usize| self.ink.strokes[k].color.is_some_and(is_green);
+        let green = |k: usize| palette::is_green_stroke(&self.ink.strokes[k]);
         let corollas = self.of_class(StrokeClass::Corolla);
         if self.blades.iter().map(|b| b.stroke).chain(corollas).all(green) {
             return;
@@ -548,7 +546,7 @@ impl<'a> Draft<'a> {
         let is_bare = flowers.is_empty() && twigs > TWIGS_PER_ORGAN * (leaves.len() + fruits.len());
         let lines = orders >= 2 && is_bare && self.bodies.is_empty();
         let bare = self.is_tree() && orders >= 1;
-        let woody = crown || trunk || lines || bare;
+        let woody = (crown || trunk || lines || bare) && !palette::is_herb(self.ink);
         for axis in &mut self.forest.axes {
             if axis.kind == AxisKind::Stem && woody {
                 axis.kind = AxisKind::Branch;
@@ -660,9 +658,4 @@ fn closed(points: &[DVec2], apart: bool) -> Drawn {
         return Drawn::Open;
     }
     Sheetlet::new(&line, 0).map_or(Drawn::Thin, |blade| Drawn::Blade(blade, stalks))
-}
-
-/// Green before all, and neither grey nor nearly black.
-fn is_green([r, g, b]: [u8; 3]) -> bool {
-    g.saturating_sub(r.max(b)) > GREEN
 }

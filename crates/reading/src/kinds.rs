@@ -313,6 +313,21 @@ pub(crate) struct Shares {
     pub(crate) several: f64,
 }
 
+impl Shares {
+    /// The colours are those of a plant without wood: woody kinds keep a part of their shares.
+    pub(crate) fn without_wood(&mut self) {
+        let before: f64 = self.kinds.iter().map(|s| s.score).sum();
+        let woody = self.kinds.iter_mut().filter(|s| s.kind.is_like(Kind::Tree) || s.kind == Kind::Palm);
+        woody.for_each(|s| s.score *= GREEN_WOOD);
+        let after: f64 = self.kinds.iter().map(|s| s.score).sum();
+        let rise = before / after.max(f64::MIN_POSITIVE);
+        self.kinds.iter_mut().for_each(|s| s.score *= rise);
+        base::sort_by(&mut self.kinds, |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
+    }
+}
+
+/// A woody kind keeps this much of its share in a drawing that is painted without wood.
+const GREEN_WOOD: f64 = 0.1;
 /// A kind that a glance does not see at all keeps this much of its share: a picture so small can mislead.
 const UNSEEN: f64 = 0.03;
 /// What is seen counts to this power beside the numbers: of 0 to 1 the best on drawings by people to choose by.

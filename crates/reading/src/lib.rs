@@ -12,6 +12,7 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `overlap` | which of the blades that overlap lies in front | beyond |
+//! | `palette` | what colours say | beyond |
 //! | `steady`, `pressed` | lines without tremor, and how boldly they were drawn | beyond |
 //! | `attach` | what bears what | beyond |
 //! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
@@ -47,6 +48,7 @@ mod near;
 mod no_plant;
 mod outlines;
 mod overlap;
+mod palette;
 mod pressed;
 mod profile;
 mod raster;
@@ -59,6 +61,7 @@ mod several;
 mod silhouette;
 mod steady;
 mod structure;
+mod tangle;
 #[cfg(test)]
 mod tests;
 mod thresholds;
@@ -81,4 +84,5 @@ pub use rows::{
 };
 pub use rules::{READ_AS, RULES, Rule};
 pub use structure::ARRANGEMENT;
+pub use tangle::{TANGLE_LIMITS, TangleLimits, tangled_length};
 pub use validate::ReadingFault;

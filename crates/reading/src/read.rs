@@ -7,7 +7,7 @@ use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
 use plant::AxisKind;
 
 use crate::bare::BareWood;
-use crate::confidence::Evidence;
+use crate::confidence::{CONFIDENCE_LIMITS, Evidence};
 use crate::draft::Draft;
 use crate::glance::Glance;
 use crate::no_plant::NO_PLANT_LIMITS;
@@ -17,8 +17,8 @@ use crate::structure::{Composed, Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, OrganWord, PlantReading, READ_AS, Reading, Scored,
-    StrokeReading, aside, attach, flowers, glance, inertia, kinds, no_plant, outlines, pressed, rules,
-    several, silhouette, structure, veins,
+    StrokeReading, aside, attach, flowers, glance, inertia, kinds, no_plant, outlines, palette, pressed,
+    rules, several, silhouette, structure, tangled_length, veins,
 };
 use geom::{bounds, convex_hull, signed_area};
 use glam::DVec2;
@@ -169,7 +169,10 @@ impl First {
         }
         let glance = glance::look(ink);
         let row = kinds::kind_features(ink, classes, &reading);
-        let shares = kinds::shares(&row, &glance::by_kind(&glance.words));
+        let mut shares = kinds::shares(&row, &glance::by_kind(&glance.words));
+        if palette::is_herb(ink) {
+            shares.without_wood();
+        }
         let row = no_plant::row(&row, &glance, ink.strokes.len(), sureness(ink, classes));
         Self { reading, said, shares, glance, no_plant: no_plant::chance(&row) }
     }
@@ -389,6 +392,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         strokes: ink.strokes.len(),
         by_structure: is_structural,
         by_arrangement: sure.is_some(),
+        is_tangle: tangled_length(&reading) > 0.0,
     };
     let readings = readings(kind, &evidence, &scores);
     let word = called.or_else(|| glance::word(kind, &glance.words));
@@ -538,7 +542,8 @@ fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     let group = |k: Kind| share_of(scores, k) / total;
     // The model weighs no kind against another in a drawing of so many strokes.
     let is_weighed = scores.len() > 1;
-    let own = if is_weighed { evidence.confidence() } else { evidence.share };
+    let own =
+        if is_weighed { evidence.confidence() } else { CONFIDENCE_LIMITS.not_weighed.min(evidence.share) };
     let left = (1.0 - own) / (1.0 - evidence.share).max(f64::MIN_POSITIVE);
     let mut found: Vec<Scored> = vec![Scored { kind, score: own }];
     for s in scores {

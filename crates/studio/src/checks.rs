@@ -124,7 +124,7 @@ pub const PLAUSIBLE: PlausibilityLimits = PlausibilityLimits {
 const BUCKLING: f64 = 80.1;
 
 /// The names of all checks, which are the codes of their warnings.
-pub const CHECKS: [&str; 31] = [
+pub const CHECKS: [&str; 32] = [
     "nothing-made",
     "size-large",
     "size-small",
@@ -135,6 +135,7 @@ pub const CHECKS: [&str; 31] = [
     "ink-unexplained",
     "extent-small",
     "extent-large",
+    "lines-bare",
     "reading-unsure",
     "growth-unused",
     "blade-long",
@@ -381,9 +382,23 @@ pub(crate) fn check_sketch(made: &Sketched<'_>, report: &mut Report) {
     if let Some(extent) = made.extent {
         check_extent(extent, "the plant has {value} of the drawing's extent", report);
     }
+    let tangled = reading::tangled_length(made.reading);
+    if tangled > 0.0 {
+        Test {
+            name: "lines-bare",
+            value: tangled,
+            bound: Bound::AtMost(reading::TANGLE_LIMITS.length_most),
+            figure: Figure::Number,
+            message: "lines {value} times as long as the drawing's diagonal are axes that lead to no organ",
+            advice: "shading and outlines of ink are read as twigs: draw the outline of each organ with one line, over \
+                     the picture if it is one, or say what the strokes are",
+        }
+        .tell(report);
+    }
     let score = ReadingReport::of(made.reading).first().map(|r| r.score);
     // A line by itself is a stem by rule, and no kind was weighed against another.
-    let is_weighed = made.is_guessed && made.reading.strokes.len() > 1;
+    // A tangle was told already.
+    let is_weighed = made.is_guessed && made.reading.strokes.len() > 1 && tangled == 0.0;
     if let Some(score) = score.filter(|_| is_weighed) {
         Test {
             name: "reading-unsure",

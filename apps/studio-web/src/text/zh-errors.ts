@@ -282,6 +282,8 @@ export const zhWarnings: Record<string, string> = {
   'extent-small':
     '植物只有输入范围的 {value}（至少 {bound}）：输入的大部分没有用上，请去掉离植物远的部分，或指明它是什么',
   'extent-large': '植物是输入范围的 {value}（最多 {bound}）：超出了输入，请指明末端的笔画是什么，或补充笔画',
+  'lines-bare':
+    '没有连到任何器官的线条总长是画稿对角线的 {value} 倍（最多 {bound}）：阴影或油墨轮廓被当成了细枝，请用一条线画出每个器官的轮廓（可描在图片上），或指明笔画是什么',
   'reading-unsure':
     '这样理解画稿的得分只有 {value}（至少 {bound}），多半不对：请指明植物的种类，或笔画是什么',
   'growth-unused':

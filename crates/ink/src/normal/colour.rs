@@ -14,6 +14,8 @@ const WITHIN: f64 = 0.85;
 const PART: core::ops::Range<f64> = 0.1..0.85;
 /// Opaque shade follows the outline with this share of its points.
 const ALONG: f64 = 0.3;
+/// A gloss is at least so pale in each channel.
+const GLOSS: u8 = 235;
 /// What is paler in each channel is the white of the paper.
 const WHITE: u8 = 246;
 
@@ -110,8 +112,16 @@ impl Work {
         let edge = 0.04 * of.extent.size().min_element();
         let on_edge =
             |p: DVec2| geom::closest_on_polyline(&of.points, p).is_some_and(|c| c.point.distance(p) <= edge);
-        translucent || (area.area >= PART.start * of.area && share(&points, on_edge) >= ALONG)
+        translucent
+            || (area.area >= PART.start * of.area && share(&points, on_edge) >= ALONG)
+            || is_highlight(area, of, (fill.and_then(|f| f.color), below.color_seen()))
     }
+}
+
+/// Whether an area is a gloss: small and white, on another colour.
+fn is_highlight(area: &Outline, of: &Outline, (own, below): (Option<[u8; 3]>, Option<[u8; 3]>)) -> bool {
+    let is_white = |c: [u8; 3]| c.iter().all(|c| *c >= GLOSS);
+    area.area < PART.start * of.area && own.is_some_and(is_white) && below.is_some_and(|c| !is_white(c))
 }
 
 fn count_of(out: &[Vec<bool>]) -> usize {

@@ -7,6 +7,7 @@
 //! | outside the sheet, pages, frames, ruling | `paper` |
 //! | lines that lead from words | `labels` |
 //! | rims of stickers, layers under the whole drawing | `backing` |
+//! | line art painted as one area with holes | `cells` |
 //! | outlines of a pen's stroke, traced ink | `ribbon`, `traced` |
 //! | a line drawn twice, segments, outlines in pieces | `pieces` |
 //! | colour under a line, shade over colour | `colour` |
@@ -16,6 +17,7 @@
 //! figures as they came to it and says what is left.
 
 mod backing;
+mod cells;
 mod colour;
 mod hatching;
 mod labels;
@@ -121,6 +123,13 @@ pub struct Figure {
     pub fill: Option<Fill>,
 }
 
+impl Figure {
+    /// The colour that is seen of it: of its area, else of its line.
+    fn color_seen(&self) -> Option<[u8; 3]> {
+        self.fill.and_then(|f| f.color).or(self.like.color)
+    }
+}
+
 /// What was done to a drawing to get plain strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Change {
@@ -218,6 +227,7 @@ pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, words: &[(
     work.leave_labels_out(words);
     work.leave_paper_out();
     work.leave_backings_out();
+    work.open_line_art();
     work.take_pen_outlines();
     work.take_traced_ink();
     work.merge_repeats();

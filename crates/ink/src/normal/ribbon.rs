@@ -2,6 +2,7 @@
 //!
 //! Outline -> its two ends -> its two sides, paired -> the middle between them and the width.
 
+use base::LiteMap;
 use glam::DVec2;
 
 use super::{Change, Work, places};
@@ -22,6 +23,7 @@ impl Work {
             lines,
             fill_only: !(f.lined || is_solid(f) || (opaque && is_translucent(f))),
             fill_said: f.fill.is_some_and(|f| f.said),
+            color: f.fill.and_then(|f| f.color),
         };
         let candidates: Vec<Candidate<'_>> =
             lines.iter().map(Vec::as_slice).zip(&self.figures).map(candidate).collect();
@@ -104,6 +106,7 @@ struct Candidate<'a> {
     fill_only: bool,
     /// The file asks for the fill.
     fill_said: bool,
+    color: Option<[u8; 3]>,
 }
 
 /// A centre line: points with the width there.
@@ -129,20 +132,23 @@ fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(
         let most = if c.fill_said { SLENDER } else { SLENDER_UNSAID };
         r.width / r.length < most && r.width < WIDEST * diagonal
     };
-    let mut widths: Vec<f64> = candidates
-        .iter()
-        .zip(&measured)
-        .filter_map(|(c, r)| r.as_ref().filter(|r| sure(c, r)).map(|r| r.width))
-        .collect();
-    base::sort_numbers(&mut widths);
-    let pen = widths.get(widths.len() / 2).copied();
+    // The pens of a drawing by their colours: petals among green stems are no dashes of the pen that drew these.
+    let mut pens: LiteMap<Option<[u8; 3]>, Vec<f64>> = LiteMap::new();
+    for (c, ribbon) in candidates.iter().zip(&measured) {
+        if let Some(ribbon) = ribbon.as_ref().filter(|r| sure(c, r)) {
+            pens.entry(c.color).or_default().push(ribbon.width);
+        }
+    }
+    let pens: LiteMap<_, f64> = pens.into_iter().map(|(color, widths)| (color, median(widths))).collect();
+    let pen_of = |c: &Candidate<'_>| pens.get(&c.color).copied();
     let mut found: Vec<Option<Centre>> = candidates
         .iter()
         .zip(measured)
         .map(|(c, r)| {
             let ribbon = r?;
             // Short dashes of the same pen are not slender, but as wide as its other strokes.
-            let dash = pen.is_some_and(|pen| ribbon.width < 1.5 * pen && ribbon.width < 0.5 * ribbon.length);
+            let dash =
+                pen_of(c).is_some_and(|pen| ribbon.width < 1.5 * pen && ribbon.width < 0.5 * ribbon.length);
             (sure(c, &ribbon) || (c.fill_said && dash)).then_some(ribbon.centre)
         })
         .collect();
@@ -151,6 +157,12 @@ fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(
         *width = if widest > 0.0 { (*width / widest).clamp(0.0, 1.0) } else { 1.0 };
     }
     found
+}
+
+/// The middle one of some numbers; 0 of none.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    base::sort_numbers(&mut numbers);
+    numbers.get(numbers.len() / 2).copied().unwrap_or_default()
 }
 
 struct Ribbon {
@@ -360,7 +372,7 @@ mod tests {
     }
 
     fn one(lines: &[Vec<DVec2>]) -> Option<Vec<(DVec2, f64)>> {
-        let c = Candidate { lines, fill_only: true, fill_said: true };
+        let c = Candidate { lines, fill_only: true, fill_said: true, color: None };
         centre_lines(&[c], 30.0).pop().flatten()
     }
 
@@ -406,7 +418,7 @@ mod tests {
     fn short_dashes_of_the_same_pen_go_along() {
         let long = vec![outline(&arc(80, 2.0), |_| 0.4)];
         let dash = vec![outline(&[DVec2::ZERO, DVec2::X * 0.7, DVec2::X * 1.4], |_| 0.4)];
-        let c = |lines| Candidate { lines, fill_only: true, fill_said: true };
+        let c = |lines| Candidate { lines, fill_only: true, fill_said: true, color: None };
         assert!(centre_lines(&[c(&dash)], 30.0)[0].is_none(), "alone it could be anything");
         assert!(centre_lines(&[c(&long), c(&dash)], 30.0)[1].is_some(), "beside a stroke it is one");
     }

@@ -269,3 +269,52 @@ fn dots_of_one_size_in_small_outlines_are_stipple_and_a_few_are_not() {
     assert_eq!((normal.strokes.len(), counts(&normal)), (8, vec![(Change::Hatching, 32)]));
     assert!(!counts(&normalise(drawn(1), None, &[])).iter().any(|(c, _)| *c == Change::Hatching));
 }
+
+/// A flower as stickers are drawn: colours, and over them one dark area whose holes are the petals and the disc.
+fn outlined_in_ink() -> Vec<Figure> {
+    let at = |k: u32| DVec2::from_angle(ops::TAU * f64::from(k) / 5.0) * 24.0;
+    let mut figures: Vec<Figure> =
+        (0..5).map(|k| area(vec![ring(at(k), 12.5, 40)], [120, 130, 220])).collect();
+    figures.push(area(vec![ring(DVec2::ZERO, 9.5, 40)], [230, 200, 20]));
+    let mut dark = vec![ring(DVec2::ZERO, 39.0, 80)];
+    dark.extend((0..5).map(|k| ring(at(k), 12.0, 40)));
+    dark.push(ring(DVec2::ZERO, 9.0, 40));
+    figures.push(area(dark, [40, 40, 110]));
+    figures
+}
+
+#[test]
+fn holes_of_painted_line_art_are_outlines_in_the_colours_behind_them() {
+    let normal = normalise(outlined_in_ink(), None, &[]);
+    let colors: Vec<_> = normal.strokes.iter().map(|s| s.color).collect();
+    let petal = Some([120, 130, 220]);
+    assert_eq!(colors, [petal, petal, petal, petal, petal, Some([230, 200, 20])]);
+    assert_eq!(counts(&normal), [(Change::Colour, 6)]);
+    // Without colours behind it, the same area is a plate with holes.
+    let plate = outlined_in_ink().split_off(6);
+    assert!(counts(&normalise(plate, None, &[])).iter().all(|(change, _)| *change != Change::Colour));
+}
+
+#[test]
+fn a_small_white_gloss_is_no_organ_and_white_petals_are() {
+    let fruit = area(vec![ring(DVec2::ZERO, 20.0, 60)], [200, 30, 40]);
+    let gloss = area(vec![ring(DVec2::new(-6.0, 8.0), 3.0, 20)], [255, 255, 255]);
+    let petal = area(vec![ring(DVec2::new(6.0, -2.0), 9.0, 30)], [255, 255, 255]);
+    let normal = normalise(vec![fruit.clone(), gloss], None, &[]);
+    assert_eq!((normal.strokes.len(), counts(&normal)), (1, vec![(Change::Shade, 1)]));
+    assert_eq!(normalise(vec![fruit, petal], None, &[]).strokes.len(), 2);
+}
+
+#[test]
+fn petals_are_no_dashes_of_the_pen_of_the_stem() {
+    let bar = |x: f64, y: f64, width: f64, height: f64| {
+        let corners = [[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]];
+        line(&corners)
+    };
+    let stem = area(vec![bar(0.0, 0.0, 2.0, 80.0)], [40, 150, 40]);
+    let petal = area(vec![bar(0.0, 82.0, 2.5, 8.0)], [220, 60, 120]);
+    let dash = area(vec![bar(5.0, 0.0, 2.5, 8.0)], [40, 150, 40]);
+    let normal = normalise(vec![stem, petal, dash], None, &[]);
+    let points: Vec<bool> = normal.strokes.iter().map(|s| is_closed(&s.samples)).collect();
+    assert_eq!(points, [false, true, false]);
+}

@@ -16,7 +16,7 @@ use crate::draft::{Draft, HALVES_GAPS};
 use crate::flowers::together;
 use crate::rings::{Ring, rings};
 use crate::thresholds::{MOUTH, STRAIGHT};
-use crate::{Kind, READ_AS};
+use crate::{Kind, READ_AS, palette};
 
 /// Feet within this share of the height stand on the ground.
 const FOOT: f64 = 0.15;
@@ -183,8 +183,10 @@ fn wood(parts: &[&Part]) -> Classes {
 }
 
 fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> Classes {
-    let trunk: Vec<&Part> = parts.iter().filter(|p| kind != Kind::Bush && is_wood(p, all)).collect();
-    let green: Vec<&Part> = parts.iter().filter(|p| kind == Kind::Bush || !is_wood(p, all)).collect();
+    let is_painted = palette::is_painted(draft.ink);
+    let is_brown = |p: &Part| is_painted && palette::is_brown_stroke(&draft.ink.strokes[p.stroke]);
+    let is_trunk = |p: &&Part| kind != Kind::Bush && (is_wood(p, all) || is_brown(p) && !p.is_level());
+    let (trunk, green): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(is_trunk);
     let largest = green.iter().map(|p| p.area).fold(0.0, f64::max);
     let mut found = wood(&trunk);
     let main: Vec<&&Part> = green.iter().filter(|p| p.area > MAIN_CROWN * largest && !p.is_level()).collect();

@@ -8,6 +8,7 @@
 //! they come from.
 
 mod as_kind;
+mod colours;
 mod grass;
 mod hanging;
 mod one_go;
@@ -228,6 +229,12 @@ pub const RULES: &[Rule] = &[
         MANY,
         pots::pots,
         "A box at the bottom with a flat top on which the plant stands is its pot.",
+    ),
+    rule(
+        "green-is-no-bark",
+        ANY,
+        colours::green_is_no_bark,
+        "Green lines in a drawing of several colours are neither bark nor clay.",
     ),
     rule(
         "zigzag",

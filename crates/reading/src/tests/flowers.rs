@@ -259,3 +259,24 @@ fn a_pot_is_read_of_all_its_strokes() {
     assert_eq!((pot.lines.len(), pot.source), (2, Some(0)));
     assert!(r.strokes[..2].iter().all(|s| s.organ == crate::OrganWord::Pot));
 }
+
+#[test]
+fn green_is_no_bark_in_a_painted_drawing() {
+    let lines = [line((3.0, 0.0), (4.0, 9.0)), line((5.0, 0.0), (6.0, 9.0)), circle((5.0, 10.0), 1.5)];
+    let mut drawing = Drawing::from_polylines("herb", &lines);
+    let woods = |drawing: &Drawing| {
+        let ink = clean(drawing, &mut Report::default());
+        let class = |k: u32| if k < 2 { StrokeClass::TrunkOutline } else { StrokeClass::Blade };
+        let classes: Vec<Classified> = ink.strokes.iter().map(|s| perhaps(class(s.index), 0.5)).collect();
+        let r = read_without(&[READ_AS], &ink, &classes, &mut Report::default());
+        (r.strokes.iter().filter(|s| s.class == StrokeClass::TrunkOutline).count(), r.woody)
+    };
+    assert_eq!(woods(&drawing).0, 2);
+    for (stroke, color) in drawing.strokes.iter_mut().zip([[60, 140, 40], [60, 140, 40], [250, 220, 30]]) {
+        stroke.color = Some(color);
+    }
+    assert_eq!(woods(&drawing), (0, false));
+    // In one colour alone green is the pen's.
+    drawing.strokes.iter_mut().for_each(|s| s.color = Some([60, 140, 40]));
+    assert_eq!(woods(&drawing).0, 2);
+}

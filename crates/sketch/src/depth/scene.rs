@@ -130,11 +130,17 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = Option<[u8; 3]>> + Clone
     other && (first.is_some_and(is_coloured) || colors.flatten().any(is_coloured))
 }
 
-/// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.
+/// The linear light of a colour that something was drawn in; `None` for ink: black or grey. Among colours white is one, as
+/// nobody draws with white ink: the petals of a daisy.
 pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
     let light = color.map(base::light_of_byte);
     // Of the darkest ink nobody sees the hue.
-    (is_coloured(color) && light.into_iter().any(|x| x > 0.04)).then_some(light)
+    let is_seen = is_coloured(color) && light.into_iter().any(|x| x > 0.04);
+    (is_seen || is_white(color)).then_some(light)
+}
+
+fn is_white(c: [u8; 3]) -> bool {
+    c.into_iter().all(|x| x > 215)
 }
 
 /// Not black, grey or white.

@@ -1,0 +1,200 @@
+//! Line art that was painted as one area with holes over colours -> the outlines of its holes, each with the colour behind it.
+//!
+//! Drawing programs turn the outlines of a coloured picture into one compound path: its ink runs between the organs, and each
+//! organ is a hole in it. The holes say more than the centre lines of the ink, which come apart at every junction.
+
+use glam::DVec2;
+
+use super::{Change, Extent, Figure, LIMITS, Work, is_closed, places, some_of};
+
+/// When an area with holes is line art. Shares are of areas.
+struct CellLimits {
+    /// Its ink takes less than this share of what its outer outline encloses.
+    ink_most: f64,
+    /// Others are painted behind more than this share of its holes.
+    covered: f64,
+    /// A point in so many of the places of a hole shows the colour behind it.
+    seen: f64,
+    /// A hole has at least this share of what the outer outline encloses; smaller ones are gaps between the lines.
+    hole_least: f64,
+    /// Colour behind lies within the outer outline with this share of its points.
+    within: f64,
+    /// An area behind a hole that is smaller than this share of it is a thing of its own, such as the disc of a flower.
+    own_thing: f64,
+    /// Channels of colours of one hue, in shares of their sum, differ by less than this: shade, and no other thing.
+    one_hue: f64,
+}
+
+const LIMITS_OF_CELLS: CellLimits = CellLimits {
+    ink_most: 0.6,
+    covered: 0.7,
+    seen: 0.5,
+    hole_least: 0.004,
+    within: 0.85,
+    own_thing: 0.5,
+    one_hue: 0.15,
+};
+
+/// Places along each side of the box of a hole at which the colour behind it is looked up.
+const PLACES: u32 = 7;
+/// More holes times areas are not compared.
+const MOST_HOLES: usize = 400;
+
+/// A hole of line art, and the topmost area behind it.
+struct Hole {
+    /// Its sub-path in the figure.
+    line: usize,
+    outline: Vec<DVec2>,
+    area: f64,
+    behind: Option<usize>,
+}
+
+impl Work {
+    /// Cost: holes times the points of the areas behind them.
+    pub(super) fn open_line_art(&mut self) {
+        let outlines: Vec<Option<Vec<DVec2>>> = self.figures.iter().map(painted_outline).collect();
+        let mut k = 0;
+        let mut gone = vec![false; self.figures.len()];
+        let mut opened: Vec<(usize, Vec<Figure>)> = Vec::new();
+        while k < self.figures.len() {
+            if let Some((outer, holes)) = self.line_art(k, &outlines) {
+                let figures = holes.iter().map(|h| self.figure_of(k, h)).collect();
+                opened.push((k, figures));
+                for below in self.colours_behind(k, &outer, &holes, &outlines) {
+                    gone[below] = true;
+                }
+            }
+            k += 1;
+        }
+        let colours = gone.iter().filter(|g| **g).count();
+        let mut opened = opened.into_iter().peekable();
+        let mut figures = Vec::with_capacity(self.figures.len());
+        for (k, figure) in core::mem::take(&mut self.figures).into_iter().enumerate() {
+            match opened.next_if(|(row, _)| *row == k) {
+                Some((_, cells)) => figures.extend(cells),
+                None if gone[k] => {}
+                None => figures.push(figure),
+            }
+        }
+        self.figures = figures;
+        self.note(Change::Colour, colours);
+    }
+
+    /// The outer outline and the holes of an area that is line art over colours.
+    fn line_art(&self, k: usize, outlines: &[Option<Vec<DVec2>>]) -> Option<(Vec<DVec2>, Vec<Hole>)> {
+        let figure = &self.figures[k];
+        let is_solid = figure.fill.is_some_and(|f| f.said && f.opacity >= LIMITS.translucent);
+        if figure.lined || !is_solid || !(2..MOST_HOLES).contains(&figure.lines.len()) || k == 0 {
+            return None;
+        }
+        let rings: Vec<Vec<DVec2>> = figure.lines.iter().map(|l| places(l)).collect();
+        let areas: Vec<f64> = rings.iter().map(|r| geom::signed_area(r).abs()).collect();
+        let largest = (0..rings.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]))?;
+        let outer = rings[largest].clone();
+        let is_hole = |j: &usize| {
+            *j != largest
+                && areas[*j] >= LIMITS_OF_CELLS.hole_least * areas[largest]
+                && is_closed(&figure.lines[*j])
+                && some_of(&rings[*j], 8).all(|p| geom::contains(&outer, p))
+        };
+        let candidates: Vec<usize> = (0..rings.len()).filter(is_hole).collect();
+        // An island of ink in a hole is no hole.
+        let is_island = |j: usize| {
+            candidates.iter().any(|&i| {
+                i != j
+                    && areas[i] > areas[j]
+                    && rings[j].first().is_some_and(|p| geom::contains(&rings[i], *p))
+            })
+        };
+        let holes: Vec<Hole> = candidates
+            .iter()
+            .filter(|j| !is_island(**j))
+            .map(|&j| Hole {
+                line: j,
+                outline: rings[j].clone(),
+                area: areas[j],
+                behind: topmost_behind(&rings[j], &outlines[..k]),
+            })
+            .collect();
+        let open: f64 = holes.iter().map(|h| h.area).sum();
+        let covered: f64 = holes.iter().filter(|h| h.behind.is_some()).map(|h| h.area).sum();
+        let is_line_art = areas[largest] - open < LIMITS_OF_CELLS.ink_most * areas[largest]
+            && covered > LIMITS_OF_CELLS.covered * open;
+        is_line_art.then_some((outer, holes))
+    }
+
+    /// A hole as an outline that somebody drew, in the colour behind it.
+    fn figure_of(&self, k: usize, hole: &Hole) -> Figure {
+        let figure = &self.figures[k];
+        let mut like = figure.like.clone();
+        like.color = hole.behind.and_then(|b| self.figures[b].fill).and_then(|f| f.color).or(like.color);
+        Figure { like, lines: vec![figure.lines[hole.line].clone()], lined: true, fill: None }
+    }
+
+    /// Areas whose colour the holes have taken over.
+    fn colours_behind(
+        &self,
+        k: usize,
+        outer: &[DVec2],
+        holes: &[Hole],
+        outlines: &[Option<Vec<DVec2>>],
+    ) -> Vec<usize> {
+        let is_taken = |&below: &usize| {
+            let Some(outline) = &outlines[below] else { return false };
+            let points: Vec<DVec2> = some_of(outline, 32).collect();
+            let near = 0.01 * self.diagonal();
+            let is_within = |p: &&DVec2| {
+                geom::contains(outer, **p)
+                    || geom::closest_on_polyline(outer, **p).is_some_and(|c| c.point.distance(**p) < near)
+            };
+            let inside = points.iter().filter(is_within).count();
+            let area = geom::signed_area(outline).abs();
+            let is_own = |h: &Hole| {
+                area < LIMITS_OF_CELLS.own_thing * h.area
+                    && points.iter().all(|p| geom::contains(&h.outline, *p))
+                    && !self.is_one_hue(h.behind, below)
+            };
+            #[expect(clippy::cast_precision_loss, reason = "a few points")]
+            let is_within = inside as f64 >= LIMITS_OF_CELLS.within * points.len() as f64;
+            is_within && !holes.iter().any(is_own)
+        };
+        (0..k).filter(is_taken).collect()
+    }
+
+    fn is_one_hue(&self, a: Option<usize>, b: usize) -> bool {
+        let color = |k: usize| self.figures[k].fill.and_then(|f| f.color);
+        let Some((a, b)) = a.and_then(color).zip(color(b)) else { return false };
+        let hue = |c: [u8; 3]| {
+            let c = c.map(f64::from);
+            let sum = c.iter().sum::<f64>().max(1.0);
+            c.map(|x| x / sum)
+        };
+        hue(a).iter().zip(hue(b)).all(|(a, b)| (a - b).abs() < LIMITS_OF_CELLS.one_hue)
+    }
+}
+
+/// The outer outline of a figure that is painted by its area.
+fn painted_outline(figure: &Figure) -> Option<Vec<DVec2>> {
+    if !figure.fill.is_some_and(|f| f.said && f.opacity >= LIMITS.translucent) {
+        return None;
+    }
+    let area = |l: &&Vec<_>| geom::signed_area(&places(l)).abs();
+    figure.lines.iter().max_by(|a, b| area(a).total_cmp(&area(b))).map(|l| places(l))
+}
+
+/// The topmost of some areas that lies behind most of a hole.
+fn topmost_behind(hole: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<usize> {
+    let line: Vec<crate::InkSample> = hole.iter().map(|p| crate::InkSample::from(*p)).collect();
+    let Extent { lo, hi } = Extent::of(&line)?;
+    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES);
+    let grid =
+        (0..PLACES * PLACES).map(|k| lo + (hi - lo) * DVec2::new(place(k % PLACES), place(k / PLACES)));
+    let inside: Vec<DVec2> = grid.filter(|p| geom::contains(hole, *p)).collect();
+    let is_behind = |o: &Vec<DVec2>| {
+        let count = inside.iter().filter(|p| geom::contains(o, **p)).count();
+        #[expect(clippy::cast_precision_loss, reason = "a few places")]
+        let share = count as f64 / inside.len().max(1) as f64;
+        share > LIMITS_OF_CELLS.seen
+    };
+    outlines.iter().rposition(|o| o.as_ref().is_some_and(is_behind))
+}

@@ -1,0 +1,121 @@
+//! What the colours of a drawing say: `strokes -> what is green, what may be wood`.
+//!
+//! A drawing in one colour tells the colour of the pen. In a painted one, green is no bark and no clay, and a plant without
+//! anything brown, grey or black is a herb.
+
+use ink::{Ink, InkStroke};
+
+/// How colours are told apart, and what they say.
+#[derive(Clone, Debug)]
+struct PaletteLimits {
+    /// Colours differ if a channel differs by more than this.
+    differs: u8,
+    /// A colour with less than this between its largest and smallest channel is grey.
+    grey: u8,
+    /// A colour whose largest channel is below this is ink, whatever its hue.
+    dark: u8,
+    /// The hues of green, degrees: from the olive of dry grass to the blue green of a conifer.
+    green: core::ops::Range<f64>,
+    /// A herb is green over at least this share of its lines.
+    herb_green: f64,
+    /// It has less than this share that could be wood.
+    herb_wood: f64,
+    /// A shorter line, in diagonals of the drawing, is no wood: a grain, a seed.
+    wood_least: f64,
+}
+
+const LIMITS: PaletteLimits = PaletteLimits {
+    differs: 24,
+    grey: 30,
+    dark: 60,
+    green: 62.0..170.0,
+    herb_green: 0.25,
+    herb_wood: 0.08,
+    wood_least: 0.1,
+};
+
+/// Whether a drawing was made in several colours, one of them green.
+pub(crate) fn is_painted(ink: &Ink) -> bool {
+    let mut colors = ink.strokes.iter().filter_map(|s| s.color);
+    let Some(first) = colors.clone().next() else { return false };
+    let differs = |c: [u8; 3]| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > LIMITS.differs);
+    colors.clone().any(differs) && colors.any(is_green)
+}
+
+/// Whether a stroke is green: by its hue, and neither grey nor nearly black.
+pub(crate) fn is_green_stroke(stroke: &InkStroke) -> bool {
+    stroke.color.is_some_and(is_green)
+}
+
+/// Whether a stroke has the colour of wood: brown, grey or black. It says nothing unless the drawing is painted.
+pub(crate) fn is_brown_stroke(stroke: &InkStroke) -> bool {
+    stroke.color.is_some_and(may_be_wood)
+}
+
+/// Whether the colours of a drawing are those of a plant without wood. Cost: linear in strokes.
+pub(crate) fn is_herb(ink: &Ink) -> bool {
+    if !is_painted(ink) {
+        return false;
+    }
+    let (mut whole, mut green, mut wood) = (0.0, 0.0, 0.0);
+    for stroke in &ink.strokes {
+        whole += stroke.length;
+        if is_green_stroke(stroke) {
+            green += stroke.length;
+        } else if stroke.length > LIMITS.wood_least && stroke.color.is_none_or(may_be_wood) {
+            wood += stroke.length;
+        }
+    }
+    green >= LIMITS.herb_green * whole && wood < LIMITS.herb_wood * whole
+}
+
+/// The hue in degrees, and how far apart the channels are.
+fn hue(c: [u8; 3]) -> (f64, u8) {
+    let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
+    let [r, g, b] = c.map(f64::from);
+    let span = high - low;
+    if span == 0 {
+        return (0.0, 0);
+    }
+    let sixth = if c[0] == high {
+        (g - b) / f64::from(span)
+    } else if c[1] == high {
+        2.0 + (b - r) / f64::from(span)
+    } else {
+        4.0 + (r - g) / f64::from(span)
+    };
+    ((60.0 * sixth).rem_euclid(360.0), span)
+}
+
+fn is_green(c: [u8; 3]) -> bool {
+    let (hue, span) = hue(c);
+    span > LIMITS.grey && c.into_iter().any(|x| x >= LIMITS.dark) && LIMITS.green.contains(&hue)
+}
+
+/// Brown, grey and black; white and bright colours are none of bark.
+fn may_be_wood(c: [u8; 3]) -> bool {
+    /// Bark is no brighter.
+    const BRIGHT: u8 = 205;
+    let (hue, span) = hue(c);
+    let is_brown = (0.0..LIMITS.green.start).contains(&hue);
+    c.into_iter().all(|x| x < BRIGHT)
+        && (is_brown || span <= LIMITS.grey || c.into_iter().all(|x| x < LIMITS.dark))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn greens_of_leaves_are_green_and_barks_are_not() {
+        for c in [[124, 171, 9], [78, 103, 12], [68, 80, 22], [0, 104, 56], [144, 183, 75]] {
+            assert!(is_green(c) && !may_be_wood(c), "{c:?}");
+        }
+        for c in [[123, 85, 23], [88, 44, 44], [150, 84, 70], [52, 52, 52], [0, 0, 0]] {
+            assert!(!is_green(c) && may_be_wood(c), "{c:?}");
+        }
+        for c in [[255, 255, 255], [125, 138, 215], [254, 134, 0], [252, 237, 0]] {
+            assert!(!is_green(c) && !may_be_wood(c), "{c:?}");
+        }
+    }
+}
