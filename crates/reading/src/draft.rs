@@ -16,8 +16,8 @@ use crate::steady::steady;
 use crate::structure::{Hidden, STRUCTURE, Structure};
 use crate::thresholds::{MOUTH, STOPPED_SHORT, STRAIGHT};
 use crate::{
-    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind, OrganWord,
-    PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, palette, rings,
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, KeptStrokes, Kind,
+    OrganWord, PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, palette, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
@@ -539,7 +539,9 @@ impl<'a> Draft<'a> {
         let pots = self.pots();
         let mut strokes: Vec<StrokeReading> = (0..self.class.len()).map(|k| self.stroke(k)).collect();
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
-        let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
+        let trunk = !self.bodies.is_empty()
+            && (self.open_top || !leaves.is_empty())
+            && !is_stem_of_flowers(&flowers, &self.forest.axes);
         let orders = self.forest.order.iter().copied().max().unwrap_or(0);
         // The rachis of a compound leaf, and the stalks of a raceme, bear an organ each: they are no branches of wood.
         let twigs = self.forest.order.iter().filter(|order| **order >= 2).count();
@@ -658,4 +660,14 @@ fn closed(points: &[DVec2], apart: bool) -> Drawn {
         return Drawn::Open;
     }
     Sheetlet::new(&line, 0).map_or(Drawn::Thin, |blade| Drawn::Blade(blade, stalks))
+}
+
+/// Whether what was drawn by both its sides is the stem of a herb: it bears a flower that is much wider than itself. Blossoms are
+/// small beside the trunk of their tree.
+fn is_stem_of_flowers(flowers: &[FlowerReading], axes: &[AxisReading]) -> bool {
+    /// A flower reaches so many times the usual half width of the stem from its centre.
+    const WIDER: f64 = 3.0;
+    let reach = |f: &FlowerReading| f.petals.iter().map(|p| p.tip.distance(f.centre)).fold(0.0, f64::max);
+    let widest = axes.iter().filter_map(|a| base::median(a.half_width.clone())).fold(0.0, f64::max);
+    widest > 0.0 && flowers.iter().any(|f| reach(f) > WIDER * widest)
 }

@@ -631,13 +631,16 @@ fn by_structure(
     // What a stroke is was said of it: none is taken for the side of something else.
     let by_user = classes.iter().any(|c| c.source == Source::User);
     let mut tubes = if by_user { Vec::new() } else { structure::tubes(ink, &sheet) };
+    let pot = structure::vessel(ink);
+    tubes.retain(|t| !pot.iter().any(|&k| t.has(k)));
     // Both sides of a trunk are read as its outline, and its limbs with it.
     let is_trunk = |k: usize| {
         classes.get(k).is_some_and(|c| {
             c.class == StrokeClass::TrunkOutline && c.confidence > structure::LIMITS.believed
         })
     };
-    if tubes.iter().any(|t| t.sides.iter().all(|&k| is_trunk(k))) {
+    let is_wide = |t: &structure::Tube| t.width > structure::LIMITS.trunk;
+    if tubes.iter().any(|t| is_wide(t) && t.sides.iter().all(|&k| is_trunk(k))) {
         tubes.clear();
     }
     let mut report = Report::default();
@@ -648,17 +651,18 @@ fn by_structure(
         let parts = attempt(&own, &proposal, &cut.ink, &cut.classes, &mut report);
         (cut.back(ink, parts), None)
     } else {
-        let says = Structure::new(&sheet, classes);
+        let says = Structure::new(&sheet, &pot, classes);
         if !says.differs(classes) {
             return None;
         }
         let proposal = Proposal { structure: Some(says.clone()), ..Proposal::default() };
         (attempt(asked, &proposal, ink, classes, &mut report), Some(says))
     };
-    let score = |r: &Reading, sides: &[usize]| {
-        structure::score(ink, &sheet, r, sides) + structure::LIMITS.weight_of_kind * likely(Kind::of(r))
-    };
-    let sides: Vec<usize> = tubes.iter().flat_map(|t| t.sides).collect();
+    // Where the user said what strokes are, kinds learnt from doodles do not weigh against that.
+    let weight = if by_user { 0.0 } else { structure::LIMITS.weight_of_kind };
+    let score =
+        |r: &Reading, sides: &[usize]| structure::score(ink, &sheet, r, sides) + weight * likely(Kind::of(r));
+    let sides: Vec<usize> = tubes.iter().flat_map(structure::Tube::rows).collect();
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
     // What was shown departs for clear evidence only.
     let is_new = classes.iter().all(|c| c.shown.is_none());

@@ -32,15 +32,24 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// What the facts say; `classes`: what the user or the classifier says. The user's stand, and the classifier's where no fact
+    /// What the facts say, with the rows of a pot; `classes`: what the user or the classifier says. The user's stand, and the classifier's where no fact
     /// contradicts them.
-    pub(crate) fn new(sheet: &Sheet, classes: &[Classified]) -> Self {
+    pub(crate) fn new(sheet: &Sheet, pot: &[usize], classes: &[Classified]) -> Self {
         let said = |k: usize| classes.get(k).copied().unwrap_or_default();
         let by_user = |k: usize| said(k).source == Source::User;
         let found = |k: usize| if by_user(k) { None } else { class_of(sheet, k, said) };
         let mut classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
-        let heads: Vec<Vec<usize>> =
-            heads(sheet).into_iter().filter(|h| !h.iter().any(|&k| by_user(k))).collect();
+        // Heads say which blades are petals of one flower, and that its middle is a disc; classes of the user may say otherwise.
+        let agrees = |head: &Vec<usize>| {
+            head.iter().enumerate().all(|(place, &k)| {
+                let class = if place == 0 { StrokeClass::Disc } else { StrokeClass::Blade };
+                !by_user(k) || said(k).class == class
+            })
+        };
+        let heads: Vec<Vec<usize>> = heads(sheet).into_iter().filter(agrees).collect();
+        for &k in pot.iter().filter(|&&k| !by_user(k)) {
+            classes[k] = Some(StrokeClass::Pot);
+        }
         for head in &heads {
             head.iter().for_each(|&k| classes[k] = Some(StrokeClass::Blade));
             classes[head[0]] = Some(StrokeClass::Disc);
@@ -114,11 +123,30 @@ fn heads(sheet: &Sheet) -> Vec<Vec<usize>> {
             .filter(|&k| is_free(k) && !rays.contains(&k) && rays.iter().any(|&r| touches(k, r)))
             .collect();
         rays.extend(second);
+        let slivers: Vec<usize> =
+            (0..sheet.facts.len()).filter(|&k| is_free(k) && is_sliver(sheet, k, &rays)).collect();
+        rays.extend(slivers);
         if !found.iter().flatten().any(|k| rays.contains(k) || *k == disc) {
             found.push(core::iter::once(disc).chain(rays).collect());
         }
     }
     found
+}
+
+/// Whether an outline is what others leave to be seen of a ray: it touches one, is no larger than the largest, and
+/// its middle lies among them.
+fn is_sliver(sheet: &Sheet, k: usize, rays: &[usize]) -> bool {
+    let outline = |k: usize| sheet.facts[k].outline.as_ref();
+    let Some(own) = outline(k).filter(|_| !rays.contains(&k)) else { return false };
+    let others = || rays.iter().filter_map(|&r| outline(r));
+    let largest = others().map(|o| o.area).fold(0.0, f64::max);
+    own.area <= largest && others().any(|o| own.touches(o)) && lies_among(own, others())
+}
+
+/// Whether the middle of an outline lies within the hull of others.
+fn lies_among<'a>(own: &Outline, others: impl Iterator<Item = &'a Outline>) -> bool {
+    let points: Vec<DVec2> = others.flat_map(|o| o.points.iter().copied()).collect();
+    geom::contains(&geom::convex_hull(&points), geom::centroid(&own.points))
 }
 
 /// How many of some outlines are like one.

@@ -8,6 +8,7 @@ use super::classes::{Hidden, STRUCTURE, Structure};
 use super::readers::{ARRANGEMENT, Proposal};
 use super::sheet::Sheet;
 use super::tubes::Tube;
+use super::vessel::vessel;
 use crate::confidence::CONFIDENCE_LIMITS;
 use crate::several::Back;
 use crate::{Reading, StrokeReading};
@@ -48,17 +49,17 @@ impl Composed {
         if tubes.is_empty() {
             return None;
         }
-        let is_side = |k: &usize| tubes.iter().any(|t| t.sides.contains(k));
+        let is_side = |k: &usize| tubes.iter().any(|t| t.has(*k));
         let kept: Vec<usize> = (0..ink.strokes.len()).filter(|k| !is_side(k)).collect();
         let mut made_of: Vec<Vec<usize>> = kept.iter().map(|&k| vec![k]).collect();
-        made_of.extend(tubes.iter().map(|t| t.sides.to_vec()));
+        made_of.extend(tubes.iter().map(Tube::rows));
         let points = kept.iter().map(|&k| ink.strokes[k].points.clone());
         let points = points.chain(tubes.iter().map(|t| t.middle.clone()));
         let own = ink.with_lines(&lines(points, &made_of));
         let mut classified: Vec<Classified> =
             kept.iter().map(|&k| classes.get(k).copied().unwrap_or_default()).collect();
         classified.extend(tubes.iter().map(|_| said(StrokeClass::Axis, 1.0, STRUCTURE)));
-        let structure = Structure::new(&Sheet::new(&own), &classified);
+        let structure = Structure::new(&Sheet::new(&own), &vessel(&own), &classified);
         Some(Self { ink: own, classes: classified, structure, made_of })
     }
 

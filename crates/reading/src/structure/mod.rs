@@ -10,6 +10,7 @@
 //! | `classes` | what strokes are by these facts |
 //! | `score` | how well a reading explains the drawing |
 //! | `tubes` | stems that were drawn by both their sides |
+//! | `vessel` | pots that were drawn in several strokes |
 //! | `faces`, `shape` | what lines enclose together, and the form of outlines |
 //! | `readers` | plants that are known by the arrangement of their faces and lines |
 //! | `compose` | from the parts that a reader proposes to a reading |
@@ -23,6 +24,7 @@ mod score;
 mod shape;
 mod sheet;
 mod tubes;
+mod vessel;
 
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
 pub(crate) use compose::Composed;
@@ -30,7 +32,8 @@ pub use readers::ARRANGEMENT;
 pub(crate) use readers::widest_gap;
 pub(crate) use score::score;
 pub(crate) use sheet::{Sheet, slenderness};
-pub(crate) use tubes::tubes;
+pub(crate) use tubes::{Tube, tubes};
+pub(crate) use vessel::vessel;
 
 /// What separates the forms of strokes, and when structure decides. Lengths are in ink units (the drawing's diagonal is 1).
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +83,8 @@ pub(crate) struct StructureLimits {
     pub(crate) ray_gap: f64,
     /// A class of the stroke classifier that structure does not contradict stands if its share is above this.
     pub(crate) believed: f64,
+    /// The sides of a trunk are farther apart than this; those of a stem are nearer.
+    pub(crate) trunk: f64,
     /// What the share of the kind of plant (0 to 1) adds to the score of a reading of that kind.
     pub(crate) weight_of_kind: f64,
     /// A drawing of so many strokes is of many organs. Where it was read as one solid, a structural reading may explain this much less.
@@ -113,6 +118,7 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     rays: 7,
     ray_gap: 1.6,
     believed: 0.5,
+    trunk: 0.025,
     weight_of_kind: 0.02,
     many_strokes: 15,
     solid_of_many: 0.05,

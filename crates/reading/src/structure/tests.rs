@@ -14,6 +14,11 @@ fn at(angle: f64, radius: f64) -> DVec2 {
     DVec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
 }
 
+fn straight(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
+    let (from, to) = (DVec2::from(from), DVec2::from(to));
+    (0..=40).map(|i| from.lerp(to, f64::from(i) / 40.0)).collect()
+}
+
 /// A ring of arcs, each from the end of the one before to the start of the next, round what lies inside.
 fn arcs(count: u32, radius: f64, height: f64, phase: f64) -> Vec<Vec<DVec2>> {
     let step = TAU / f64::from(count);
@@ -44,7 +49,7 @@ fn petals_that_go_on_behind_a_disc_are_bays_with_hidden_roots() {
     assert!(sheet.is_careful());
     assert_eq!(sheet.alike(1).len(), 8, "the petals are alike, and the disc is none of them");
     let said = vec![Classified::by_shares([0.0; StrokeClass::ALL.len()]); ink.strokes.len()];
-    assert!(Structure::new(&sheet, &said).differs(&said));
+    assert!(Structure::new(&sheet, &[], &said).differs(&said));
 }
 
 #[test]
@@ -73,7 +78,7 @@ fn marks_in_an_outline_are_texture_if_there_are_many_and_veins_if_few() {
         assert_eq!(sheet.facts[0].marks, marks);
         assert!(sheet.facts[1..].iter().all(|f| f.holder == Some(0)));
         let said = vec![Classified::default(); ink.strokes.len()];
-        let classes = Structure::new(&sheet, &said).classes().to_vec();
+        let classes = Structure::new(&sheet, &[], &said).classes().to_vec();
         assert!(classes[1..].iter().all(|c| *c == Some(want)), "{marks}: {classes:?}");
     }
 }
@@ -93,6 +98,26 @@ fn lines_that_stop_short_of_one_another_are_no_structure() {
 fn classes_of_the_user_stay() {
     let ink = clean(&Drawing::from_polylines("rosette", &rosette()), &mut Report::default());
     let said = vec![Classified::by_user(StrokeClass::Axis); ink.strokes.len()];
-    let structure = Structure::new(&Sheet::new(&ink), &said);
+    let structure = Structure::new(&Sheet::new(&ink), &[], &said);
     assert!(!structure.differs(&said));
+}
+
+#[test]
+fn lines_side_by_side_up_a_stem_are_one_and_hatching_is_none() {
+    let upright = |x: f64| straight((x, 0.0), (x + 1.0, 60.0));
+    let tubes_of = |lines: &[Vec<DVec2>]| {
+        let ink = clean(&Drawing::from_polylines("sheaths", lines), &mut Report::default());
+        super::tubes(&ink, &Sheet::new(&ink))
+    };
+    let found = tubes_of(&[0.0, 1.5, 3.0, 4.5].map(upright));
+    assert_eq!(found.len(), 1);
+    assert_eq!((found[0].sides, found[0].between.len()), ([0, 3], 2));
+    // Short strokes side by side, and more than a stem has, are hatching.
+    let short: Vec<Vec<DVec2>> =
+        (0..4).map(|k| straight((2.0 * f64::from(k), 0.0), (2.0 * f64::from(k), 9.0))).collect();
+    let mut lines = vec![straight((30.0, 0.0), (30.0, 60.0))];
+    lines.extend(short);
+    assert!(tubes_of(&lines).is_empty());
+    let many: Vec<Vec<DVec2>> = (0..9).map(|k| upright(0.8 * f64::from(k))).collect();
+    assert!(tubes_of(&many).is_empty());
 }

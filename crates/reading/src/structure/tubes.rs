@@ -23,17 +23,22 @@ struct TubeLimits {
     length: f64,
     /// Places of a line that are looked at, at least.
     places: usize,
+    /// A bundle of so many lines at most, each longer than that, is the stem of sheaths or fibres: a banana, an old trunk.
+    sheaths: core::ops::RangeInclusive<usize>,
+    sheath: f64,
 }
 
 const LIMITS: TubeLimits = TubeLimits {
     apart: 0.09,
     along: 0.7,
     slender: 3.5,
-    narrow: 0.4,
+    narrow: 0.3,
     third: 1.6,
     straight: 0.6,
     length: 0.06,
     places: 12,
+    sheaths: 3..=6,
+    sheath: 0.25,
 };
 
 /// An axis between two lines.
@@ -45,6 +50,20 @@ pub(crate) struct Tube {
     pub(crate) middle: Vec<DVec2>,
     /// How far they are apart, on average.
     pub(crate) width: f64,
+    /// Rows of lines between them, of a bundle.
+    pub(crate) between: Vec<usize>,
+}
+
+impl Tube {
+    /// Whether a line is a side of it, or lies between its sides.
+    pub(crate) fn has(&self, row: usize) -> bool {
+        self.sides.contains(&row) || self.between.contains(&row)
+    }
+
+    /// The rows of all its lines.
+    pub(crate) fn rows(&self) -> Vec<usize> {
+        self.sides.iter().chain(&self.between).copied().collect()
+    }
 }
 
 /// All pairs of sides. Cost: pairs of lines that are near, their points each.
@@ -66,7 +85,44 @@ pub(crate) fn tubes(ink: &Ink, sheet: &Sheet) -> Vec<Tube> {
     let partners = |k: usize, near: f64| {
         found.iter().filter(|t| t.sides.contains(&k) && t.width < LIMITS.third * near).count()
     };
-    found.iter().filter(|t| t.sides.iter().all(|&k| partners(k, t.width) == 1)).cloned().collect()
+    let mut alone: Vec<Tube> =
+        found.iter().filter(|t| t.sides.iter().all(|&k| partners(k, t.width) == 1)).cloned().collect();
+    for bundle in bundles(ink, &found) {
+        if !alone.iter().any(|t| bundle.rows().iter().any(|&k| t.has(k))) {
+            alone.push(bundle);
+        }
+    }
+    alone
+}
+
+/// Lines side by side of which each pair is near, as one axis between the outer two.
+fn bundles(ink: &Ink, pairs: &[Tube]) -> Vec<Tube> {
+    let mut found: Vec<Tube> = Vec::new();
+    for widest in pairs {
+        let [a, b] = widest.sides;
+        let is_pair = |j: usize, k: usize| pairs.iter().any(|t| t.sides.contains(&j) && t.sides.contains(&k));
+        let mut between: Vec<usize> = pairs.iter().flat_map(|t| t.sides).collect();
+        between.sort_unstable();
+        between.dedup();
+        between.retain(|&k| k != a && k != b && is_pair(k, a) && is_pair(k, b));
+        let width_to = |k: usize, side: usize| {
+            pairs.iter().find(|t| t.sides.contains(&k) && t.sides.contains(&side)).map_or(0.0, |t| t.width)
+        };
+        let are_between = between.iter().all(|&k| width_to(k, a).max(width_to(k, b)) < widest.width);
+        let tube = Tube { between, ..widest.clone() };
+        let are_long = tube.rows().iter().all(|&k| ink.strokes[k].length > LIMITS.sheath);
+        if are_between && are_long && LIMITS.sheaths.contains(&tube.rows().len()) {
+            found.push(tube);
+        }
+    }
+    base::sort_by(&mut found, |a, b| b.between.len().cmp(&a.between.len()).then(a.sides.cmp(&b.sides)));
+    let mut kept: Vec<Tube> = Vec::new();
+    for tube in found {
+        if !kept.iter().any(|k| tube.rows().iter().any(|&row| k.has(row))) {
+            kept.push(tube);
+        }
+    }
+    kept
 }
 
 /// Two lines as the sides of one axis, if they run side by side.
@@ -105,5 +161,10 @@ fn tube(ink: &Ink, a: usize, b: usize) -> Option<Tube> {
     let reach = middle[0].distance(middle[middle.len() - 1]);
     let leads_on = reach > LIMITS.straight * length;
     let long_enough = length > LIMITS.slender * width;
-    (least > LIMITS.narrow * most && long_enough && leads_on).then_some(Tube { sides: [a, b], middle, width })
+    (least > LIMITS.narrow * most && long_enough && leads_on).then_some(Tube {
+        sides: [a, b],
+        middle,
+        width,
+        between: Vec::new(),
+    })
 }

@@ -280,3 +280,22 @@ fn green_is_no_bark_in_a_painted_drawing() {
     drawing.strokes.iter_mut().for_each(|s| s.color = Some([60, 140, 40]));
     assert_eq!(woods(&drawing).0, 2);
 }
+
+#[test]
+fn a_stem_of_two_lines_under_a_wide_flower_is_no_wood() {
+    let head = (5.0, 20.0);
+    let mut strokes: Vec<(StrokeClass, Vec<DVec2>)> = vec![
+        (StrokeClass::TrunkOutline, line((4.8, 0.0), (4.8, 19.0))),
+        (StrokeClass::TrunkOutline, line((5.2, 0.0), (5.2, 19.0))),
+        (StrokeClass::Disc, circle(head, 0.8)),
+        (StrokeClass::Blade, leaf((5.2, 8.0), (9.0, 10.0), 0.8)),
+    ];
+    strokes.extend(petals(head, 8, 3.0).into_iter().map(|p| (StrokeClass::Blade, p)));
+    let (r, _) = reading(&strokes);
+    assert_eq!((r.flowers.len(), r.woody), (1, false));
+    // A blossom that is small beside the trunk leaves it wood.
+    strokes[0].1 = line((2.0, 0.0), (2.0, 17.0));
+    strokes[1].1 = line((8.0, 0.0), (8.0, 17.0));
+    let (r, _) = reading(&strokes);
+    assert!(r.woody, "{:?}", r.strokes);
+}

@@ -1,0 +1,102 @@
+//! A pot that was drawn in several strokes: a level rim, and its sides and bottom below.
+//!
+//! `outlines of strokes -> rows of the pot's strokes`
+
+use geom::bounds;
+use glam::DVec2;
+use ink::Ink;
+
+/// When strokes at the foot of a drawing are a pot. Lengths are in ink units (the drawing's diagonal is 1).
+struct VesselLimits {
+    /// The rim is so many times as wide as high,
+    level: f64,
+    /// and at least so wide.
+    rim: f64,
+    /// Strokes of the pot lie within the rim, but for this share of its width.
+    slack: f64,
+    /// On both sides a line goes down from the rim, from within this share of its width from its end,
+    side: f64,
+    /// over at least this share of the pot's height below the rim.
+    down: f64,
+    /// The pot is between these many times as high as wide.
+    high: core::ops::Range<f64>,
+}
+
+const LIMITS: VesselLimits =
+    VesselLimits { level: 4.0, rim: 0.08, slack: 0.06, side: 0.2, down: 0.6, high: 0.12..1.6 };
+
+/// The strokes of a pot at the foot of a drawing, its rim first; none unless something stands above it and nothing reaches
+/// below its rim beside it. Cost: strokes times rims.
+pub(crate) fn vessel(ink: &Ink) -> Vec<usize> {
+    let boxes: Vec<(DVec2, DVec2)> =
+        ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
+    let rims = (0..boxes.len()).filter(|&k| {
+        let size = boxes[k].1 - boxes[k].0;
+        size.x >= LIMITS.rim && size.x >= LIMITS.level * size.y
+    });
+    rims.filter_map(|rim| below(&boxes, rim)).max_by_key(Vec::len).unwrap_or_default()
+}
+
+/// The strokes below a rim, if they make a pot with it.
+fn below(boxes: &[(DVec2, DVec2)], rim: usize) -> Option<Vec<usize>> {
+    let (low, high) = boxes[rim];
+    let wide = high.x - low.x;
+    let slack = LIMITS.slack * wide;
+    // What begins above the rim grows in the pot; what ends below it and is no part of it stands beside.
+    let is_part = |&k: &usize| {
+        k != rim
+            && boxes[k].1.y < high.y + 0.5 * slack
+            && boxes[k].0.x > low.x - slack
+            && boxes[k].1.x < high.x + slack
+    };
+    let parts: Vec<usize> = (0..boxes.len()).filter(is_part).collect();
+    let is_beside = |k: usize| k != rim && !parts.contains(&k) && boxes[k].0.y < low.y - slack;
+    let grows = (0..boxes.len()).any(|k| k != rim && !parts.contains(&k));
+    if parts.is_empty() || !grows || (0..boxes.len()).any(is_beside) {
+        return None;
+    }
+    let foot = parts.iter().map(|&k| boxes[k].0.y).fold(low.y, f64::min);
+    let tall = low.y - foot;
+    if !LIMITS.high.contains(&(tall / wide)) {
+        return None;
+    }
+    let goes_down = |k: &usize| boxes[*k].1.y > low.y - slack && low.y - boxes[*k].0.y > LIMITS.down * tall;
+    let reach = LIMITS.side * wide;
+    let left = parts.iter().any(|k| goes_down(k) && boxes[*k].0.x < low.x + reach);
+    let right = parts.iter().any(|k| goes_down(k) && boxes[*k].1.x > high.x - reach);
+    (left && right).then(|| core::iter::once(rim).chain(parts).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use base::Report;
+    use ink::{Drawing, clean};
+
+    use super::*;
+
+    fn pot_of(lines: &[Vec<DVec2>]) -> Vec<usize> {
+        vessel(&clean(&Drawing::from_polylines("pot", lines), &mut Report::default()))
+    }
+
+    fn line(points: &[[f64; 2]]) -> Vec<DVec2> {
+        points.iter().map(|&p| DVec2::from(p)).collect()
+    }
+
+    #[test]
+    fn a_rim_two_sides_and_a_bottom_are_a_pot_and_a_stem_in_it_is_none() {
+        let rim = line(&[[0.0, 20.0], [30.0, 20.0], [30.0, 23.0], [0.0, 23.0], [0.0, 20.0]]);
+        let left = line(&[[2.0, 20.0], [5.0, 1.0]]);
+        let right = line(&[[28.0, 20.0], [25.0, 1.0]]);
+        let bottom = line(&[[5.0, 1.0], [25.0, 1.0]]);
+        let stem = line(&[[15.0, 23.0], [16.0, 70.0]]);
+        let leaf = line(&[[16.0, 60.0], [30.0, 66.0], [16.0, 70.0], [16.0, 60.0]]);
+        let mut lines = vec![rim, left, right, bottom, stem, leaf];
+        assert_eq!(pot_of(&lines), [0, 1, 2, 3]);
+        // A root that reaches past it, and a pot without sides.
+        lines.push(line(&[[40.0, 23.0], [44.0, 0.0]]));
+        assert!(pot_of(&lines).is_empty());
+        lines.truncate(1);
+        lines.push(line(&[[15.0, 23.0], [16.0, 70.0]]));
+        assert!(pot_of(&lines).is_empty());
+    }
+}
