@@ -272,7 +272,7 @@ fn dots_of_one_size_in_small_outlines_are_stipple_and_a_few_are_not() {
 
 /// A flower as stickers are drawn: colours, and over them one dark area whose holes are the petals and the disc.
 fn outlined_in_ink() -> Vec<Figure> {
-    let at = |k: u32| DVec2::from_angle(ops::TAU * f64::from(k) / 5.0) * 24.0;
+    let at = |k: u32| base::turn::direction(ops::TAU * f64::from(k) / 5.0) * 24.0;
     let mut figures: Vec<Figure> =
         (0..5).map(|k| area(vec![ring(at(k), 12.5, 40)], [120, 130, 220])).collect();
     figures.push(area(vec![ring(DVec2::ZERO, 9.5, 40)], [230, 200, 20]));
