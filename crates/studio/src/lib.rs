@@ -76,7 +76,7 @@ pub use report::{
     LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord,
     StrokeReport, TimingsMs,
 };
-pub use robot::{RobotError, write_robot};
+pub use robot::{Robot, RobotError, RobotReport, write_robot};
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
     PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,

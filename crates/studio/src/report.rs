@@ -116,6 +116,10 @@ pub struct ItemReport {
     /// Of `grow`: what growth did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<GrowthReport>,
+    /// Of a plant that was written as a robot: how it is built, and what was assumed of its tissues.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub robot: Option<crate::RobotReport>,
     /// Of a plant that was edited by hand: what became of each edit, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<crate::EditReport>,
