@@ -88,8 +88,11 @@ pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_templa
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
 pub use stands::{
-    LIMITS, Misfits, Nursery, NurseryError, NurseryLook, NurserySpec, Placed, SPECIES_COLOURS, ScaleLimits,
-    StandTile, TileId, Tiling, TilingError, TilingSpec, Variant, stand_map,
+    ForestPlan, ForestTilesError, ForestTilesSpec, LIMITS, Misfits, ModelsOf, Nursery, NurseryError,
+    NurseryLook, NurserySpec, Placed, SPECIES_COLOURS, ScaleLimits, SiteError, SiteFiles, StandReport,
+    StandTile, TILES_JOURNAL, TILES_MANIFEST, TILESET, TileDisk, TileFile, TileFolder, TileId, TileModels,
+    TileWriter, Tiling, TilingError, TilingSpec, Variant, Watch, WholeForest, read_ground, read_masks,
+    stand_map,
 };
 pub use structure::write_structure;
 pub use survey::{
