@@ -1,4 +1,4 @@
-"""Forests: places, files, clouds, tiles of data sets."""
+"""Groves: places, files, clouds, tiles of data sets."""
 
 import json
 import struct
@@ -13,7 +13,7 @@ SMALL = {"age": 4, "detail": 0.2, "textures": False}
 
 @pytest.fixture(scope="module")
 def grove():
-    return bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
+    return bg.grove({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
 
 
 def test_trees_stand_apart_within_the_rectangle(grove):
@@ -28,9 +28,9 @@ def test_trees_stand_apart_within_the_rectangle(grove):
     assert len({plant.digest for plant in grove.plants}) == len(grove.plants) <= 4
 
 
-def test_the_same_seed_gives_the_same_forest(grove):
-    again = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
-    other = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=8, kinds=2, **SMALL)
+def test_the_same_seed_gives_the_same_grove(grove):
+    again = bg.grove({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
+    other = bg.grove({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=8, kinds=2, **SMALL)
     assert again.digest == grove.digest != other.digest
 
 
@@ -72,9 +72,9 @@ def test_measures_are_sums_over_trees(grove):
     assert measures["leaf_area_m2"] == pytest.approx(area)
 
 
-def test_a_forest_of_ones_own_plants_and_places(small):
+def test_a_grove_of_ones_own_plants_and_places(small):
     places = {"position": [[0, 0, 0], [3, 0.5, 0]], "yaw_deg": [0, 90], "scale": [1, 2], "plant": [0, 0]}
-    pair = bg.Forest([small], places)
+    pair = bg.Grove([small], places)
     height = small.model.vertices[:, 1].max()
     assert len(pair) == 2 and pair.model.vertices[:, 1].max() == pytest.approx(2 * height + 0.5, abs=1e-3)
 
@@ -82,7 +82,7 @@ def test_a_forest_of_ones_own_plants_and_places(small):
 def test_tiles_are_plants_of_data_sets(tmp_path):
     how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
     made = bg.dataset.generate(
-        "hazel", 3, tmp_path / "tiles", maker="forest", formats=("cloud",), fields=how,
+        "hazel", 3, tmp_path / "tiles", maker="grove", formats=("cloud",), fields=how,
         cloud={"points": 2000, "stations": 2}, shard=2, workers=1, progress=False,
     )  # fmt: skip
     tiles = list(bg.dataset.read(tmp_path / "tiles"))
@@ -90,12 +90,12 @@ def test_tiles_are_plants_of_data_sets(tmp_path):
     assert len({tile["digest"] for tile in tiles}) == 3
     assert all(tile["cloud"]["tree"].max() < tile["measures"]["trees"] for tile in tiles)
     with pytest.raises(bg.SpecError, match="formats are glb, cloud, laz, picture"):
-        bg.dataset.generate("hazel", 1, tmp_path / "bad", maker="forest", formats=("mtg",))
+        bg.dataset.generate("hazel", 1, tmp_path / "bad", maker="grove", formats=("mtg",))
 
 
 def test_masks_say_which_tree_each_pixel_shows():
     how = dict(size=(160, 120), view="front", supersample=1)
-    grove = bg.forest(["hazel", "birch"], area=9.0, spacing=3.0, kinds=1, seed=4, **SMALL)
+    grove = bg.grove(["hazel", "birch"], area=9.0, spacing=3.0, kinds=1, seed=4, **SMALL)
     masks = grove.masks(**how)
     assert all(column.shape == (120, 160) for column in masks)
     trees = np.unique(masks.tree[masks.tree >= 0])
@@ -112,7 +112,7 @@ def test_masks_say_which_tree_each_pixel_shows():
         one = {name: column[[tree]] for name, column in grove.places.items()}
         far = {**one, "position": one["position"] + [200.0, 0.0, 0.0]}
         both = {name: np.concatenate([one[name], far[name]]) for name in one}
-        alone = bg.Forest(grove.plants, both).masks(**{**how, "size": (4096, 128)})
+        alone = bg.Grove(grove.plants, both).masks(**{**how, "size": (4096, 128)})
         assert {0, 1} == set(np.unique(alone.tree[alone.tree >= 0]))
 
 
@@ -120,7 +120,7 @@ def test_a_plant_alone_has_the_masks_of_the_plant():
     plant = bg.grow("hazel", seed=1, **SMALL)
     place = {"position": [[0, 0, 0]], "yaw_deg": [0], "scale": [1], "plant": [0]}
     how = dict(size=(96, 96), view="front", supersample=1)
-    one, own = bg.Forest([plant], place).masks(**how), plant.masks(**how)
+    one, own = bg.Grove([plant], place).masks(**how), plant.masks(**how)
     assert all(np.array_equal(getattr(one, name), getattr(own, name)) for name in own._fields)
     assert np.array_equal(one.tree, np.where(own.part < 0, -1, 0)) and (one.tree == 0).any()
 
@@ -128,7 +128,7 @@ def test_a_plant_alone_has_the_masks_of_the_plant():
 def test_tiles_have_pictures_with_a_mask_for_each_tree(tmp_path):
     how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
     bg.dataset.generate(
-        "hazel", 1, tmp_path / "tiles", maker="forest", formats=("picture",), fields=how,
+        "hazel", 1, tmp_path / "tiles", maker="grove", formats=("picture",), fields=how,
         picture={"size": 96, "supersample": 1}, workers=1, progress=False,
     )  # fmt: skip
     (tile,) = bg.dataset.read(tmp_path / "tiles")
@@ -152,7 +152,7 @@ def test_tiles_have_pictures_with_a_mask_for_each_tree(tmp_path):
 )
 def test_what_is_wrong_is_told(how, words):
     with pytest.raises(ValueError, match=words):
-        bg.forest(**how)
+        bg.grove(**how)
 
 
 def test_places_of_the_wrong_shape_are_told(small):
@@ -165,4 +165,4 @@ def test_places_of_the_wrong_shape_are_told(small):
         ("yaw_deg", [float("inf")], "finite"),
     ]:
         with pytest.raises(ValueError, match=words):
-            bg.Forest([small], {**good, name: value})
+            bg.Grove([small], {**good, name: value})
