@@ -146,8 +146,8 @@ class Stand:
 
     @property
     def report(self) -> "Dict[str, Any]":
-        """What was read or grown: ``rows``, ``skipped``, ``given`` and ``filled_log_interval`` of height, dbh, crown width and age,
-        ``duplicates``, ``touching``; of a stand that grew ``history`` (year, trees and basal area in square metres a hectare);
+        """What was read or grown: ``rows``, ``skipped``, ``given`` and ``filled_log_interval`` of height, dbh, crown width and
+        age, ``duplicates``, ``touching``; of a stand that grew ``history`` (year, trees and basal area in square metres a hectare);
         ``warnings``."""
         return json.loads(self._raw.report())
 
@@ -188,12 +188,12 @@ class Stand:
     ) -> Tiles:
         """Writes it as 3D Tiles of grown plants (``burgeon forest -o FOLDER``), the same bytes with any number of workers.
 
-        ``variants``: plants of each species and age, 1 to 64; ``seed``: of the plants, by default that of the stand; ``finest``,
-        ``lods``: levels of meshes, 0 to 6; ``impostor``: pixels of the pictures far away, 128 to 4096, or None; ``tile_trees``: most
-        trees of a finest tile; ``pack``: ``meshopt`` or ``quantized``; ``detail``, ``sides``, ``texture_size``, ``foliage``: as of
-        ``burgeon.grow``; ``glb``, ``usd``: also all trees in one file, at ``level``; ``place``: longitude, latitude and height of the
-        origin, which sets it onto the earth; ``tile``: depth, column, row and level of one tile, which is written alone with its
-        models.
+        ``variants``: plants of each species and age, 1 to 64; ``seed``: of the plants, by default that of the stand;
+        ``finest``, ``lods``: levels of meshes, 0 to 6; ``impostor``: pixels of the pictures far away, 128 to 4096, or None;
+        ``tile_trees``: most trees of a finest tile; ``pack``: ``meshopt`` or ``quantized``; ``detail``, ``sides``,
+        ``texture_size``, ``foliage``: as of ``burgeon.grow``; ``glb``, ``usd``: also all trees in one file, at ``level``;
+        ``place``: longitude, latitude and height of the origin, which sets it onto the earth; ``tile``: depth, column, row
+        and level of one tile, which is written alone with its models.
 
         ``workers``: processes (1: this one; None: as many as the machine has cores); ``ray``: tasks of the Ray cluster that
         ``ray.init`` has joined, or of one on this machine. All its machines must see the folder.
@@ -205,6 +205,7 @@ class Stand:
         finest = whole("finest", finest, 0, lods)
         if level is not None and not (glb or usd):
             raise unused("level", level, "is of glb and usd")
+        skin = {"detail": detail, "sides": sides, "texture_size": texture_size, "foliage": foliage}
         form = {
             "variants": whole("variants", variants, 1, 64),
             "seed": self.seed if seed is None else whole("seed", seed, 0, 2**64 - 1),
@@ -213,7 +214,7 @@ class Stand:
             "impostor": 0 if impostor is None else whole("impostor", impostor, 128, 4096),
             "tile_trees": None if tile_trees is None else whole("tile_trees", tile_trees, 1, 65_536),
             "pack": word("pack", pack),
-            "skin": asked_of(1, 1, {}, {"detail": detail, "sides": sides, "texture_size": texture_size, "foliage": foliage})["skin"],
+            "skin": {name: value for name, value in skin.items() if value is not None},
             "glb": flag("glb", glb),
             "usd": flag("usd", usd),
             "level": min(finest + 1, lods) if level is None else whole("level", level, finest, lods),
@@ -351,11 +352,20 @@ def tiles(forest: "Union[Stand, StandSpec, Inventory]", folder: "str | os.PathLi
 
     ``seed`` and ``budget`` are also of the stand.
     """
-    if not isinstance(forest, Stand):
-        shared = {name: how[name] for name in ("seed", "budget") if name in how}
-        is_spec = isinstance(forest, (Mapping, SpecText)) or str(forest).endswith(".toml")
-        forest = grow(forest, **shared) if is_spec else read(forest, **shared)
-    return forest.tiles(folder, **how)
+    shared = {name: how[name] for name in ("seed", "budget") if name in how}
+    if isinstance(forest, Stand):
+        stand = forest
+    elif isinstance(forest, (Mapping, SpecText)) or (
+        isinstance(forest, (str, os.PathLike)) and os.fspath(forest).endswith(".toml")
+    ):
+        stand = grow(forest, **shared)
+    else:
+        stand = read(forest, **shared)
+    return stand.tiles(folder, **how)
+
+
+def _is_toml(file: Any) -> bool:
+    return isinstance(file, (str, os.PathLike)) and str(os.fspath(file)).endswith(".toml")
 
 
 def _bytes(inventory: Any) -> "Tuple[bytes, str]":

@@ -179,3 +179,9 @@ def test_ray_writes_the_same_also_after_a_worker_was_killed(wood, whole, tmp_pat
 def test_what_is_wrong_is_told(tmp_path, call, words):
     with pytest.raises((ValueError, TypeError, OSError), match=words):
         call(tmp_path)
+
+
+def test_a_stand_a_spec_and_an_inventory_become_tiles_in_one_call(wood, whole, inventory, tmp_path):
+    assert bg.forest.tiles(WOOD, tmp_path / "spec", seed=3, **QUICK, tile_trees=8).manifest == whole.manifest
+    assert bg.forest.tiles(wood, tmp_path / "stand", **QUICK, tile_trees=8).manifest == whole.manifest
+    assert bg.forest.tiles(inventory, tmp_path / "inventory", **QUICK).report["trees"] == 4
