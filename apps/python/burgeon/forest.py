@@ -147,8 +147,8 @@ class Stand:
     @property
     def report(self) -> "Dict[str, Any]":
         """What was read or grown: ``rows``, ``skipped``, ``given`` and ``filled_log_interval`` of height, dbh, crown width and
-        age, ``duplicates``, ``touching``; of a stand that grew ``history`` (year, trees and basal area in square metres a hectare);
-        ``warnings``."""
+        age, ``duplicates``, ``touching``; of a stand that grew ``history`` (year, trees and basal area in square metres a
+        hectare); ``warnings``."""
         return json.loads(self._raw.report())
 
     def to_csv(self) -> bytes:

@@ -92,7 +92,7 @@ impl From<ForestTilesError> for Failure {
             ForestTilesError::Nursery(NurseryError::Stopped(stopped)) => stopped.into(),
             ForestTilesError::Write(e @ WriteError::Io(_)) => output::write_failed(Path::new("forest"), e),
             ForestTilesError::Write(e) => Self::Bug(e.to_string()),
-            ForestTilesError::Bug(line) => Self::Bug(line.to_owned()),
+            ForestTilesError::Bug(line) => Self::Bug(line),
             e @ ForestTilesError::TooSmall(_) => Self::Bad(format!("{e} (--impostor off)")),
             e @ ForestTilesError::NoManifest => Self::Bad(format!("{TILES_MANIFEST} {e}")),
             e => Self::Bad(e.to_string()),

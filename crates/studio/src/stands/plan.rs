@@ -77,7 +77,7 @@ pub enum ForestTilesError {
     NoManifest,
     /// Our own fault.
     #[error("{0}")]
-    Bug(&'static str),
+    Bug(String),
 }
 
 impl From<Stopped> for ForestTilesError {

@@ -323,7 +323,7 @@ impl<D: TileDisk> TileFolder<D> {
 }
 
 fn line(value: &impl Serialize) -> Result<String, ForestTilesError> {
-    let text = serde_json::to_string(value).map_err(|_| ForestTilesError::Bug("a manifest is no JSON"))?;
+    let text = serde_json::to_string(value).map_err(|e| ForestTilesError::Bug(e.to_string()))?;
     Ok(text + "\n")
 }
 

@@ -94,11 +94,11 @@ impl TileModels {
     }
 
     pub(super) fn for_tile(&self, variant: u32, level: u32) -> Result<&SharedModel, ForestTilesError> {
-        self.tiles.get(&(variant, level)).ok_or(ForestTilesError::Bug("a model is missing"))
+        self.tiles.get(&(variant, level)).ok_or_else(|| ForestTilesError::Bug("a model is missing".into()))
     }
 
     pub(super) fn for_root(&self, variant: u32, level: u32) -> Result<&SharedModel, ForestTilesError> {
-        self.root.get(&(variant, level)).ok_or(ForestTilesError::Bug("a model is missing"))
+        self.root.get(&(variant, level)).ok_or_else(|| ForestTilesError::Bug("a model is missing".into()))
     }
 
     /// The box around a variant at all of its levels.
