@@ -73,10 +73,10 @@ pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{
     CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
-    LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord,
-    StrokeReport, TimingsMs,
+    LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RobotReport, RunReport, ScanReport, SeverityWord,
+    SideWord, StrokeReport, TimingsMs,
 };
-pub use robot::{Robot, RobotError, RobotReport, write_robot};
+pub use robot::{Robot, RobotError, write_robot};
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
     PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,

@@ -10,10 +10,10 @@ use glam::DVec3;
 use mechanics::{MechanicsError, MechanicsSpec, Mechanism, WoodGroup, articulate};
 use mesh::{Model, Part, TriMesh};
 use plant::{AxisId, OrganId, Plant};
-use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
 
 use crate::PRESETS;
+use crate::report::RobotReport;
 use crate::survey::triangle_labels;
 
 /// Why a plant cannot be written as a robot.
@@ -46,46 +46,20 @@ pub struct Robot {
     pub report: RobotReport,
 }
 
-/// The part of a report about a robot: how it is built, and what was assumed of its tissues.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RobotReport {
-    /// Rigid bodies, with fruits that can break off.
-    pub bodies: u64,
-    /// Hinges: two a joint.
-    pub hinges: u64,
-    /// Fruits that can break off.
-    pub breakable_fruits: u64,
-    /// Kilograms of all bodies.
-    pub mass_kg: f64,
-    /// The lowest frequency at which it swings, hertz; 0 of a plant without joints.
-    pub lowest_hz: f64,
-    /// The longest time step that simulates it well, seconds.
-    pub time_step_s: f64,
-    /// Whose wood it was taken for: `hardwood`, `softwood` or `green`. None of it is measured.
-    pub wood: String,
-    /// Young's modulus of that wood, pascals.
-    pub modulus_pa: f64,
-    /// The density of that wood, kilograms per cubic metre.
-    pub density_kg_m3: f64,
-    /// The stress at which that wood breaks, pascals.
-    pub strength_pa: f64,
-}
-
-impl RobotReport {
-    fn new(mechanism: &Mechanism, group: WoodGroup) -> Self {
-        let tissue = group.tissue();
-        Self {
-            bodies: mechanism.bodies.len() as u64,
-            hinges: mechanism.joints() as u64,
-            breakable_fruits: mechanism.bodies.iter().filter(|body| body.stalk.is_some()).count() as u64,
-            mass_kg: mechanism.mass(),
-            lowest_hz: mechanism.frequencies().map_or(0.0, |f| f.lowest_hz),
-            time_step_s: mechanism.time_step_s,
-            wood: group.word().to_owned(),
-            modulus_pa: tissue.modulus_pa,
-            density_kg_m3: tissue.density_kg_m3,
-            strength_pa: tissue.strength_pa,
-        }
+/// How a robot is built, and what was assumed of its tissues.
+fn reported(mechanism: &Mechanism, group: WoodGroup) -> RobotReport {
+    let tissue = group.tissue();
+    RobotReport {
+        bodies: mechanism.bodies.len() as u64,
+        hinges: mechanism.joints() as u64,
+        breakable_fruits: mechanism.bodies.iter().filter(|body| body.stalk.is_some()).count() as u64,
+        mass_kg: mechanism.mass(),
+        lowest_hz: mechanism.frequencies().map_or(0.0, |f| f.lowest_hz),
+        time_step_s: mechanism.time_step_s,
+        wood: group.word().to_owned(),
+        modulus_pa: tissue.modulus_pa,
+        density_kg_m3: tissue.density_kg_m3,
+        strength_pa: tissue.strength_pa,
     }
 }
 
@@ -130,7 +104,7 @@ pub fn write_robot(
     }
     let meshes = body_meshes(plant, &mechanism, run)?;
     let files = robot_files(&mechanism, &meshes, format, stem)?;
-    Ok(Robot { files, report: RobotReport::new(&mechanism, spec.group) })
+    Ok(Robot { files, report: reported(&mechanism, spec.group) })
 }
 
 /// Whether a plant is taken for a hardwood for want of better: it is no species that comes with Burgeon, or one without true wood.
