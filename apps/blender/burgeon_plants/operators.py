@@ -265,7 +265,7 @@ class BURGEON_OT_add_forest(Refusing):
     def do(self, context):
         how = {"detail": self.detail, "textures": self.textures, "wind": True, **({"age": self.age} if self.age else {})}
         area = (self.width, self.depth)
-        made = bg.forest(self.species, area, spacing=self.spacing, kinds=self.kinds, vary=self.vary, seed=self.seed, **how)
+        made = bg.grove(self.species, area, spacing=self.spacing, kinds=self.kinds, vary=self.vary, seed=self.seed, **how)
         trees = []
         for k, plant in enumerate(made.plants):
             mesh = bpy.data.meshes.new(f"{self.species} {k + 1}")

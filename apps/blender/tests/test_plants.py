@@ -304,7 +304,7 @@ def test_a_forest_is_instances_of_a_few_meshes_and_moves():
     args = {"width": 40.0, "depth": 30.0, "spacing": 3.5, "kinds": 3, "detail": 0.1, "textures": False}
     assert bpy.ops.burgeon.add_forest(species="hazel", seed=4, age=3, **args) == {"FINISHED"}
     collection = bpy.data.collections["hazel forest"]
-    wanted = bg.forest("hazel", (40.0, 30.0), spacing=3.5, kinds=3, seed=4, age=3, detail=0.1, textures=False)
+    wanted = bg.grove("hazel", (40.0, 30.0), spacing=3.5, kinds=3, seed=4, age=3, detail=0.1, textures=False)
     assert len(collection.objects) == len(wanted) >= 50 and len(bpy.data.meshes) == len(wanted.plants) <= 3
     bpy.context.view_layer.update()
     graph = bpy.context.evaluated_depsgraph_get()

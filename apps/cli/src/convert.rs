@@ -164,7 +164,7 @@ fn structure_file(
     let cache = &mut PngCache::new();
     let (done, write_ms) = machine
         .timed(|| files::write_plant(&mut outputs, goal, (&plant, &model), written, &args.axes, cache));
-    item.warnings.extend(done?.iter().map(ToString::to_string));
+    done?.tell(&mut item);
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);
         let drawn =

@@ -14,7 +14,9 @@ use burgeon::formats::{
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
-use burgeon::{DrawnLine, Report, RobotError, Run, Spec, Unit, UpAxis, Warning, plainly};
+use burgeon::{
+    DrawnLine, ItemReport, Report, RobotError, RobotReport, Run, Spec, Unit, UpAxis, Warning, plainly,
+};
 use companions::{LIMITS, Named, NamedFault};
 use serde::Deserialize;
 
@@ -494,6 +496,28 @@ pub(crate) fn lod(path: &Path, level: usize) -> PathBuf {
     path.with_file_name(format!("{}-lod{level}.{extension}", stem(path)))
 }
 
+/// What the writer of a plant has to say.
+#[derive(Debug, Default)]
+pub(crate) struct PlantWritten {
+    pub(crate) warnings: Vec<Warning>,
+    /// Of a robot: how it is built.
+    pub(crate) robot: Option<RobotReport>,
+}
+
+impl PlantWritten {
+    /// Adds it to the report of the plant.
+    pub(crate) fn tell(self, item: &mut ItemReport) {
+        item.warnings.extend(self.warnings.iter().map(ToString::to_string));
+        item.robot = self.robot.or(item.robot.take());
+    }
+}
+
+impl From<Vec<Warning>> for PlantWritten {
+    fn from(warnings: Vec<Warning>) -> Self {
+        Self { warnings, robot: None }
+    }
+}
+
 /// Writes a plant: its model, or its structure with +Z up unless `up` says otherwise.
 pub(crate) fn write_plant(
     outputs: &mut Outputs,
@@ -502,16 +526,16 @@ pub(crate) fn write_plant(
     format: PlantFormat,
     args: &AxesArgs,
     cache: &mut PngCache,
-) -> Outcome<Vec<Warning>> {
+) -> Outcome<PlantWritten> {
     match format {
         PlantFormat::Model(format) => {
-            write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache)
+            write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache).map(Into::into)
         }
         PlantFormat::Structure(format) => {
             write_structure(outputs, (goal.by, goal.path), plant, format, args)?;
             let mut report = Report::default();
             warn_of_wind(model, format.name(), &mut report);
-            Ok(report.warnings)
+            Ok(report.warnings.into())
         }
         PlantFormat::Robot(format) => write_robot(outputs, goal, plant, format),
     }
@@ -523,16 +547,16 @@ fn write_robot(
     goal: Goal<'_>,
     plant: &Plant,
     format: RobotFormat,
-) -> Outcome<Vec<Warning>> {
+) -> Outcome<PlantWritten> {
     let mut report = Report::default();
     let (_, stem) = goal.stems();
     let made = burgeon::write_robot(plant, format, &stem, &Run::plain(), &mut report);
-    let files = made.map_err(|e| match e {
+    let robot = made.map_err(|e| match e {
         RobotError::Write(e) => output::write_failed(goal.path, e),
         e => Failure::at(goal.path, e),
     })?;
-    write_files(outputs, goal, Ok(files))?;
-    Ok(report.warnings)
+    write_files(outputs, goal, Ok(robot.files))?;
+    Ok(PlantWritten { warnings: report.warnings, robot: Some(robot.report) })
 }
 
 /// Writes a plant's structure, with +Z up unless `args` say otherwise.

@@ -14,7 +14,7 @@ use burgeon::{Allowance, ItemReport, Levels, Report, Warning};
 
 use crate::args::{AxesArgs, ExportArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Goal};
+use crate::files::{self, Goal, PlantWritten};
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{picture, say};
@@ -203,12 +203,12 @@ pub(crate) fn write(
             files::write_gltf(outputs, goal, gltf, |out| write_glb_levels(levels, goal.packing, cache, out))
         };
         let (written, write_ms) = machine.timed(|| match level {
-            0 if one => in_levels(outputs, &of_file, cache).map(|()| Vec::new()),
+            0 if one => in_levels(outputs, &of_file, cache).map(|()| PlantWritten::default()),
             // It is in the file of the whole.
-            _ if one => Ok(Vec::new()),
-            _ if export.sway => swaying(outputs, (goal, gltf), model, cache),
+            _ if one => Ok(PlantWritten::default()),
+            _ if export.sway => swaying(outputs, (goal, gltf), model, cache).map(Into::into),
             _ if !levels.copies.is_empty() => {
-                in_levels(outputs, &of_file[level..=level], cache).map(|()| Vec::new())
+                in_levels(outputs, &of_file[level..=level], cache).map(|()| PlantWritten::default())
             }
             _ => files::write_plant(outputs, goal, (plant, model), format, form.axes, cache),
         });
@@ -219,7 +219,7 @@ pub(crate) fn write(
         }
         let item = &mut items[level];
         item.output = if one { main } else { path.as_path() }.display().to_string();
-        item.warnings.extend(written.iter().map(ToString::to_string));
+        written.tell(item);
         item.timings_ms.add_io(0.0, write_ms);
     }
     Ok(())

@@ -6,7 +6,8 @@
 (3, True)
 
 ``grow``, ``sketch``, ``leaf``, ``bloom`` and ``scan`` make a ``Plant``; its tables are NumPy arrays, ``plant.model`` its meshes,
-``plant.cloud()`` its points as a scanner sees them. ``burgeon.dataset`` makes thousands. Lengths are metres, +y is up;
+``plant.cloud()`` its points as a scanner sees them. ``burgeon.dataset`` makes thousands; ``burgeon.forest`` has stands of up to
+millions of trees. Lengths are metres, +y is up;
 the same spec and seed give the same bits on every machine and as the command line.
 """
 
@@ -23,8 +24,8 @@ from .model import Cloud, Masks, Model, Part
 from .plant import PARTS, Axes, Nodes, Organs, Plant
 
 if TYPE_CHECKING:
-    from . import dataset
-    from ._forest import Forest, ForestCloud, ForestMasks, forest
+    from . import dataset, forest
+    from ._grove import Grove, GroveCloud, GroveMasks, grove
 
 __all__ = [
     "PARTS",
@@ -32,9 +33,9 @@ __all__ = [
     "BudgetError",
     "BurgeonError",
     "Cloud",
-    "Forest",
-    "ForestCloud",
-    "ForestMasks",
+    "Grove",
+    "GroveCloud",
+    "GroveMasks",
     "Law",
     "Masks",
     "Model",
@@ -47,6 +48,7 @@ __all__ = [
     "bloom",
     "dataset",
     "forest",
+    "grove",
     "grow",
     "leaf",
     "open",
@@ -59,15 +61,15 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Not before it is used: it imports more.
-    if name == "dataset":
+    # Not before they are used: they import more.
+    if name in ("dataset", "forest"):
         import importlib
 
-        return importlib.import_module(".dataset", __name__)
-    if name in ("Forest", "ForestCloud", "ForestMasks", "forest"):
+        return importlib.import_module(f".{name}", __name__)
+    if name in ("Grove", "GroveCloud", "GroveMasks", "grove"):
         import importlib
 
-        found = getattr(importlib.import_module("._forest", __name__), name)
+        found = getattr(importlib.import_module("._grove", __name__), name)
         globals()[name] = found
         return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -11,7 +11,6 @@ the same bytes wherever it runs. A run that was stopped is taken up again: only 
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import io
 import json
@@ -20,22 +19,23 @@ import random
 import sys
 import tarfile
 import time
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ._files import inside, write_whole
 from ._given import STRUCTURES, beyond, keys, table, whole, wrong
+from ._workers import results
 
 __all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
-MAKERS = ("grow", "bloom", "leaf", "forest")
-"""What makes the plants; a plant of ``forest`` is a tile of trees."""
+MAKERS = ("grow", "bloom", "leaf", "grove")
+"""What makes the plants; a plant of ``grove`` is a tile of trees."""
 FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
 would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
 
 
-FORESTS = ("glb", "cloud", "laz", "picture")
+GROVES = ("glb", "cloud", "laz", "picture")
 """What is written of tiles of trees; their clouds and masks also say which ``tree``."""
 
 
@@ -63,7 +63,7 @@ def generate(
 ) -> "Dict[str, Any]":
     """Makes ``n`` plants of different seeds; returns the manifest.
 
-    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom``, ``leaf`` or ``forest`` take (a preset, a TOML file, a dict);
+    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom``, ``leaf`` or ``grove`` take (a preset, a TOML file, a dict);
     ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``);
     ``vary``: arguments that differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a
     choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``formats``: of ``FORMATS``;
@@ -80,9 +80,8 @@ def generate(
     _claim(out, recipe)
     missing = [k for k in range(_count(recipe)) if not _is_made(out, recipe, k)]
     bar = _Bar(_count(recipe), _count(recipe) - len(missing), progress)
-    run = _with_ray if ray else _here if (workers == 1 or len(missing) <= 1) else _with_processes
     try:
-        for _ in run(recipe, out, missing, workers):
+        for _ in results(make_shard, (recipe, out), missing, workers=workers, ray=ray):
             bar.step()
     finally:
         bar.end()
@@ -155,7 +154,7 @@ def _recipe(
     cloud, picture = table("cloud", cloud), table("picture", picture)
     keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
-    known = FORESTS if maker == "forest" else FORMATS
+    known = GROVES if maker == "grove" else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
         raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
@@ -261,14 +260,6 @@ def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":
         return None
 
 
-def make_shard_alone(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
-    """Makes one shard in a process of its own: there are as many of these as cores, so each computes with one thread."""
-    from . import set_threads
-
-    set_threads(1)
-    return make_shard(recipe, out, k)
-
-
 def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
     """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
     first = k * recipe["shard"]
@@ -346,112 +337,6 @@ def _drawn(range_: Any, seed: int, name: str) -> Any:
     if isinstance(low, int) and isinstance(high, int):
         return low + min(int(share * (high - low + 1)), high - low)
     return low + share * (high - low)
-
-
-def _here(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", _: "Optional[int]") -> "Iterator[int]":
-    for k in missing:
-        yield make_shard(recipe, out, k)
-
-
-TRIES = 5
-"""How often a shard is tried whose worker was killed."""
-
-
-@contextlib.contextmanager
-def _without_main() -> "Iterator[None]":
-    """New processes do not run the program again that asks for them: they need nothing of it, and one without the guard
-    ``if __name__ == "__main__"`` would start them over and over."""
-    import types
-
-    main = sys.modules["__main__"]
-    sys.modules["__main__"] = types.ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main
-
-
-def _begin_worker() -> None:
-    """Ctrl-C is of what makes a shard; a process that waits for one ends with its pool."""
-    import signal
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def _shard_of_pool(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
-    """One shard in a process of a pool. After Ctrl-C, and with its drafts gone, the process ends without a word: the next
-    shard may be waiting for it already."""
-    import signal
-
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        return make_shard_alone(recipe, out, k)
-    except KeyboardInterrupt:
-        os._exit(STOPPED)
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-STOPPED = 130
-"""What a process ends with after Ctrl-C."""
-
-
-def _with_processes(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
-    import multiprocessing
-    import signal
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from concurrent.futures.process import BrokenProcessPool
-
-    left, tries, others = list(missing), 0, set(multiprocessing.active_children())
-    # Processes that are forked off would share locks of threads that they do not have.
-    context = multiprocessing.get_context("spawn")
-    while left:
-        done, failed = set(), False
-        count = min(workers or os.cpu_count() or 1, len(left))
-        with ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker) as pool:
-            with _without_main():
-                jobs = {pool.submit(_shard_of_pool, recipe, out, k): k for k in left}
-            try:
-                for job in as_completed(jobs):
-                    try:
-                        done.add(job.result())
-                    except BrokenProcessPool:
-                        failed = True
-                        continue
-                    yield jobs[job]
-            except BaseException:
-                # A terminal tells all processes of Ctrl-C; whoever stops this one alone means them, too.
-                for worker in set(multiprocessing.active_children()) - others:
-                    if os.name == "posix" and worker.pid is not None:
-                        with contextlib.suppress(ProcessLookupError):
-                            os.kill(worker.pid, signal.SIGINT)
-                pool.shutdown(wait=True, cancel_futures=True)
-                raise
-        # A worker was killed: its shard, and those that waited, go to new ones.
-        left = [k for k in left if k not in done]
-        tries = tries + 1 if failed and not done else 0
-        if tries >= TRIES:
-            raise RuntimeError(f"workers were killed {TRIES} times in a row; is there too little memory for {len(left)} shards?")
-
-
-def _with_ray(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]") -> "Iterator[int]":
-    try:
-        import ray
-    except ImportError as error:
-        raise ImportError("ray=True needs Ray: pip install 'ray>=2' (or leave ray out: workers=N)") from error
-    if not ray.is_initialized():
-        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
-    # A worker that is killed is replaced, and its shard made again.
-    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard_alone)
-    jobs = [task.remote(recipe, out, k) for k in missing]
-    try:
-        while jobs:
-            done, jobs = ray.wait(jobs)
-            for k in ray.get(done):
-                yield k
-    finally:
-        for job in jobs:
-            ray.cancel(job)
 
 
 def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":

@@ -44,33 +44,9 @@ impl Asked<'_> {
         Ok((skin, wind.unwrap_or(false)))
     }
 
-    /// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
-    /// said.
+    /// [`skin_on`] of what is asked for.
     pub(crate) fn skin_on(&self, py: Python<'_>, base: &SkinSpec) -> PyResult<(SkinSpec, Option<bool>)> {
-        let mut fields = json_of(self.skin.as_any(), "")?;
-        // What a schema of saved fields does not have.
-        let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
-        let wind = match unsaved("wind") {
-            None => None,
-            Some(Value::Bool(wind)) => Some(wind),
-            Some(other) => return Err(beyond("wind", other, "True or False")),
-        };
-        let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
-        let mut skin = put(py, base, fields)?;
-        if let Some(size) = size {
-            let pixels =
-                size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
-            skin.texture_size = pixels.ok_or_else(|| beyond("texture_size", size, "64 to 4096 pixels"))?;
-        }
-        if let Some(word) = foliage {
-            skin.foliage = match word.as_str() {
-                Some("outlines") => FoliageStyle::Outlines,
-                Some("cards") => FoliageStyle::Cards,
-                Some("by-level") => FoliageStyle::ByLevel,
-                _ => return Err(beyond("foliage", word, "outlines, cards or by-level")),
-            };
-        }
-        Ok((skin, wind))
+        skin_on(py, &self.skin, base)
     }
 
     pub(crate) fn seed(&self) -> Seed {
@@ -129,6 +105,38 @@ impl Asked<'_> {
         }
         self.made(py, editor.document().clone(), id, wind)
     }
+}
+
+/// How a plant is meshed, with what is asked for in the place of `base`'s; whether it has columns for wind, if that is
+/// said.
+pub(crate) fn skin_on(
+    py: Python<'_>,
+    asked: &Bound<'_, PyDict>,
+    base: &SkinSpec,
+) -> PyResult<(SkinSpec, Option<bool>)> {
+    let mut fields = json_of(asked.as_any(), "")?;
+    // What a schema of saved fields does not have.
+    let mut unsaved = |name: &str| fields.as_object_mut().and_then(|f| f.remove(name));
+    let wind = match unsaved("wind") {
+        None => None,
+        Some(Value::Bool(wind)) => Some(wind),
+        Some(other) => return Err(beyond("wind", other, "True or False")),
+    };
+    let (size, foliage) = (unsaved("texture_size"), unsaved("foliage"));
+    let mut skin = put(py, base, fields)?;
+    if let Some(size) = size {
+        let pixels = size.as_u64().and_then(|s| u32::try_from(s).ok()).filter(|s| (64..=4096).contains(s));
+        skin.texture_size = pixels.ok_or_else(|| beyond("texture_size", size, "64 to 4096 pixels"))?;
+    }
+    if let Some(word) = foliage {
+        skin.foliage = match word.as_str() {
+            Some("outlines") => FoliageStyle::Outlines,
+            Some("cards") => FoliageStyle::Cards,
+            Some("by-level") => FoliageStyle::ByLevel,
+            _ => return Err(beyond("foliage", word, "outlines, cards or by-level")),
+        };
+    }
+    Ok((skin, wind))
 }
 
 /// A spec with some fields in the place of its own, all within their ranges.

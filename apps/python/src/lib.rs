@@ -9,7 +9,8 @@
 //! | `write` | a plant's files with coarser copies, instances, joints |
 //! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
-//! | `forest` | plants that stand together |
+//! | `grove` | plants that stand together |
+//! | `stand` | stands of many trees, and their tiles |
 //! | `column` | memory of ours that `NumPy` shows without a copy |
 //! | `value` | what people write in Python -> JSON |
 //! | `compute` | threads, Ctrl-C, limits |
@@ -23,12 +24,13 @@ mod column;
 mod compute;
 mod days;
 mod fault;
-mod forest;
+mod grove;
 mod held;
 mod make;
 mod model;
 mod plant;
 mod scan;
+mod stand;
 mod value;
 mod write;
 
@@ -44,7 +46,7 @@ mod _burgeon {
     #[pymodule_export]
     use crate::fault::{foreign, meant};
     #[pymodule_export]
-    use crate::forest::{RawForest, places};
+    use crate::grove::{RawGrove, places};
     #[pymodule_export]
     use crate::make::{
         RawLaw, bloom, grow, is_rays, leaf, leaf_of_scan, leaf_of_veins, open_project, presets, schema,
@@ -56,6 +58,8 @@ mod _burgeon {
     use crate::plant::RawPlant;
     #[pymodule_export]
     use crate::scan::tree_of_scan;
+    #[pymodule_export]
+    use crate::stand::{RawStand, RawTiles, grow_stand, read_stand};
 
     #[pymodule_export]
     const VERSION: &str = burgeon::VERSION;

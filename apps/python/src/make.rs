@@ -87,8 +87,33 @@ impl Base {
         }
     }
 
-    fn trust(&self) -> Trust {
+    /// Fields alone, beside a file.
+    pub(crate) fn of_fields(beside: std::path::PathBuf, trust_paths: bool) -> Self {
+        Self { preset: None, toml: Some((String::new(), beside)), trust_paths }
+    }
+
+    /// The text of a file.
+    pub(crate) fn text(&self) -> Option<&str> {
+        self.toml.as_ref().map(|(text, _)| text.as_str())
+    }
+
+    /// The file beside which others are named.
+    pub(crate) fn naming(&self) -> &Path {
+        self.toml.as_ref().map_or(Path::new("spec.toml"), |(_, spec)| spec)
+    }
+
+    pub(crate) fn trust(&self) -> Trust {
         Trust { paths: self.trust_paths, allow: "trust_paths=True" }
+    }
+
+    /// The tree of a spec that this one names.
+    pub(crate) fn tree_beside(&self, py: Python<'_>, name: &str) -> PyResult<TreeSpec> {
+        let named = Named { naming: self.naming(), name };
+        let bytes = named.open(self.trust(), LIMITS.text).and_then(|(file, _)| named.read(file, LIMITS.text));
+        let bytes = bytes.map_err(|e| not_readable(py, &e))?;
+        let text = String::from_utf8(bytes).map_err(|e| unusable(py, &format!("{name}: {e}")))?;
+        let own = Self { preset: None, toml: Some((text, named.path())), trust_paths: self.trust_paths };
+        Ok(own.tree(py)?.0)
     }
 }
 
@@ -102,8 +127,7 @@ fn lender(py: Python<'_>, leaf: &RawPlant) -> PyResult<Settings> {
 
 /// The leaf of a file that a spec names, beside the spec.
 fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<Settings> {
-    let naming = base.toml.as_ref().map_or(Path::new("spec.toml"), |(_, spec)| spec);
-    let named = Named { naming, name: file };
+    let named = Named { naming: base.naming(), name: file };
     let path = named.path();
     let unread = |why: &dyn std::fmt::Display| unusable(py, &format!("blade.file {file:?}: {why}"));
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv") || e.eq_ignore_ascii_case("json")) {
@@ -121,7 +145,7 @@ fn leaf_beside(py: Python<'_>, base: &Base, file: &str, seed: Seed) -> PyResult<
 }
 
 /// A mesh or cloud that a spec names, in metres, +Y up; none of what is no such file.
-fn named_mesh(named: &Named<'_>, trust: Trust) -> Result<Option<NamedMesh>, NamedFileError> {
+pub(crate) fn named_mesh(named: &Named<'_>, trust: Trust) -> Result<Option<NamedMesh>, NamedFileError> {
     match named.open(trust, LIMITS.model) {
         Ok((file, _)) => Ok(mesh_of(&named.path(), &named.read(file, LIMITS.model)?)),
         Err(NamedFileError { fault: NamedFault::Missing, .. }) => Ok(None),

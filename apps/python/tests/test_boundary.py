@@ -91,19 +91,19 @@ def test_any_settings_make_another_plant_or_are_refused(small, how):
 
 @CALM
 @given(any_of(["species", "spacing", "seed", "kinds", "vary", "budget"]), ODD)
-def test_any_forest_is_made_or_refused(how, area):
+def test_any_grove_is_made_or_refused(how, area):
     area = area if not isinstance(area, (int, float)) else min(area, 8)
     plain = {"species": "grass", "spacing": 4.0, "kinds": 1, "age": 2, "detail": 0.1, "textures": False}
     if isinstance(how.get("species"), (dict, type(None))):
         how.pop("species", None)
-    made = told(lambda: bg.forest(**{**plain, "area": area, **how}))
+    made = told(lambda: bg.grove(**{**plain, "area": area, **how}))
     assert made is None or len(made) > 0
 
 
 @CALM
 @given(st.fixed_dictionaries({name: ARRAYS | ODD for name in ("position", "yaw_deg", "scale", "plant")}))
-def test_any_places_are_a_forest_or_are_refused(small, places):
-    made = told(lambda: bg.Forest([small], places))
+def test_any_places_are_a_grove_or_are_refused(small, places):
+    made = told(lambda: bg.Grove([small], places))
     assert made is None or np.isfinite(made.model.vertices).all()
 
 

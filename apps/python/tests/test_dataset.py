@@ -294,7 +294,7 @@ def test_drawings_and_laz(tmp_path, program):
     with pytest.raises(ValueError, match=r"written as \.npz, \.las or \.laz, not \.xyz"):
         tree.cloud(100).save(tmp_path / "oak.xyz")
     with pytest.raises(ValueError, match="formats are glb, cloud, laz"):
-        dataset.generate("hazel", 1, tmp_path / "c", maker="forest", formats="drawing", progress=False)
+        dataset.generate("hazel", 1, tmp_path / "c", maker="grove", formats="drawing", progress=False)
 
 
 def test_laspy_that_is_missing_is_told(monkeypatch):

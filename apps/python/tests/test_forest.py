@@ -1,168 +1,187 @@
-"""Forests: places, files, clouds, tiles of data sets."""
+"""Stands of many trees: inventories, stands that grow, their tiles, and the same tiles by several workers."""
 
 import json
-import struct
+import os
+import pickle
+import signal
+import subprocess
 
 import numpy as np
 import pytest
 
 import burgeon as bg
 
-SMALL = {"age": 4, "detail": 0.2, "textures": False}
+TREES = """x;y;species;DBH (cm);height_m
+0;0;birch;14;11
+8;1;hazel;;4
+3;9;Betula pendula;9,5;
+-6;5;birch;12;10
+"""
+QUICK = dict(variants=1, lods=1, impostor=None, detail=0.3, texture_size=64)
+QUICK_WORDS = ["--variants", "1", "--lods", "1", "--impostor", "off", "--detail", "0.3", "--textures", "64"]
+WOOD = {"area_m": [60, 50], "years": 15, "density_ha": 500, "species": [{"name": "birch"}, {"name": "hazel", "share": 2}]}
+
+
+def files_of(folder):
+    names = (os.path.join(at, name) for at, _, names in os.walk(folder) for name in names)
+    return {os.path.relpath(name, folder): open(name, "rb").read() for name in names}
 
 
 @pytest.fixture(scope="module")
-def grove():
-    return bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
+def inventory(tmp_path_factory):
+    path = tmp_path_factory.mktemp("inventory") / "trees.csv"
+    path.write_text(TREES, encoding="utf-8")
+    return path
 
 
-def test_trees_stand_apart_within_the_rectangle(grove):
-    at = grove.places["position"]
-    assert len(grove) == len(at) > 8
-    assert (np.abs(at[:, 0]) <= 6.0).all() and (np.abs(at[:, 2]) <= 4.5).all() and (at[:, 1] == 0.0).all()
-    apart = np.linalg.norm(at[:, None] - at[None], axis=2) + 99.0 * np.eye(len(at))
-    assert apart.min() >= 2.5
-    scale = grove.places["scale"]
-    assert scale.min() >= 0.85 and scale.max() <= 1.15 and scale.std() > 0.02
-    assert len({plant.name for plant in grove.plants}) == 2
-    assert len({plant.digest for plant in grove.plants}) == len(grove.plants) <= 4
+@pytest.fixture(scope="module")
+def wood():
+    return bg.forest.grow(WOOD, seed=3)
 
 
-def test_the_same_seed_gives_the_same_forest(grove):
-    again = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=7, kinds=2, **SMALL)
-    other = bg.forest({"hazel": 2, "birch": 1}, (12.0, 9.0), spacing=2.5, seed=8, kinds=2, **SMALL)
-    assert again.digest == grove.digest != other.digest
+@pytest.fixture(scope="module")
+def whole(wood, tmp_path_factory):
+    return wood.tiles(tmp_path_factory.mktemp("tiles") / "whole", **QUICK, tile_trees=8)
 
 
-def test_files_hold_all_trees_and_copies_share_meshes(grove, tmp_path):
-    data = grove.to_bytes("glb")
-    length = struct.unpack("<I", data[12:16])[0]
-    scene = json.loads(data[20 : 20 + length])
-    places = [node for node in scene["nodes"] if "translation" in node]
-    assert len(places) >= len(grove) - 1
-    parts = sum(len(plant.model.parts) for plant in grove.plants)
-    assert len(scene["meshes"]) == parts
-    grove.save(tmp_path / "grove.obj")
-    assert (tmp_path / "grove.obj").stat().st_size > 1000
-    per_plant = [plant.model.triangle_count for plant in grove.plants]
-    assert grove.model.triangle_count == sum(per_plant[row] for row in grove.places["plant"])
+def test_an_inventory_is_columns(inventory):
+    stand = bg.forest.read(inventory)
+    assert len(stand) == 4 and stand.species_names == ["birch", "hazel"]
+    assert stand.species.tolist() == [0, 1, 0, 0] and stand.row.tolist() == [1, 2, 3, 4]
+    assert stand.height[[0, 1, 3]].tolist() == [11, 4, 10] and stand.dbh[[0, 2]].tolist() == [0.14, 0.095]
+    # North is -z.
+    assert stand.position[2].tolist() == [3.0, 0.0, -9.0]
+    assert (stand.crown_width > 0.5).all() and (stand.age > 0).all() and stand.crown_offset.shape == (4, 3)
+    assert stand.report["rows"] == 4 and stand.report["given"] == [3, 3, 0, 0]
+    with pytest.raises(ValueError):
+        stand.height[0] = 1.0
 
 
-def test_a_cloud_tells_which_tree_each_point_is_on(grove):
-    cloud = grove.cloud(20_000, stations=3, noise=0.001)
-    assert cloud.points.shape == (20_000, 3) and cloud.tree.max() < len(grove)
-    assert len(np.unique(cloud.tree)) > len(grove) // 2
-    # Organs are those of the point's own plant, where it stands.
-    for tree in np.unique(cloud.tree)[:5]:
-        plant = grove.plants[grove.places["plant"][tree]]
-        own = (cloud.tree == tree) & (cloud.organ >= 0)
-        yaw = np.radians(grove.places["yaw_deg"][tree])
-        turn = np.array([[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]])
-        roots = plant.organs.position[cloud.organ[own]] * grove.places["scale"][tree]
-        roots = roots @ turn.T + grove.places["position"][tree]
-        assert np.linalg.norm(roots - cloud.points[own], axis=1).max() < 0.4
-        assert (plant.organs.part[cloud.organ[own]] == cloud.part[own]).all()
+def test_bytes_and_data_frames_are_inventories_too(inventory):
+    own = bg.forest.read(inventory)
+    assert bg.forest.read(TREES.encode()).position.tolist() == own.position.tolist()
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.read_csv(inventory, sep=";", decimal=",")
+    assert np.array_equal(bg.forest.read(frame).dbh, own.dbh)
+    again = pandas.DataFrame(own.table())
+    assert list(again.columns[:5]) == ["row", "species", "x", "y", "z"] and len(again) == 4
 
 
-def test_measures_are_sums_over_trees(grove):
-    measures = grove.measures()
-    assert measures["trees"] == len(grove) == len(measures["tree"])
-    own = [plant.measures()["leaf_area_m2"] for plant in grove.plants]
-    area = sum(own[row] * scale**2 for row, scale in zip(grove.places["plant"], grove.places["scale"]))
-    assert measures["leaf_area_m2"] == pytest.approx(area)
+def test_a_stand_grows_the_same_with_a_seed(wood):
+    again, other = bg.forest.grow(WOOD, seed=3), bg.forest.grow(WOOD, seed=4)
+    assert np.array_equal(wood.position, again.position) and wood.to_csv() == again.to_csv()
+    assert not np.array_equal(wood.height[:20], other.height[:20])
+    assert np.array_equal(pickle.loads(pickle.dumps(wood)).height, wood.height)
+    assert [year for year, *_ in wood.report["history"]][-1] == 15
+    assert len(bg.forest.grow(WOOD, seed=3, density_ha=100)) < len(wood)
 
 
-def test_a_forest_of_ones_own_plants_and_places(small):
-    places = {"position": [[0, 0, 0], [3, 0.5, 0]], "yaw_deg": [0, 90], "scale": [1, 2], "plant": [0, 0]}
-    pair = bg.Forest([small], places)
-    height = small.model.vertices[:, 1].max()
-    assert len(pair) == 2 and pair.model.vertices[:, 1].max() == pytest.approx(2 * height + 0.5, abs=1e-3)
+@pytest.mark.parametrize("ending", ["csv", "toml"])
+def test_tiles_are_those_of_the_command(program, inventory, tmp_path, ending):
+    if ending == "csv":
+        given, stand = inventory, bg.forest.read(inventory)
+    else:
+        given = tmp_path / "wood.toml"
+        given.write_text(
+            "area_m = [60, 50]\nyears = 15\ndensity_ha = 500\n"
+            '[[species]]\nname = "birch"\n[[species]]\nname = "hazel"\nshare = 2\n'
+        )
+        stand = bg.forest.grow(given)
+    words = [program, "forest", str(given), "-o", "own", *QUICK_WORDS, "--tile-trees", "8", "--glb", "-q"]
+    subprocess.run(words, check=True, cwd=tmp_path)
+    made = stand.tiles(tmp_path / "py", **QUICK, tile_trees=8, glb=True)
+    own, ours = files_of(tmp_path / "own"), files_of(tmp_path / "py")
+    assert sorted(own) == sorted(ours)
+    assert [name for name in own if own[name] != ours[name]] == []
+    assert made.manifest == json.loads(own["manifest.json"]) and made.report["tiles"] > 1
 
 
-def test_tiles_are_plants_of_data_sets(tmp_path):
-    how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
-    made = bg.dataset.generate(
-        "hazel", 3, tmp_path / "tiles", maker="forest", formats=("cloud",), fields=how,
-        cloud={"points": 2000, "stations": 2}, shard=2, workers=1, progress=False,
-    )  # fmt: skip
-    tiles = list(bg.dataset.read(tmp_path / "tiles"))
-    assert len(tiles) == made["plants"] == 3
-    assert len({tile["digest"] for tile in tiles}) == 3
-    assert all(tile["cloud"]["tree"].max() < tile["measures"]["trees"] for tile in tiles)
-    with pytest.raises(bg.SpecError, match="formats are glb, cloud, laz, picture"):
-        bg.dataset.generate("hazel", 1, tmp_path / "bad", maker="forest", formats=("mtg",))
+def test_tiles_are_kept_repaired_and_made_alone(wood, whole, tmp_path):
+    before = files_of(whole.folder)
+    tile = next(name for name in before if name.startswith(f"tiles{os.sep}"))
+    os.remove(os.path.join(whole.folder, tile))
+    with open(os.path.join(whole.folder, "models", os.listdir(os.path.join(whole.folder, "models"))[0]), "ab") as file:
+        file.write(b"damaged")
+    assert wood.tiles(whole.folder, **QUICK, tile_trees=8).manifest == whole.manifest
+    assert files_of(whole.folder) == before
+    depth, rest = tile.split(os.sep)[1], tile.split(os.sep)[2].removesuffix(".glb").split("-")
+    wood.tiles(tmp_path / "one", **QUICK, tile_trees=8, tile=[int(depth), *map(int, rest)])
+    alone = files_of(tmp_path / "one")
+    assert alone[tile] == before[tile] and "tileset.json" not in alone
 
 
-def test_masks_say_which_tree_each_pixel_shows():
-    how = dict(size=(160, 120), view="front", supersample=1)
-    grove = bg.forest(["hazel", "birch"], area=9.0, spacing=3.0, kinds=1, seed=4, **SMALL)
-    masks = grove.masks(**how)
-    assert all(column.shape == (120, 160) for column in masks)
-    trees = np.unique(masks.tree[masks.tree >= 0])
-    assert len(trees) >= 3 and trees.max() < len(grove)
-    nothing = masks.tree < 0
-    assert np.array_equal(nothing, masks.part < 0) and np.array_equal(nothing, ~np.isfinite(masks.depth))
-    for tree in trees:
-        plant, own = grove.plants[grove.places["plant"][tree]], masks.tree == tree
-        assert masks.axis[own].max() < len(plant.axes) and masks.organ[own].max() < len(plant.organs)
-        axis = masks.axis[own & (masks.organ < 0)]
-        assert np.array_equal(plant.axes.part[axis], masks.part[own & (masks.organ < 0)])
-    # Each tree that stands alone is where the masks of all show it.
-    for tree in trees:
-        one = {name: column[[tree]] for name, column in grove.places.items()}
-        far = {**one, "position": one["position"] + [200.0, 0.0, 0.0]}
-        both = {name: np.concatenate([one[name], far[name]]) for name in one}
-        alone = bg.Forest(grove.plants, both).masks(**{**how, "size": (4096, 128)})
-        assert {0, 1} == set(np.unique(alone.tree[alone.tree >= 0]))
+def test_four_workers_write_the_same(wood, whole, tmp_path):
+    made = wood.tiles(tmp_path / "four", **QUICK, tile_trees=8, workers=4)
+    assert made.manifest == whole.manifest
+    assert files_of(tmp_path / "four") == files_of(whole.folder)
 
 
-def test_a_plant_alone_has_the_masks_of_the_plant():
-    plant = bg.grow("hazel", seed=1, **SMALL)
-    place = {"position": [[0, 0, 0]], "yaw_deg": [0], "scale": [1], "plant": [0]}
-    how = dict(size=(96, 96), view="front", supersample=1)
-    one, own = bg.Forest([plant], place).masks(**how), plant.masks(**how)
-    assert all(np.array_equal(getattr(one, name), getattr(own, name)) for name in own._fields)
-    assert np.array_equal(one.tree, np.where(own.part < 0, -1, 0)) and (one.tree == 0).any()
+def _killed_once(made_of, form, folder, part):
+    """A part, in the first process that asks for it only until that is killed."""
+    mark = os.path.join(os.path.dirname(folder), "killed")
+    if part[1] and not os.path.exists(mark):
+        open(mark, "w").close()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return REAL(made_of, form, folder, part)
 
 
-def test_tiles_have_pictures_with_a_mask_for_each_tree(tmp_path):
-    how = {"spacing": 3.0, "area": [6.0, 6.0], "kinds": 1, **SMALL}
-    bg.dataset.generate(
-        "hazel", 1, tmp_path / "tiles", maker="forest", formats=("picture",), fields=how,
-        picture={"size": 96, "supersample": 1}, workers=1, progress=False,
-    )  # fmt: skip
-    (tile,) = bg.dataset.read(tmp_path / "tiles")
-    assert tile["png"].startswith(b"\x89PNG") and sorted(tile["masks"]) == ["axis", "depth", "organ", "part", "tree"]
-    assert tile["masks"]["tree"].shape == (96, 96) and tile["masks"]["tree"].max() < tile["measures"]["trees"]
+REAL = bg.forest._make_part
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills a process")
+def test_a_worker_that_was_killed_is_replaced(wood, whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(bg.forest, "_make_part", _killed_once)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([os.path.dirname(__file__), os.environ.get("PYTHONPATH", "")]))
+    made = wood.tiles(tmp_path / "tiles", **QUICK, tile_trees=8, workers=2)
+    assert os.path.exists(tmp_path / "killed"), "one was killed"
+    assert made.manifest == whole.manifest and files_of(tmp_path / "tiles") == files_of(whole.folder)
+
+
+@pytest.mark.ray
+def test_ray_writes_the_same_also_after_a_worker_was_killed(wood, whole, tmp_path, monkeypatch):
+    ray = pytest.importorskip("ray")
+    environment = {"PYTHONPATH": os.pathsep.join([os.path.dirname(__file__), os.environ.get("PYTHONPATH", "")])}
+    ray.init(num_cpus=4, include_dashboard=False, log_to_driver=False, runtime_env={"env_vars": environment})
+    try:
+        assert wood.tiles(tmp_path / "a" / "tiles", **QUICK, tile_trees=8, ray=True).manifest == whole.manifest
+        monkeypatch.setattr(bg.forest, "_make_part", _killed_once)
+        made = wood.tiles(tmp_path / "b" / "tiles", **QUICK, tile_trees=8, ray=True)
+    finally:
+        ray.shutdown()
+    assert os.path.exists(tmp_path / "b" / "killed"), "one was killed"
+    assert made.manifest == whole.manifest
+    assert files_of(tmp_path / "b" / "tiles") == files_of(whole.folder) == files_of(tmp_path / "a" / "tiles")
 
 
 @pytest.mark.parametrize(
-    "how, words",
+    "call, words",
     [
-        ({"spacing": 0}, "spacing must be 0.05 to 100"),
-        ({"area": (10, -1)}, r"area\[1\] must be 0.1 to 1000"),
-        ({"area": (1000, 1000), "spacing": 1.0}, "at most 2000 plants"),
-        ({"kinds": 0}, "kinds must be 1 to 100, not 0"),
-        ({"kinds": 1.5}, "kinds must be a whole number, 1 to 100, not 1.5"),
-        ({"vary": 2}, "vary must be 0 to 0.9"),
-        ({"vary": float("nan")}, "vary must be"),
-        ({"species": {"oak": -1}}, "share of 'oak'"),
-        ({"species": "oka"}, "there is no preset"),
+        (lambda at: bg.forest.read(b"x;y;species\n1;2;brich\n"), "row 1, column `species`"),
+        (lambda at: bg.forest.read(b"x;y;species\n"), "no trees"),
+        (lambda at: bg.forest.read(at / "none.csv"), "none.csv"),
+        (lambda at: bg.forest.read(TREES.encode(), crs="mars"), "crs must be"),
+        (lambda at: bg.forest.read(TREES.encode(), lean=0.5), "lean is of a ground"),
+        (lambda at: bg.forest.read(TREES.encode(), ground={"kind": "geotiff", "file": "no.tif"}), "no.tif"),
+        (lambda at: bg.forest.read(TREES.encode(), ground={"kind": "swamp"}), "ground"),
+        (lambda at: bg.forest.read(7), "an inventory is"),
+        (lambda at: bg.forest.grow("oak"), "a TOML file"),
+        (lambda at: bg.forest.grow({**WOOD, "yeras": 3}), "yeras"),
+        (lambda at: bg.forest.grow({**WOOD, "species": [{"name": "brich"}]}), "birch"),
+        (lambda at: bg.forest.grow({**WOOD, "masks": [{"file": "../mask.png"}]}), "trust_paths"),
+        (lambda at: bg.forest.grow(WOOD).tiles(at, variants=0), "variants must be 1 to 64"),
+        (lambda at: bg.forest.grow(WOOD).tiles(at, finest=4), "finest must be 0 to 3"),
+        (lambda at: bg.forest.grow(WOOD).tiles(at, level=1), "level is of glb and usd"),
+        (lambda at: bg.forest.grow(WOOD).tiles(at / "t", **QUICK, tile=(9, 9, 9, 9)), "there is no tile"),
+        (lambda at: bg.forest.grow(WOOD).tiles(at, place=(200, 0, 0)), "longitude"),
+        (lambda at: bg.forest.grow(WOOD).tiles(os.path.dirname(__file__), **QUICK), "other files in it"),
     ],
 )
-def test_what_is_wrong_is_told(how, words):
-    with pytest.raises(ValueError, match=words):
-        bg.forest(**how)
+def test_what_is_wrong_is_told(tmp_path, call, words):
+    with pytest.raises((ValueError, TypeError, OSError), match=words):
+        call(tmp_path)
 
 
-def test_places_of_the_wrong_shape_are_told(small):
-    good = {"position": [[0, 0, 0]], "yaw_deg": [0], "scale": [1], "plant": [0]}
-    for name, value, words in [
-        ("position", [[0, 0]], "shape"),
-        ("scale", [0], "scale above 0"),
-        ("plant", [1], "a plant that is there"),
-        ("plant", [-1], "rows of the plants"),
-        ("yaw_deg", [float("inf")], "finite"),
-    ]:
-        with pytest.raises(ValueError, match=words):
-            bg.Forest([small], {**good, name: value})
+def test_a_stand_a_spec_and_an_inventory_become_tiles_in_one_call(wood, whole, inventory, tmp_path):
+    assert bg.forest.tiles(WOOD, tmp_path / "spec", seed=3, **QUICK, tile_trees=8).manifest == whole.manifest
+    assert bg.forest.tiles(wood, tmp_path / "stand", **QUICK, tile_trees=8).manifest == whole.manifest
+    assert bg.forest.tiles(inventory, tmp_path / "inventory", **QUICK).report["trees"] == 4

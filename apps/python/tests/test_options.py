@@ -101,7 +101,7 @@ def uses(files):
         "textures": False,
         "wind": True,
     }
-    forest = {"spacing": 2.0, "kinds": 1, "vary": 0.5}
+    grove = {"spacing": 2.0, "kinds": 1, "vary": 0.5}
     grow = tree(leaf=one_leaf)
     return [
         ("grow", bg.grow, (SMALL,), {}, grow),
@@ -123,7 +123,7 @@ def uses(files):
         ("scan", bg.scan, (trunk(),), {}, scan),
         ("scan, of a file", bg.scan, (files / "scan.xyz",), {}, scan),
         ("open", bg.open, (files / "several.burgeon",), {}, {"only": 0, "wind": True}),
-        ("forest", bg.forest, (SMALL, 9), {"textures": False}, {**forest, "area": 12}),
+        ("grove", bg.grove, (SMALL, 9), {"textures": False}, {**grove, "area": 12}),
     ]
 
 
@@ -156,7 +156,7 @@ def seen(made):
     """All that a person can see of it."""
     if isinstance(made, list):
         return [seen(one) for one in made]
-    if isinstance(made, bg.Forest):
+    if isinstance(made, bg.Grove):
         return made.digest, made.name
     parts = [
         (part.wind.tobytes(), part.material["base_color"], b"" if part.texture is None else part.texture.tobytes())

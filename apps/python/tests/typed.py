@@ -13,10 +13,13 @@ picture: np.ndarray = oak.render((64, 64), view="orbit", azimuth=40.0, elevation
 masks: bg.Masks = oak.masks(64, view="front")
 cloud: bg.Cloud = oak.cloud(1000, noise=0.002)
 png: bytes = oak.model.to_png((64, 64), background="white")
-grove: bg.Forest = bg.forest({"oak": 3, "birch": 1}, area=(30, 30))
+grove: bg.Grove = bg.grove({"oak": 3, "birch": 1}, area=(30, 30))
 trees: np.ndarray = grove.masks(64).tree
-stand: bg.ForestCloud = grove.cloud(1000)
+stand: bg.GroveCloud = grove.cloud(1000)
 stand.save("x.npz")
+wood: bg.forest.Stand = bg.forest.grow({"species": [{"name": "oak"}]}, seed=2, years=40)
+heights: np.ndarray = wood.height
+tiles: bg.forest.Tiles = wood.tiles("wood", variants=2, workers=4)
 law: bg.Law = bg.Law.fit([0, 1, 2], [0.1, 0.2, 0.3])
 lily: bg.Plant = bg.bloom("lily", 2.5, law=law)
 words: Tuple[List[str], List[str]] = bg.presets()
@@ -28,5 +31,6 @@ oak.render((64, 64), view="back")  # type: ignore[arg-type]
 oak.render((64, 64), sizes=3)  # type: ignore[call-arg]
 oak.masks("large")  # type: ignore[arg-type]
 bg.grow(3)  # type: ignore[arg-type]
-bg.forest(spacing="wide")  # type: ignore[arg-type]
+bg.grove(spacing="wide")  # type: ignore[arg-type]
+bg.forest.read("trees.csv", yaer=2024)  # type: ignore[call-arg]
 bg.dataset.generate("birch", "ten", "birches")  # type: ignore[arg-type]

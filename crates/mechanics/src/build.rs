@@ -2,10 +2,11 @@
 
 use base::{Counted, Report, Run};
 use glam::{DMat3, DVec3};
-use plant::{AxisId, AxisKind, OrganKind, Plant};
+use plant::{AxisId, AxisKind, Organ, Plant};
 
 use crate::choice::{Bend, choose};
-use crate::line::{Line, Lines, Weight, place_of};
+use crate::fruits::{Fruits, tell_of_overload};
+use crate::line::{Line, Lines, Weight, is_fruit, place_of};
 use crate::mechanism::{Runs, outer, parallel};
 use crate::{Body, Capsule, MechanicsError, Mechanism, SpringJoint, Stalk, WoodGroup};
 
@@ -36,9 +37,6 @@ impl Default for MechanicsSpec {
 /// Gravity of the reference load where the mechanism has none, m/s2: only ratios of energies matter.
 const REFERENCE_GRAVITY: f64 = 9.81;
 
-/// Fruits that hang on stalks that break, at most: each is free in space and costs as much as three joints.
-const MOST_FRUITS: usize = 24;
-
 /// Capsules of a mechanism, at most: the largest.
 const MOST_CAPSULES: usize = 1000;
 
@@ -56,8 +54,9 @@ const LEAST_INERTIA_KG_M2: f64 = 1e-12;
 /// Makes rigid bodies and springy joints of a plant.
 ///
 /// Guaranteed: at most [`MechanicsSpec::most_joints`] hinges; the masses of the bodies are volume times density of all wood
-/// above the ground and the weight of all organs; the plant rests in the pose that it was made in; the same bits on every
-/// platform. Roots are held by the soil and weigh nothing; stubs do not bend.
+/// above the ground and the weight of all organs; the plant rests in the pose that it was made in; a fruit that can break off
+/// hangs on a stalk that holds twice its weight, on wood that is not too light for a simulator to hold it; the same bits on every
+/// platform. Roots are held by the soil and weigh nothing; stubs, and stalks of single fruits that can break off, do not bend.
 /// Not modelled: torsion of wood, growth stresses, tapering of a joint's run (its compliance is that of the tapered wood), collisions of the plant with itself.
 /// Cost: linear in nodes and organs; some 0.1 s for the frequencies of 200 hinges.
 ///
@@ -78,15 +77,17 @@ pub fn articulate(
         return Err(MechanicsError::Unsound(fault));
     }
     let gravity = if spec.gravity > 0.0 { spec.gravity } else { REFERENCE_GRAVITY };
-    let lines = Lines::new(plant, spec.group, gravity);
+    let mut lines = Lines::new(plant, spec.group, gravity);
     check(&lines)?;
+    let fruits = Fruits::new(plant, &mut lines, gravity);
     let bends = choose(&lines, spec.most_joints / 2);
     let base = Draft::new("base".to_owned(), None, foot(plant));
     let mut build = Build { plant, lines: &lines, bodies: vec![base], runs: Vec::new() };
     for (row, bends) in bends.iter().enumerate() {
         build.axis(row, bends);
     }
-    let organ_bodies = build.organs(report);
+    let organ_bodies = build.organs(&fruits, report);
+    tell_of_overload(&lines, report);
     let Build { bodies, runs, .. } = build;
     let mut bodies: Vec<Body> = bodies.into_iter().map(Draft::body).collect();
     keep_largest(&mut bodies);
@@ -255,66 +256,38 @@ impl Build<'_> {
         capsules(line, &stops, &mut draft.body.capsules);
     }
 
-    /// Adds the organs, fruits as bodies of their own; for each organ the row of its body.
-    fn organs(&mut self, report: &mut Report) -> Vec<usize> {
-        let fruits = self.fruits();
-        let mut rows = Vec::with_capacity(self.plant.organs.len());
+    /// Adds the organs; for each organ the row of its body. Fruits that can break off are bodies of their own, the others part of
+    /// what bears them.
+    fn organs(&mut self, fruits: &Fruits, report: &mut Report) -> Vec<usize> {
+        let bearers: Vec<usize> = self.plant.organs.iter().map(|organ| self.bearer_of(organ)).collect();
+        // Of its wood: leaves weigh little, and other fruits hang themselves.
+        let wood: Vec<f64> = self.bodies.iter().map(|draft| draft.body.mass).collect();
+        let hanging = fruits.breakable(|row| wood[bearers[row]], report);
+        let mut rows = Vec::with_capacity(bearers.len());
         for (k, (organ, weight)) in self.plant.organs.iter().zip(&self.lines.organs).enumerate() {
-            let place = organ.bearer.map(|node| place_of(self.plant, &self.lines.all, node));
-            let bearer = place.map_or(0, |(axis, arc)| self.body_at(axis, arc));
-            let Some((axis, arc)) = place.filter(|_| fruits.contains(&k)) else {
-                self.bodies[bearer].add_organ(weight);
-                rows.push(bearer);
-                continue;
-            };
-            let line = &self.lines.all[axis];
-            let radius = line.at(arc).1;
-            let break_force_n = line.tissue.strength_pa * base::ops::PI * radius * radius;
-            let mut draft = Draft::new(format!("fruit_{}", k + 1), Some(bearer), organ.frame.origin);
-            draft.body.stalk = Some(Stalk { at: organ.frame.origin, break_force_n });
-            draft.add_organ(weight);
-            draft.body.capsules.push(Capsule {
-                from: weight.centre,
-                to: weight.centre,
-                radius_m: weight.reach_m,
+            let bearer = bearers[k];
+            let row = hanging.get(&k).map_or(bearer, |&break_force_n| {
+                let mut draft = Draft::new(format!("fruit_{}", k + 1), Some(bearer), organ.frame.origin);
+                draft.body.stalk = Some(Stalk { at: organ.frame.origin, break_force_n });
+                self.bodies.push(draft);
+                self.bodies.len() - 1
             });
-            rows.push(self.bodies.len());
-            self.bodies.push(draft);
-        }
-        let all = self.plant.organs.iter().filter(|o| is_fruit(o.kind)).count();
-        if all > fruits.len() {
-            let kept = fruits.len();
-            base::warn!(
-                report,
-                "fruits-fixed",
-                { all = all, kept = kept },
-                "of {all} fruits the heaviest {kept} that hang on stalks can break off; the others are part of what bears them"
-            );
+            let draft = &mut self.bodies[row];
+            draft.add_organ(weight);
+            if is_fruit(organ.kind) && weight.reach_m > 0.0 {
+                let (from, to) = (weight.centre, weight.centre);
+                draft.body.capsules.push(Capsule { from, to, radius_m: weight.reach_m });
+            }
+            rows.push(row);
         }
         rows
     }
 
-    /// Rows of the fruits that can break off: the heaviest of those on stalks with a thickness.
-    fn fruits(&self) -> Vec<usize> {
-        let can = |k: &usize| {
-            let organ = &self.plant.organs[*k];
-            let Some((axis, arc)) = organ.bearer.map(|n| place_of(self.plant, &self.lines.all, n)) else {
-                return false;
-            };
-            let line = &self.lines.all[axis];
-            let weight = &self.lines.organs[*k];
-            is_fruit(organ.kind) && line.at(arc).1 > 0.0 && weight.mass > 0.0 && weight.reach_m > 0.0
-        };
-        let mut all: Vec<usize> = (0..self.plant.organs.len()).filter(can).collect();
-        let mass = |k: usize| self.lines.organs[k].mass;
-        base::sort_by(&mut all, |a, b| mass(*b).total_cmp(&mass(*a)).then(a.cmp(b)));
-        all.truncate(MOST_FRUITS);
-        all
+    /// The body of the wood that an organ sits on; the one on the ground of an organ without.
+    fn bearer_of(&self, organ: &Organ) -> usize {
+        let place = organ.bearer.map(|node| place_of(self.plant, &self.lines.all, node));
+        place.map_or(0, |(axis, arc)| self.body_at(axis, arc))
     }
-}
-
-const fn is_fruit(kind: OrganKind) -> bool {
-    matches!(kind, OrganKind::Fruit | OrganKind::Syncarp)
 }
 
 const fn word(kind: AxisKind) -> &'static str {

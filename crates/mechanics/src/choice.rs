@@ -48,7 +48,7 @@ pub(crate) fn choose(lines: &Lines, most: u32) -> Vec<Vec<Bend>> {
 
 /// The energy of an axis that may bend at all.
 fn bending_energy(line: &Line, steps: &[Step]) -> f64 {
-    if line.is_buried || line.kind == plant::AxisKind::Stub {
+    if line.is_buried || line.is_rigid {
         return 0.0;
     }
     steps.iter().map(|s| s.energy).sum()

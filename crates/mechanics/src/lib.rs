@@ -8,6 +8,7 @@
 //! | `line` | axes as bent lines with taper; what each place of them bears |
 //! | `choice` | which places become joints |
 //! | `mechanism` | [`Mechanism`]: bodies, joints, capsules, fruits on stalks that break |
+//! | `fruits` | which fruits can break off, and which axes bear too much of them |
 //! | `build` | [`articulate`]: the whole way |
 //! | `dynamics` | [`Mechanism::frequencies`], [`Mechanism::deflection`]: small movements about the rest pose |
 
@@ -15,6 +16,7 @@ mod build;
 mod choice;
 mod dynamics;
 mod error;
+mod fruits;
 mod line;
 mod mechanism;
 mod tissue;

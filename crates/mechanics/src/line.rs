@@ -27,17 +27,25 @@ pub(crate) struct Masses {
     pub(crate) first: DVec3,
     /// Mass times squared distance from the origin, kg m2.
     pub(crate) second: f64,
+    /// The part of the mass that is fruits, kilograms.
+    fruits: f64,
 }
 
 impl Masses {
     pub(crate) fn point(mass: f64, at: DVec3) -> Self {
-        Self { mass, first: at * mass, second: mass * at.length_squared() }
+        Self { mass, first: at * mass, second: mass * at.length_squared(), fruits: 0.0 }
+    }
+
+    fn organ(kind: OrganKind, weight: &Weight) -> Self {
+        let fruits = if is_fruit(kind) { weight.mass } else { 0.0 };
+        Self { fruits, ..Self::point(weight.mass, weight.centre) }
     }
 
     pub(crate) fn add(&mut self, other: &Self) {
         self.mass += other.mass;
         self.first += other.first;
         self.second += other.second;
+        self.fruits += other.fruits;
     }
 
     /// The polar second moment about a place, kg m2: for slender limbs that about any axis across.
@@ -73,6 +81,8 @@ pub(crate) struct Step {
     pub(crate) slowness: f64,
     /// The same of the axis's own wood alone, s2.
     pub(crate) bare_slowness: f64,
+    /// Bending stress at rest over what breaks the tissue, where most of what it bears are fruits; 0 elsewhere.
+    pub(crate) fruit_stress: f64,
 }
 
 /// An axis as a bent line.
@@ -88,6 +98,8 @@ pub(crate) struct Line {
     pub(crate) bearer: Option<(usize, f64)>,
     /// Below the ground, or on what is: held by the soil.
     pub(crate) is_buried: bool,
+    /// It moves with what bears it, however much it would bend.
+    pub(crate) is_rigid: bool,
 }
 
 impl Line {
@@ -107,6 +119,7 @@ impl Line {
             kind: axis.kind,
             bearer: None,
             is_buried: axis.kind == AxisKind::Root,
+            is_rigid: axis.kind == AxisKind::Stub,
         }
     }
 
@@ -166,9 +179,26 @@ impl Line {
         self.stops(from, to).windows(2).map(|s| self.mass(s[0], s[1])).sum()
     }
 
+    /// The least radius that its stiffness and its stress are computed from, metres.
+    fn thinnest(&self) -> f64 {
+        (self.mean_radius() * THINNEST_SHARE).max(THINNEST_M)
+    }
+
+    /// Bending stress 4 M / pi r^3 at rest over the strength of the tissue, where most of what is borne are fruits; 0 elsewhere.
+    fn fruit_stress(&self, borne: &Masses, arc: f64, thinnest: f64, gravity: f64) -> f64 {
+        if borne.fruits <= borne.mass / 2.0 {
+            return 0.0;
+        }
+        let (place, radius) = self.at(arc);
+        let arm = borne.first - place * borne.mass;
+        let radius = radius.max(thinnest);
+        let stress = 4.0 * gravity * base::ops::hypot(arm.x, arm.z) / (PI * radius * radius * radius);
+        stress / self.tissue.strength_pa
+    }
+
     /// The steps, base first, without loads.
     fn steps(&self) -> Vec<Step> {
-        let thinnest = (self.mean_radius() * THINNEST_SHARE).max(THINNEST_M);
+        let thinnest = self.thinnest();
         let longest = self.length() / STEPS as f64;
         let mut steps = Vec::new();
         for ends in self.arcs.windows(2) {
@@ -186,6 +216,7 @@ impl Line {
                         energy: 0.0,
                         slowness: 0.0,
                         bare_slowness: 0.0,
+                        fruit_stress: 0.0,
                     });
                 }
             }
@@ -228,10 +259,11 @@ impl Lines {
         for (organ, weight) in plant.organs.iter().zip(&self.organs) {
             let Some(bearer) = organ.bearer else { continue };
             let (axis, arc) = place_of(plant, &self.all, bearer);
-            hanging[axis].push((arc, Masses::point(weight.mass, weight.centre)));
+            hanging[axis].push((arc, Masses::organ(organ.kind, weight)));
         }
         for row in (0..self.all.len()).rev() {
             let (line, mut loads) = (&self.all[row], core::mem::take(&mut hanging[row]));
+            let thinnest = line.thinnest();
             base::sort_by(&mut loads, |a, b| a.0.total_cmp(&b.0));
             let (mut borne, mut bare) = (Masses::default(), Masses::default());
             for step in self.steps[row].iter_mut().rev() {
@@ -246,6 +278,7 @@ impl Lines {
                 bare.add(&above);
                 step.bear(&borne, (place, line.tangent(middle)), gravity);
                 step.bare_slowness = step.compliance * bare.about(place);
+                step.fruit_stress = line.fruit_stress(&borne, middle, thinnest, gravity);
                 borne.add(&below);
                 bare.add(&below);
             }
@@ -265,6 +298,10 @@ impl Step {
         self.energy = self.compliance / 2.0 * gravity * gravity * (arm.length_squared() + along * along);
         self.slowness = self.compliance * borne.about(place);
     }
+}
+
+pub(crate) const fn is_fruit(kind: OrganKind) -> bool {
+    matches!(kind, OrganKind::Fruit | OrganKind::Syncarp)
 }
 
 /// The axis of a node and the arc length there. The first node of a borne axis lies at its base.

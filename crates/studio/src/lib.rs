@@ -73,10 +73,10 @@ pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use refusal::Refusal;
 pub use report::{
     CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
-    LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, SeverityWord, SideWord,
-    StrokeReport, TimingsMs,
+    LeafFit, LeafReport, REPORT_SCHEMA, ReadingReport, RobotReport, RunReport, ScanReport, SeverityWord,
+    SideWord, StrokeReport, TimingsMs,
 };
-pub use robot::{RobotError, write_robot};
+pub use robot::{Robot, RobotError, write_robot};
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
     PlantLevel, SceneError, SceneEvaluator, ScenePlant, leaf_marks, scene_model, standing, standing_at,
@@ -88,8 +88,11 @@ pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_templa
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
 pub use stands::{
-    LIMITS, Misfits, Nursery, NurseryError, NurseryLook, NurserySpec, Placed, SPECIES_COLOURS, ScaleLimits,
-    StandTile, TileId, Tiling, TilingError, TilingSpec, Variant, stand_map,
+    ForestPlan, ForestTilesError, ForestTilesSpec, LIMITS, Misfits, ModelsOf, Nursery, NurseryError,
+    NurseryLook, NurserySpec, Placed, SPECIES_COLOURS, ScaleLimits, SiteError, SiteFiles, StandReport,
+    StandTile, TILES_JOURNAL, TILES_MANIFEST, TILESET, TileDisk, TileFile, TileFolder, TileId, TileModels,
+    TileWriter, Tiling, TilingError, TilingSpec, Variant, Watch, WholeForest, read_ground, read_masks,
+    stand_map,
 };
 pub use structure::write_structure;
 pub use survey::{

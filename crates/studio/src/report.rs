@@ -116,6 +116,10 @@ pub struct ItemReport {
     /// Of `grow`: what growth did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<GrowthReport>,
+    /// Of a plant that was written as a robot: how it is built, and what was assumed of its tissues.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub robot: Option<RobotReport>,
     /// Of a plant that was edited by hand: what became of each edit, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<crate::EditReport>,
@@ -503,4 +507,29 @@ pub struct GrowthReport {
     /// How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above.
     #[serde(default)]
     pub inside_obstacle_depth_m: Option<f64>,
+}
+
+/// The part of a report about a robot: how it is built, and what was assumed of its tissues.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RobotReport {
+    /// Rigid bodies, with fruits that can break off.
+    pub bodies: u64,
+    /// Hinges: two a joint.
+    pub hinges: u64,
+    /// Fruits that can break off.
+    pub breakable_fruits: u64,
+    /// Kilograms of all bodies.
+    pub mass_kg: f64,
+    /// The lowest frequency at which it swings, hertz; 0 of a plant without joints.
+    pub lowest_hz: f64,
+    /// The longest time step that simulates it well, seconds.
+    pub time_step_s: f64,
+    /// Whose wood it was taken for: `hardwood`, `softwood` or `green`. None of it is measured.
+    pub wood: String,
+    /// Young's modulus of that wood, pascals.
+    pub modulus_pa: f64,
+    /// The density of that wood, kilograms per cubic metre.
+    pub density_kg_m3: f64,
+    /// The stress at which that wood breaks, pascals.
+    pub strength_pa: f64,
 }

@@ -12,6 +12,8 @@ use mesh::{Model, Part, TriMesh};
 use plant::{AxisId, OrganId, Plant};
 use skin::SkinSpec;
 
+use crate::PRESETS;
+use crate::report::RobotReport;
 use crate::survey::triangle_labels;
 
 /// Why a plant cannot be written as a robot.
@@ -32,10 +34,40 @@ pub enum RobotError {
 /// Fineness of the meshes that are seen, over that of models: simulators draw them, and nothing is computed with them.
 const SEEN_DETAIL: f64 = 0.5;
 
+/// Woody plants that are no hardwood: their trunks are fibres in soft tissue, whose stiffness differs from species to species.
+const NO_HARDWOOD: [&str; 4] = ["Coconut palm", "Date palm", "Tree fern", "Saguaro"];
+
+/// A plant as a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Its own file and the meshes beside it.
+    pub files: ModelFiles,
+    /// How it is built, and what was assumed of its tissues.
+    pub report: RobotReport,
+}
+
+/// How a robot is built, and what was assumed of its tissues.
+fn reported(mechanism: &Mechanism, group: WoodGroup) -> RobotReport {
+    let tissue = group.tissue();
+    RobotReport {
+        bodies: mechanism.bodies.len() as u64,
+        hinges: mechanism.joints() as u64,
+        breakable_fruits: mechanism.bodies.iter().filter(|body| body.stalk.is_some()).count() as u64,
+        mass_kg: mechanism.mass(),
+        lowest_hz: mechanism.frequencies().map_or(0.0, |f| f.lowest_hz),
+        time_step_s: mechanism.time_step_s,
+        wood: group.word().to_owned(),
+        modulus_pa: tissue.modulus_pa,
+        density_kg_m3: tissue.density_kg_m3,
+        strength_pa: tissue.strength_pa,
+    }
+}
+
 /// Writes a plant as a robot, with its meshes beside it: see [`articulate`] and [`robot_files`]. `stem`: the file's name without
-/// its ending. What was assumed of its wood, and how it swings, is told in `report`.
+/// its ending.
 ///
-/// Guaranteed: the same bits for any executor. Cost: that of [`skin::skin`] at half its fineness.
+/// Guaranteed: the same bits for any executor. Warned of in `report`: wood whose kind nothing in the plant says, and what
+/// [`articulate`] warns of. Cost: that of [`skin::skin`] at half its fineness.
 ///
 /// # Errors
 /// [`RobotError`] of a plant without stems or thickness, or beyond the budget.
@@ -47,8 +79,9 @@ const SEEN_DETAIL: f64 = 0.5;
 /// p.add_axis(burgeon::plant::AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y], None);
 /// p.nodes.radius_m = vec![0.01, 0.005];
 /// let mut report = burgeon::Report::default();
-/// let files = burgeon::write_robot(&p, RobotFormat::Mjcf, "stem", &burgeon::Run::plain(), &mut report)?;
-/// assert!(files.beside.iter().any(|f| f.name == "stem-base_stems.stl"));
+/// let made = burgeon::write_robot(&p, RobotFormat::Mjcf, "stem", &burgeon::Run::plain(), &mut report)?;
+/// assert!(made.files.beside.iter().any(|f| f.name == "stem-base_stems.stl"));
+/// assert_eq!((made.report.wood.as_str(), report.warnings.len()), ("green", 0));
 /// # Ok::<(), burgeon::RobotError>(())
 /// ```
 pub fn write_robot(
@@ -57,34 +90,29 @@ pub fn write_robot(
     stem: &str,
     run: &Run<'_>,
     report: &mut Report,
-) -> Result<ModelFiles, RobotError> {
+) -> Result<Robot, RobotError> {
     let spec = MechanicsSpec { group: WoodGroup::seen_in(plant), ..MechanicsSpec::default() };
     let mechanism = articulate(plant, &spec, run, report)?;
-    tell(&mechanism, spec.group, report);
+    if is_wood_guessed(plant, spec.group) {
+        let gigapascals = spec.group.tissue().modulus_pa / 1e9;
+        base::warn!(
+            report,
+            "robot-wood-guessed",
+            { group = spec.group.word(), gigapascals = gigapascals },
+            "nothing in the plant says which wood it has: it is as stiff as any {group} ({gigapascals} GPa); if you know better, multiply stiffness and damping of its joints"
+        );
+    }
     let meshes = body_meshes(plant, &mechanism, run)?;
-    Ok(robot_files(&mechanism, &meshes, format, stem)?)
+    let files = robot_files(&mechanism, &meshes, format, stem)?;
+    Ok(Robot { files, report: reported(&mechanism, spec.group) })
 }
 
-/// Says what was assumed, so that nobody takes it for measured.
-fn tell(mechanism: &Mechanism, group: WoodGroup, report: &mut Report) {
-    let kilograms = format!("{:.3}", mechanism.mass());
-    let hertz = format!("{:.2}", mechanism.frequencies().map_or(0.0, |f| f.lowest_hz));
-    let milliseconds = format!("{:.2}", mechanism.time_step_s * 1e3);
-    let gigapascals = group.tissue().modulus_pa / 1e9;
-    base::warn!(
-        report,
-        "robot-assumed",
-        {
-            bodies = mechanism.bodies.len(),
-            hinges = mechanism.joints(),
-            kilograms = kilograms,
-            hertz = hertz,
-            milliseconds = milliseconds,
-            group = group.word(),
-            gigapascals = gigapascals,
-        },
-        "{bodies} bodies on {hinges} hinges, {kilograms} kg, lowest frequency {hertz} Hz, steps of at most {milliseconds} ms; its wood is taken for that of any {group} ({gigapascals} GPa, not measured)"
-    );
+/// Whether a plant is taken for a hardwood for want of better: it is no species that comes with Burgeon, or one without true wood.
+fn is_wood_guessed(plant: &Plant, group: WoodGroup) -> bool {
+    let name = plant.name.trim();
+    let is = |other: &str| other.eq_ignore_ascii_case(name);
+    let is_known = || PRESETS.iter().any(|preset| preset.title().is_some_and(is));
+    group == WoodGroup::Hardwood && (!is_known() || NO_HARDWOOD.into_iter().any(is))
 }
 
 /// The triangles of each body by kind of surface, in the order of the bodies.

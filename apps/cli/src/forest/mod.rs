@@ -3,32 +3,27 @@
 //! | file | owns |
 //! |---|---|
 //! | `input` | an inventory or a stand that grows, its ground, the specs of its species |
-//! | `folder` | files that come to be one after another; what an earlier run left |
-//! | `models` | the plants' own files, which tiles name |
-//! | `write` | tiles, tileset, table, one file of all |
+//! | `folder` | the disk below the folder of the tileset |
 
 mod folder;
 mod input;
-mod models;
-mod write;
+
+use std::slice;
 
 use burgeon::forest::Stand;
-use burgeon::formats::Packing;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    Digest, ItemReport, Misfits, Nursery, NurseryError, NurseryLook, NurserySpec, Report, RunReport, Seed,
-    Stopped, Tiling, TilingSpec,
+    ForestPlan, ForestTilesSpec, ItemReport, ModelsOf, NurseryLook, Report, RunReport, Seed, StandReport,
+    TileFolder, TileModels, TileWriter, WholeForest,
 };
 use serde::Serialize;
 
 use crate::args::ForestArgs;
 use crate::failure::{Failure, Outcome};
-use crate::machine::Machine;
+use crate::machine::{Machine, Progress};
 use crate::output::Outputs;
 use crate::{picture, report, say};
-use folder::Folder;
-use models::Models;
-use write::{Writer, failure as failed_to_write};
+use folder::FolderDisk;
 
 /// Pixels of a side of a plan.
 const MAP: u32 = 1_536;
@@ -61,7 +56,27 @@ struct ForestTally {
     written: u64,
     /// Triangles of all trees at each level of detail, finest first.
     triangles: Vec<u64>,
-    input: input::InputTally,
+    input: StandReport,
+}
+
+impl ForestTally {
+    fn of(plan: &ForestPlan, input: StandReport) -> Self {
+        Self {
+            trees: plan.stand.trees.len() as u64,
+            species: plan.stand.species.len() as u64,
+            variants: plan.nursery.variants().len() as u64,
+            levels: plan.look().levels(),
+            tile_trees: plan.tiling_spec.trees,
+            height_error_max_m: plan.misfits.height_error_max_m,
+            dbh_error_max_m: plan.misfits.dbh_error_max_m,
+            dbh_error_mean_m: plan.misfits.dbh_error_mean_m,
+            crown_error_max_m: plan.misfits.crown_error_max_m,
+            clipped: plan.misfits.clipped,
+            stems_off: plan.misfits.stems_off,
+            input,
+            ..Self::default()
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -71,24 +86,10 @@ struct ForestRun {
     forest: ForestTally,
 }
 
-/// A forest, before its files.
-struct Plan {
-    stand: Stand,
-    nursery: Nursery,
-    tiling: Tiling,
-    tiling_spec: TilingSpec,
-    look: NurseryLook,
-    packing: Packing,
-    seed: Seed,
-    misfits: Misfits,
-    /// How many trees each variant stands for.
-    trees_of: Vec<u64>,
-}
-
 pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     let machine = Machine::new(&args.common);
     let named = [("--map", args.map.as_ref()), ("--report", args.common.report.as_ref())];
-    let mut outputs = Outputs::new(&named, &[&args.input])?;
+    let outputs = Outputs::new(&named, &[&args.input])?;
     check_used(args)?;
     folder::check(&args.output)?;
     if let Some(map) = &args.map {
@@ -98,53 +99,35 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     let (stand, input) = machine.with_progress("reading", |_| input::read(args, &machine, &mut told))?;
     outputs.check()?;
     let plan = machine.with_progress("growing", |_| plan(args, stand, &machine, &mut told))?;
-    let mut folder = Folder::open(&args.output, &key(&plan))?;
-    let mut tally = ForestTally {
-        trees: plan.stand.trees.len() as u64,
-        species: plan.stand.species.len() as u64,
-        variants: plan.nursery.variants().len() as u64,
-        levels: plan.look.levels(),
-        tile_trees: plan.tiling_spec.trees,
-        height_error_max_m: plan.misfits.height_error_max_m,
-        dbh_error_max_m: plan.misfits.dbh_error_max_m,
-        dbh_error_mean_m: plan.misfits.dbh_error_mean_m,
-        crown_error_max_m: plan.misfits.crown_error_max_m,
-        clipped: plan.misfits.clipped,
-        stems_off: plan.misfits.stems_off,
-        input,
-        ..ForestTally::default()
-    };
-    let mut last = Vec::new();
+    let disk = FolderDisk::new(&args.output, outputs)?;
+    let mut folder = TileFolder::open(disk, &plan.key()).map_err(|f| f.of(&args.output))?;
+    let mut tally = ForestTally::of(&plan, input);
     if let Some(id) = args.tile {
-        let tile = plan.tiling.find(id).ok_or_else(|| no_such_tile(&plan, id))?;
-        let models = machine
-            .with_progress("models", |p| Models::make(&plan, Some(tile), None, &mut folder, &machine, p))?;
-        let writer = Writer { plan: &plan, models: &models, machine: &machine };
-        machine.with_progress("tiles", |p| writer.tiles(std::slice::from_ref(tile), &mut folder, p))?;
+        let tile = plan.tile(id)?;
+        let models = models(&plan, ModelsOf::Tile(tile), &mut folder, &machine)?;
+        tiles(&TileWriter { plan: &plan, models: &models }, slice::from_ref(tile), &mut folder, &machine)?;
         tally.tiles = 1;
     } else {
-        let models = machine.with_progress("models", |p| {
-            Models::make(&plan, None, args.usd.then(|| one_level(args)), &mut folder, &machine, p)
-        })?;
-        let writer = Writer { plan: &plan, models: &models, machine: &machine };
-        machine.with_progress("tiles", |p| writer.tiles(plan.tiling.tiles(), &mut folder, p))?;
-        last = machine.with_progress("tileset", |_| writer.whole(args, &folder, &mut outputs))?;
+        let usd = args.usd.then(|| one_level(args));
+        let models = models(&plan, ModelsOf::All { usd }, &mut folder, &machine)?;
+        let writer = TileWriter { plan: &plan, models: &models };
+        tiles(&writer, plan.tiling.tiles(), &mut folder, &machine)?;
+        let whole = WholeForest { glb: args.glb, usd: args.usd, level: one_level(args), place: args.place };
+        machine.with_progress("tileset", |_| writer.whole(&whole, &mut folder))?;
         tally.tiles = plan.tiling.tiles().len() as u64;
         tally.triangles = models.triangles(&plan);
     }
     machine.cancel.check()?;
-    (tally.kept, tally.written) = (folder.kept, folder.written);
-    (tally.bytes, tally.files) = folder.size();
-    tally.bytes += last.iter().map(|e| e.bytes).sum::<u64>();
-    tally.files += last.len() as u64;
+    (tally.kept, tally.written) = folder.kept_and_written();
+    for own in folder.files() {
+        (tally.files, tally.bytes) = (tally.files + 1, tally.bytes + own.bytes);
+    }
+    let mut outputs = std::mem::take(&mut folder.disk().outputs);
     if let Some(map) = &args.map {
         let drawn = burgeon::stand_map(&plan.stand, MAP);
         outputs.write("--map", map, |out| {
             burgeon::formats::write_png(drawn.width, drawn.height, &drawn.pixels, out)
         })?;
-    }
-    if args.tile.is_none() {
-        folder.manifest(&last, &mut outputs)?;
     }
     plan.misfits.tell(&mut told);
     let mut item = ItemReport { name: "forest".into(), ..ItemReport::default() };
@@ -159,7 +142,7 @@ pub(crate) fn forest(args: &ForestArgs) -> Outcome {
     let whole = ForestRun { run, forest: tally };
     report::finish(&whole, &args.common, outputs)?;
     if args.tile.is_none() {
-        folder.end(&last)?;
+        folder.end()?;
     }
     if !machine.quiet {
         let item = &whole.run.items[0];
@@ -204,7 +187,7 @@ fn one_level(args: &ForestArgs) -> u32 {
     level.saturating_sub(surface.finest)
 }
 
-fn plan(args: &ForestArgs, stand: Stand, machine: &Machine, told: &mut Report) -> Outcome<Plan> {
+fn plan(args: &ForestArgs, stand: Stand, machine: &Machine, told: &mut Report) -> Outcome<ForestPlan> {
     let specs = input::specs(args, &stand, told)?;
     let surface = &args.surface;
     let mut skin = SkinSpec { foliage: surface.foliage.foliage(), ..SkinSpec::default() };
@@ -217,67 +200,39 @@ fn plan(args: &ForestArgs, stand: Stand, machine: &Machine, told: &mut Report) -
         lods: surface.lods,
         impostor: Some(surface.impostor).filter(|&size| size > 0),
     };
-    let tiling_spec = TilingSpec {
-        trees: args.tile_trees.unwrap_or_else(|| TilingSpec::usual_trees(stand.trees.len())),
-        finest: look.finest,
-        levels: look.levels(),
+    let spec = ForestTilesSpec {
+        variants: args.variants,
+        seed: Seed::new(args.seed),
+        look,
+        tile_trees: args.tile_trees,
+        packing: surface.pack.packing(),
     };
-    let tiling = Tiling::new(&stand, tiling_spec).map_err(|e| Failure::at(&args.input, e))?;
-    let seed = Seed::new(args.seed);
-    let spec = NurserySpec { variants: args.variants, seed };
-    let nursery = Nursery::plan(&stand, &specs, &spec, &machine.run()).map_err(|e| failed(args, e))?;
-    let (mut misfits, mut trees_of) = (Misfits::default(), vec![0; nursery.variants().len()]);
-    for (n, tree) in stand.trees.iter().enumerate() {
-        if n % 4096 == 0 {
-            machine.cancel.check()?;
-        }
-        let Some(placed) = nursery.place(tree) else { continue };
-        misfits.add(tree, &placed);
-        trees_of[placed.variant as usize] += 1;
-    }
-    let packing = surface.pack.packing();
-    Ok(Plan { stand, nursery, tiling, tiling_spec, look, packing, seed, misfits, trees_of })
+    ForestPlan::new(stand, &specs, spec, &machine.run()).map_err(|e| Failure::from(e).of(&args.input))
 }
 
-/// What decides every tile.
-fn key(plan: &Plan) -> String {
-    let mut digest = Digest::new();
-    let head = format!(
-        "{} {:?} {:?} {:?} {:?} {:?}",
-        burgeon::VERSION,
-        plan.look,
-        plan.tiling_spec,
-        plan.packing,
-        plan.seed.number(),
-        plan.stand.species
-    );
-    digest.bytes(head.as_bytes());
-    // The plants themselves follow from their specs, whose measures these are.
-    digest.bytes(format!("{:?}", plan.nursery).as_bytes());
-    for t in &plan.stand.trees {
-        let numbers = [t.age_years, t.height_m, t.dbh_m, t.crown_width_m, t.yaw];
-        let vectors = [t.foot_m, t.up, t.crown_offset_m].map(|v| v.to_array());
-        for x in numbers.iter().chain(vectors.as_flattened()) {
-            digest.bytes(&x.to_le_bytes());
-        }
-        digest.bytes(&t.row.to_le_bytes()).bytes(&t.species.to_le_bytes());
-    }
-    digest.hex()
+fn models(
+    plan: &ForestPlan,
+    of: ModelsOf<'_>,
+    folder: &mut TileFolder<FolderDisk>,
+    machine: &Machine,
+) -> Outcome<TileModels> {
+    machine.with_progress("models", |p| TileModels::make(plan, of, folder, &machine.run(), &shown(p)))
 }
 
-fn no_such_tile(plan: &Plan, id: burgeon::TileId) -> Failure {
-    let first = plan.tiling.tiles().last().map_or_else(String::new, |t| t.id.file());
-    Failure::Bad(format!(
-        "there is no tile {} in this forest; one of those that there are is {first}",
-        id.file()
-    ))
+fn tiles(
+    writer: &TileWriter<'_>,
+    tiles: &[burgeon::StandTile],
+    folder: &mut TileFolder<FolderDisk>,
+    machine: &Machine,
+) -> Outcome {
+    machine.with_progress("tiles", |p| writer.tiles(tiles, folder, &machine.run(), &shown(p)))
 }
 
-fn failed(args: &ForestArgs, error: NurseryError) -> Failure {
-    match error {
-        NurseryError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
-        NurseryError::Stopped(stopped) => stopped.into(),
-        other => Failure::at(&args.input, other),
+/// Shows how far a step is.
+fn shown(progress: &Progress) -> impl Fn(usize, usize) + '_ {
+    |done, all| {
+        progress.expect(all);
+        progress.reached(done);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Plants as bodies and joints: files of every maker, and what is refused.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -26,22 +27,46 @@ fn check_meshes(dir: &Path, text: &str, (tag, attribute): (&str, &str)) {
     }
 }
 
+/// A number of the JSON report about a robot.
+fn told(report: &serde_json::Value, field: &str) -> f64 {
+    report["items"][0]["robot"][field].as_f64().unwrap()
+}
+
 #[test]
-fn a_drawn_tomato_is_a_robot_with_fruits_that_come_off() {
+fn a_drawn_tomato_keeps_the_fruits_that_outweigh_its_thin_stems() {
     let dir = folder("robots-tomato");
-    good(&dir, &["sketch", TOMATO, "-o", "tomato.xml", "-q"]);
+    let out = burgeon(&dir, &["sketch", TOMATO, "-o", "tomato.xml", "--report", "r.json"]);
+    assert_eq!(status(&out), 0);
     let text = fs::read_to_string(dir.join("tomato.xml")).unwrap();
     let hinges = values(&text, "joint", "stiffness");
     assert!((2..=200).contains(&hinges.len()), "{} hinges", hinges.len());
     assert!(hinges.iter().all(|k| k.parse::<f64>().unwrap() > 0.0));
-    let fruits = values(&text, "weld", "body2");
-    assert!(!fruits.is_empty(), "it bears fruits");
-    for fruit in fruits {
-        let force = format!("<numeric name=\"break_force_{fruit}\" data=\"");
-        let force: f64 = text.split_once(&force).unwrap().1.split('"').next().unwrap().parse().unwrap();
-        assert!(force > 0.0 && force < 1e4, "{fruit}: {force} N");
-    }
+    // Fruits of 0.15 kg on stems of 0.00002 kg: in a weld they would fall off by themselves.
+    assert!(values(&text, "weld", "body2").is_empty() && !text.contains("freejoint"));
+    let said = String::from_utf8(out.stderr).unwrap();
+    assert!(
+        said.contains("fruits weigh more than 50 times") && said.contains("make stems thicker"),
+        "{said}"
+    );
+    let report = serde_json::from_slice(&fs::read(dir.join("r.json")).unwrap()).unwrap();
+    let kilograms: f64 = values(&text, "inertial", "mass").iter().map(|m| m.parse::<f64>().unwrap()).sum();
+    assert!((kilograms / told(&report, "mass_kg") - 1.0).abs() < 1e-6 && kilograms > 0.5, "{kilograms} kg");
     check_meshes(&dir, &text, ("mesh", "file"));
+}
+
+#[test]
+fn a_plant_in_bloom_names_each_mesh_and_material_once() {
+    let dir = folder("robots-rose");
+    for (file, tag) in [("rose.xml", "mesh"), ("rose.urdf", "material")] {
+        good(&dir, &["grow", "rose", "-o", file, "-q"]);
+        let text = fs::read_to_string(dir.join(file)).unwrap();
+        let opening = format!("<{tag} name=\"");
+        let names: Vec<&str> =
+            text.split(&opening).skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        let different: BTreeSet<&str> = names.iter().copied().collect();
+        assert!(names.iter().any(|name| name.contains("petals")), "{file}: it is in bloom");
+        assert_eq!(names.len(), different.len(), "{file}");
+    }
 }
 
 #[test]
@@ -64,12 +89,21 @@ fn makers_write_both_files_and_the_same_bytes_each_time() {
 }
 
 #[test]
-fn it_is_said_what_was_assumed() {
+fn the_report_says_what_was_assumed_and_only_a_guess_is_warned_of() {
     let dir = folder("robots-said");
-    let out = burgeon(&dir, &["grow", "spruce", "-o", "spruce.xml"]);
+    let out = burgeon(&dir, &["grow", "spruce", "-o", "spruce.xml", "--report", "r.json"]);
     assert_eq!(status(&out), 0);
     let said = String::from_utf8(out.stderr).unwrap();
-    assert!(said.contains("softwood (8 GPa, not measured)"), "{said}");
+    assert!(!said.contains("GPa"), "{said}");
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(dir.join("r.json")).unwrap()).unwrap();
+    assert_eq!(report["items"][0]["robot"]["wood"], "softwood");
+    assert_eq!(told(&report, "modulus_pa"), 8e9);
+    assert!(told(&report, "mass_kg") > 10.0 && told(&report, "lowest_hz") > 0.0);
+    // A trunk of fibres in soft tissue.
+    let out = burgeon(&dir, &["grow", "palm", "-o", "palm.xml"]);
+    assert_eq!(status(&out), 0);
+    let said = String::from_utf8(out.stderr).unwrap();
+    assert!(said.contains("as stiff as any hardwood (9 GPa)"), "{said}");
 }
 
 #[test]

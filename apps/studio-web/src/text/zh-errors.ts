@@ -368,8 +368,15 @@ export const zhWarnings: Record<string, string> = {
   'obj-left-out': '{count} 条线、点或曲线没有读取',
   'obj-material-file': '没有找到材质文件“{file}”：材质为单色',
   'texture-missing': '无法读取纹理（{name}），已略去',
-  'robot-assumed':
-    '{bodies} 个刚体、{hinges} 个铰链，{kilograms} 千克，最低频率 {hertz} 赫兹，步长至多 {milliseconds} 毫秒；木材按一般 {group} 取值（{gigapascals} GPa，并非测得）',
+  'robot-wood-guessed':
+    '植株没有说明是哪种木材：按一般 {group} 取刚度（{gigapascals} GPa）；若知道更准的值，请把各关节的 stiffness 和 damping 乘以同一倍数',
+  'fruit-stalks-weak':
+    '{all} 个果实里有 {weak} 个的果柄承受不住其重量的 {times} 倍：它们固定在着生处，不会脱落；请把果柄画粗些，或把果实画小些',
+  'fruits-outweigh':
+    '{all} 个果实里有 {light} 个比着生的茎重 {times} 倍以上，无法用焊接约束固定：它们与茎连为一体，不会脱落；请把茎画粗些，或把果实画小些',
+  'fruits-fixed': '{all} 个挂在果柄上的果实里，最重的 {kept} 个可以脱落；其余的与着生处连为一体',
+  'fruits-overload':
+    '{axes} 条轴会被果实压断：弯曲应力最高为其承受限度的 {times} 倍；请把这些轴画粗些，或把果实画小些',
   'gltf-fixed-units': 'glTF 总以米为单位、+Y 向上：没有使用所要求的单位和向上轴',
   'wind-left-out': '{format} 不能存放风：已略去；.glb 和 .usda 可以',
   'gltf-left-out': '{count} 个由线组成的网格没有读取',

@@ -3,9 +3,11 @@
 mod mjcf;
 mod urdf;
 
+use std::collections::BTreeSet;
+
 use base::{Unit, UpAxis};
 use glam::{DMat3, DVec3};
-use mechanics::{Body, Mechanism};
+use mechanics::Mechanism;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
 use crate::model::file_name;
@@ -27,8 +29,8 @@ pub struct BodyMesh {
 /// Limits of each hinge, radians: a right angle, beyond which no stem goes without breaking.
 const MOST_TURN_RAD: f64 = 1.57;
 
-/// Writes a mechanism with its meshes beside it, as binary STL, named `STEM-BODY_PART.stl`; `stem` is the file's name without
-/// its ending.
+/// Writes a mechanism with its meshes beside it, as binary STL, named `STEM-BODY_PART.stl`, with a number from the second of
+/// the same name on; `stem` is the file's name without its ending.
 ///
 /// Guaranteed: masses, stiffness and places to nine digits. Meshes of less than four corners are left out. MJCF has springs that hold the pose, fruits on welds with the
 /// force at which they break, areas for the wind, and the time step. URDF has no springs of its own: they are for Gazebo; its fruits do not come off.
@@ -57,18 +59,29 @@ pub fn robot_files(
     stem: &str,
 ) -> Result<ModelFiles, WriteError> {
     let stem = file_name(stem, "plant");
-    let named: Vec<Seen<'_>> = meshes
-        .iter()
-        .filter(|mesh| has_four_corners(&mesh.mesh))
-        .filter_map(|mesh| Some((mesh, mechanism.bodies.get(mesh.body)?)))
-        .map(|(mesh, body)| Seen::new(mesh, body, &stem))
-        .collect();
+    let named = named_meshes(mechanism, meshes, &stem);
     let own = match format {
         RobotFormat::Mjcf => mjcf::text(mechanism, &named),
         RobotFormat::Urdf => urdf::text(mechanism, &named),
     };
     let beside = named.into_iter().map(Seen::file).collect::<Result<_, _>>()?;
     Ok(ModelFiles { own: own.into_bytes(), beside })
+}
+
+/// The meshes that can be written, each with a name that no other has: surfaces of one kind and several colours share a
+/// part's name, and simulators refuse a mesh or a material that is named twice.
+fn named_meshes<'a>(mechanism: &Mechanism, meshes: &'a [BodyMesh], stem: &str) -> Vec<Seen<'a>> {
+    let mut taken = BTreeSet::new();
+    let mut all = Vec::with_capacity(meshes.len());
+    for mesh in meshes.iter().filter(|mesh| has_four_corners(&mesh.mesh)) {
+        let Some(body) = mechanism.bodies.get(mesh.body) else { continue };
+        let name = file_name(&format!("{}_{}", body.name, mesh.part), "mesh");
+        // Some disks take names for one that differ in case alone.
+        let mut names = (1_u32..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
+        let Some(name) = names.find(|name| taken.insert(name.to_lowercase())) else { continue };
+        all.push(Seen { mesh, origin: body.origin, file: format!("{stem}-{name}.stl"), name });
+    }
+    all
 }
 
 /// Whether a mesh has four corners at different places: `MuJoCo` refuses one with fewer, which is a sliver nobody sees.
@@ -89,17 +102,12 @@ fn has_four_corners(mesh: &TriMesh) -> bool {
 struct Seen<'a> {
     mesh: &'a BodyMesh,
     origin: DVec3,
-    /// `BODY_PART`.
+    /// `BODY_PART`, with a number from the second of the same on.
     name: String,
     file: String,
 }
 
-impl<'a> Seen<'a> {
-    fn new(mesh: &'a BodyMesh, body: &Body, stem: &str) -> Self {
-        let name = file_name(&format!("{}_{}", body.name, mesh.part), "mesh");
-        Self { mesh, origin: body.origin, file: format!("{stem}-{name}.stl"), name }
-    }
-
+impl Seen<'_> {
     /// sRGB with an opacity of 1, each 0 to 1.
     fn rgba(&self) -> String {
         let [r, g, b] = self.mesh.color.map(|c| number(base::srgb_of_linear(f64::from(c).clamp(0.0, 1.0))));
@@ -172,6 +180,42 @@ fn attribute(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A body with three surfaces, two of which have one name and the third the same in capitals.
+    #[test]
+    fn meshes_of_one_name_get_numbers() {
+        let mut plant = plant::Plant::default();
+        plant.add_axis(plant::AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+        plant.nodes.radius_m = vec![0.02, 0.01];
+        let spec = mechanics::MechanicsSpec::default();
+        let (run, mut report) = (base::Run::plain(), base::Report::default());
+        let mechanism = mechanics::articulate(&plant, &spec, &run, &mut report).expect("a rod");
+        let mesh = TriMesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..TriMesh::default()
+        };
+        let meshes = ["petals", "petals", "Petals"].map(|part| BodyMesh {
+            body: 0,
+            part: part.into(),
+            color: [0.5; 3],
+            mesh: mesh.clone(),
+        });
+        let wanted = ["base_petals", "base_petals_2", "base_Petals_3"];
+        for format in RobotFormat::ALL {
+            let files = robot_files(&mechanism, &meshes, format, "rose").expect("files");
+            let names: Vec<&str> = files.beside.iter().map(|f| f.name.as_str()).collect();
+            assert_eq!(names, wanted.map(|name| format!("rose-{name}.stl")));
+            let text = String::from_utf8(files.own).expect("text");
+            for name in wanted {
+                let named = match format {
+                    RobotFormat::Mjcf => format!("<mesh name=\"{name}\""),
+                    RobotFormat::Urdf => format!("<material name=\"{name}\""),
+                };
+                assert_eq!(text.matches(&named).count(), 1, "{text}");
+            }
+        }
+    }
 
     #[test]
     fn numbers_keep_nine_digits_and_no_more_than_it_takes() {

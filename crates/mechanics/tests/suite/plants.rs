@@ -95,7 +95,7 @@ fn joints_are_at_most_as_many_as_asked_for_and_go_where_most_bends() {
 
 #[test]
 fn a_fruit_hangs_on_a_stalk_that_breaks() {
-    let plant = fruited();
+    let plant = fruited_on(0.01, 0.001);
     let (made, report) = made(&plant);
     let fruit = &made.bodies[made.body_of_organ(OrganId::new(0))];
     let stalk = fruit.stalk.expect("a stalk");
@@ -104,19 +104,69 @@ fn a_fruit_hangs_on_a_stalk_that_breaks() {
     let ball = 1000.0 * 4.0 / 3.0 * PI * 0.03 * 0.03 * 0.03;
     assert!((fruit.mass / ball - 1.0).abs() < 0.02, "{} kg of {ball}", fruit.mass);
     let parent = &made.bodies[fruit.parent.expect("a parent")];
-    assert!(parent.name.starts_with("stalk_2"), "{}", parent.name);
+    // Not the stalk, which weighs a four hundredth of its fruit: it is rigid with the stem.
+    assert!(parent.name.starts_with("stem_1"), "{}", parent.name);
+    assert!(!made.bodies.iter().any(|b| b.name.starts_with("stalk")), "{:?}", made.bodies);
     assert!((fruit.centre - DVec3::new(0.05, 0.45, 0.0)).length() < 1e-6);
     assert!(report.warnings.is_empty(), "{:?}", report.warnings);
 }
 
 #[test]
 fn fruits_beyond_what_may_break_are_fixed_and_it_is_said() {
-    let mut plant = fruited();
-    let one = plant.organs[0].clone();
-    plant.organs = vec![one; 40];
+    let mut plant = fruited_on(0.01, 0.001);
+    let (one, stalk) = (plant.organs[0].clone(), [plant.nodes.position[2], plant.nodes.position[3]]);
+    for key in 4..43 {
+        plant.add_axis(AxisKind::Petiole, Some(NodeId::new(1)), key, &stalk, None);
+        let bearer = Some(NodeId::new(plant.nodes.position.len() - 1));
+        plant.organs.push(Organ { bearer, key, ..one.clone() });
+    }
+    plant.nodes.radius_m.iter_mut().skip(4).for_each(|radius| *radius = 0.001);
     let (made, report) = made(&plant);
     assert_eq!(made.bodies.iter().filter(|b| b.stalk.is_some()).count(), 24);
     assert!(report.warnings.iter().any(|w| w.code == "fruits-fixed"));
+}
+
+/// The same with other radii of the stem and of the stalk's end, metres.
+fn fruited_on(stem_m: f64, stalk_m: f64) -> Plant {
+    let mut plant = fruited();
+    plant.nodes.radius_m = vec![stem_m, stem_m, stalk_m, stalk_m];
+    plant
+}
+
+#[test]
+fn a_fruit_that_its_stalk_does_not_hold_is_fixed_and_it_is_said() {
+    // The fruit pulls with 1.1 N; a stalk of 0.3 mm breaks at 1.4 N, one of 0.4 mm at 2.5 N.
+    let (weak, report) = made(&fruited_on(0.005, 0.0003));
+    assert_eq!(weak.bodies.iter().filter(|b| b.stalk.is_some()).count(), 0);
+    assert!(report.warnings.iter().any(|w| w.code == "fruit-stalks-weak"), "{:?}", report.warnings);
+    let fruit = weak.bodies.iter().flat_map(|b| &b.capsules).find(|c| c.from == c.to);
+    assert!(fruit.is_some_and(|c| (c.radius_m - 0.03).abs() < 1e-9), "it can still be touched");
+    let (strong, _) = made(&fruited_on(0.005, 0.0004));
+    assert_eq!(strong.bodies.iter().filter(|b| b.stalk.is_some()).count(), 1);
+    assert!((weak.mass() - strong.mass()).abs() < 1e-3, "{} and {} kg", weak.mass(), strong.mass());
+}
+
+#[test]
+fn a_fruit_that_outweighs_its_stem_is_fixed_and_it_is_said() {
+    let (made, report) = made(&fruited_on(0.0005, 0.0005));
+    assert_eq!(made.bodies.iter().filter(|b| b.stalk.is_some()).count(), 0);
+    assert!(report.warnings.iter().any(|w| w.code == "fruits-outweigh"), "{:?}", report.warnings);
+}
+
+#[test]
+fn axes_that_would_break_under_their_fruits_are_told_of() {
+    let told = |radius_m: f64| {
+        let mut plant = fruited_on(radius_m, 0.0005);
+        // A stem that lies flat, so that its fruit bends it: 0.5 m times 1.1 N.
+        let end = DVec3::X * 0.5;
+        plant.nodes.position[1..].copy_from_slice(&[end, end, end - DVec3::Y * 0.05]);
+        plant.organs[0].frame.origin = plant.nodes.position[3];
+        let report = made(&plant).1;
+        report.warnings.into_iter().find(|w| w.code == "fruits-overload")
+    };
+    // 4 M / pi r^3 with the stem's own weight is 4.0 of 5 MPa at 6 mm, and 6.4 MPa at 5 mm.
+    assert_eq!(told(0.006), None);
+    assert!(told(0.005).is_some_and(|w| w.message.contains("1.3 times")), "{:?}", told(0.005));
 }
 
 #[test]
@@ -157,7 +207,9 @@ fn a_stalk_like_a_hair_is_stiffened_and_not_the_stem() {
     let points = [DVec3::Y * 0.5, DVec3::Y * 0.6];
     plant.add_axis(AxisKind::Petiole, Some(NodeId::new(1)), 4, &points, None);
     plant.nodes.radius_m[4..].fill(0.0002);
+    // No fruit: these let their stalks be rigid.
     plant.organs.push(Organ {
+        kind: OrganKind::Disc,
         bearer: Some(NodeId::new(5)),
         shape,
         frame: Frame::looking(points[1], DVec3::Y, DVec3::Z),

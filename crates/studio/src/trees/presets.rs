@@ -93,6 +93,11 @@ impl Preset {
         PRESETS.iter().find(|p| p.key == key).or_else(named)
     }
 
+    /// The name of its plants, as its file has it.
+    pub(crate) fn title(&self) -> Option<&'static str> {
+        self.toml.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'))
+    }
+
     /// The Latin name of its species, as its file has it.
     pub fn latin(&self) -> Option<&'static str> {
         self.toml.lines().find_map(|line| line.strip_prefix("species = \"")?.strip_suffix('"'))

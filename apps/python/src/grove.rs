@@ -23,7 +23,7 @@ const MOST: usize = 2000;
 /// Plants, and where copies of them stand.
 #[pyclass(frozen, module = "burgeon._burgeon")]
 #[derive(Clone)]
-pub(crate) struct RawForest {
+pub(crate) struct RawGrove {
     plants: Vec<Arc<Held>>,
     /// Rows of the plants, and where each stands.
     stand: Vec<(usize, Placement)>,
@@ -53,13 +53,13 @@ pub(crate) fn places(
     let outline = [[-x, -z], [x, -z], [x, z], [-x, z]];
     let found = workspace::stand(&outline, spacing, vary, MOST + 1, Seed::new(seed));
     if found.len() > MOST {
-        let line = format!("a forest has at most {MOST} plants: give more spacing, or less area");
+        let line = format!("a grove has at most {MOST} plants: give more spacing, or less area");
         return Err(wrong(&line, "spacing", &spacing.to_string(), "more"));
     }
     Ok(found.into_iter().map(|p| (p.position.x, p.position.z, p.yaw_deg, p.scale)).collect())
 }
 
-impl RawForest {
+impl RawGrove {
     fn standing(&self) -> Vec<Standing<'_>> {
         let each = self.stand.iter().filter_map(|(row, place)| {
             let held = self.plants.get(*row)?;
@@ -70,7 +70,7 @@ impl RawForest {
 }
 
 #[pymethods]
-impl RawForest {
+impl RawGrove {
     /// `stand`: row of the plant, x, y, z, yaw in degrees, scale.
     #[new]
     fn new(plants: Vec<PyRef<'_, RawPlant>>, stand: Vec<(usize, [f64; 3], f64, f64)>) -> PyResult<Self> {

@@ -2,35 +2,47 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::{self, Write};
 
-use burgeon::forest::{Figure, Tree};
-use burgeon::formats::{
-    Group, Instance, Linking, Prototype, Tileset, TreeRow, TreeTable, WriteError, decode_uri, earth_frame,
-    stand_usda, tileset_json, write_tile,
+use base::{Run, map_indexed};
+use forest::{Figure, Tree};
+use formats::{
+    Group, Instance, Linking, Prototype, SharedModel, Tileset, TreeRow, TreeTable, WriteError, decode_uri,
+    earth_frame, stand_usda, tileset_json, write_tile,
 };
-use burgeon::glam::{DVec2, DVec3};
-use burgeon::mesh::Bounds;
-use burgeon::{Placed, StandTile};
+use glam::{DVec2, DVec3};
+use mesh::Bounds;
 
-use super::folder::{Entry, Folder, TILESET};
-use super::models::{self, Models};
-use super::{Plan, failed_to_write};
-use crate::args::ForestArgs;
-use crate::failure::{Failure, Outcome};
-use crate::inputs;
-use crate::machine::{Machine, Progress};
-use crate::output::Outputs;
+use super::placed::Placed;
+use super::plan::{ForestPlan, ForestTilesError};
+use super::tile_folder::{TILESET, TileDisk, TileFolder};
+use super::tile_models::{TileModels, Watch, stem};
+use super::tiling::StandTile;
 
 /// Tiles that are made side by side and then put in place.
 const SIDE_BY_SIDE: usize = 32;
 /// Rows of the table that are written at a time.
 const ROWS: usize = 4_096;
 
-pub(super) struct Writer<'a> {
-    pub(super) plan: &'a Plan,
-    pub(super) models: &'a Models,
-    pub(super) machine: &'a Machine,
+/// Files beside the tiles of a forest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WholeForest {
+    /// All trees in one `forest.glb`.
+    pub glb: bool,
+    /// All trees in one `forest.usda`.
+    pub usd: bool,
+    /// The level of both, 0 for the finest of the tileset.
+    pub level: u32,
+    /// Longitude and latitude of the origin in degrees, and its height in metres, if the tileset stands on the earth.
+    pub place: Option<DVec3>,
+}
+
+/// Writes the tiles of a forest.
+#[derive(Clone, Copy, Debug)]
+pub struct TileWriter<'a> {
+    /// What is written.
+    pub plan: &'a ForestPlan,
+    /// The models that its tiles name.
+    pub models: &'a TileModels,
 }
 
 /// The trees of a tile or of all.
@@ -39,16 +51,24 @@ struct Shown {
     rows: Vec<TreeRow>,
 }
 
-impl Writer<'_> {
-    /// Writes tiles that are not there yet.
-    pub(super) fn tiles(&self, tiles: &[StandTile], folder: &mut Folder, progress: &Progress) -> Outcome {
-        progress.expect(tiles.len());
+impl TileWriter<'_> {
+    /// Writes tiles that are not there yet. Memory: that of 32 tiles.
+    ///
+    /// # Errors
+    /// [`ForestTilesError`], and those of the disk.
+    pub fn tiles<D: TileDisk>(
+        &self,
+        tiles: &[StandTile],
+        folder: &mut TileFolder<D>,
+        run: &Run<'_>,
+        watch: Watch<'_>,
+    ) -> Result<(), D::Error> {
         for (batch, chunk) in tiles.chunks(SIDE_BY_SIDE).enumerate() {
-            self.machine.cancel.check()?;
-            progress.reached(batch * SIDE_BY_SIDE);
+            run.cancel.check().map_err(ForestTilesError::from)?;
+            watch(batch * SIDE_BY_SIDE, tiles.len());
             let wanted: Vec<&StandTile> =
                 chunk.iter().filter(|t| folder.keep(&t.id.file()).is_none()).collect();
-            let made = burgeon::map_indexed(&self.machine.threads, wanted.len(), |k| self.tile(wanted[k]));
+            let made = map_indexed(run.executor, wanted.len(), |k| self.tile(wanted[k]));
             for (tile, bytes) in wanted.iter().zip(made) {
                 folder.put(&tile.id.file(), bytes?)?;
             }
@@ -56,19 +76,26 @@ impl Writer<'_> {
         folder.flush()
     }
 
-    fn tile(&self, tile: &StandTile) -> Outcome<Vec<u8>> {
-        let rows = self.plan.tiling.shown(tile, &self.plan.stand, self.plan.seed);
+    fn tile(&self, tile: &StandTile) -> Result<Vec<u8>, ForestTilesError> {
+        let rows = self.plan.tiling.shown(tile, &self.plan.stand, self.plan.seed());
         let shown = self.shown(rows, tile.wider());
-        let level = self.plan.tiling.detail(tile);
-        let groups = shown.groups.iter().map(|(&variant, instances)| {
-            Ok(Group { model: self.models.for_tile(variant, level)?, instances })
-        });
-        let groups: Vec<Group<'_>> = groups.collect::<Outcome<_>>()?;
+        let groups =
+            self.groups(&shown, |variant| self.models.for_tile(variant, self.plan.tiling.detail(tile)))?;
         let mut bytes = Vec::new();
-        let packing = Some(self.plan.packing);
-        write_tile("trees", &groups, &self.table(&shown), packing, Linking::Named, &mut bytes)
-            .map_err(|e| failed_to_write(&e))?;
+        let packing = Some(self.plan.packing());
+        write_tile("trees", &groups, &self.table(&shown), packing, Linking::Named, &mut bytes)?;
         Ok(bytes)
+    }
+
+    fn groups<'b>(
+        &self,
+        shown: &'b Shown,
+        model: impl Fn(u32) -> Result<&'b SharedModel, ForestTilesError>,
+    ) -> Result<Vec<Group<'b>>, ForestTilesError> {
+        let group = |(&variant, instances): (&u32, &'b Vec<Instance>)| {
+            Ok(Group { model: model(variant)?, instances })
+        };
+        shown.groups.iter().map(group).collect()
     }
 
     fn table<'b>(&'b self, shown: &'b Shown) -> TreeTable<'b> {
@@ -88,38 +115,47 @@ impl Writer<'_> {
         shown
     }
 
-    /// Writes what readers open, and the rest that needs all trees; their entries of the manifest.
-    pub(super) fn whole(
+    /// Writes the tileset, the table of trees, the manifest, and one file of all trees if it is wanted: the last step, after all
+    /// tiles.
+    ///
+    /// # Errors
+    /// [`ForestTilesError`], and those of the disk.
+    pub fn whole<D: TileDisk>(
         &self,
-        args: &ForestArgs,
-        folder: &Folder,
-        outputs: &mut Outputs,
-    ) -> Outcome<Vec<Entry>> {
-        let mut last = vec![self.tileset(args, folder, outputs)?];
-        last.push(self.csv(folder, outputs)?);
-        if !args.glb && !args.usd {
-            return Ok(last);
+        whole: &WholeForest,
+        folder: &mut TileFolder<D>,
+    ) -> Result<(), D::Error> {
+        self.tileset(whole, folder)?;
+        self.csv(folder)?;
+        if whole.glb || whole.usd {
+            let count = u32::try_from(self.plan.stand.trees.len()).unwrap_or(u32::MAX);
+            let shown = self.shown(0..count, 1.0);
+            if whole.glb {
+                self.glb(&shown, whole.level, folder)?;
+            }
+            if whole.usd {
+                self.usd(&shown, whole.level, folder)?;
+            }
         }
-        let level = super::one_level(args);
-        let count = u32::try_from(self.plan.stand.trees.len()).unwrap_or(u32::MAX);
-        let shown = self.shown(0..count, 1.0);
-        if args.glb {
-            last.push(self.glb(&shown, level, folder, outputs)?);
-        }
-        if args.usd {
-            let files =
-                shown.groups.keys().map(|&v| format!("models/{}.usda", models::stem(self.plan, v, level)));
-            let files: Vec<String> = files.collect();
-            let prototypes = files.iter().zip(shown.groups.values());
-            let prototypes: Vec<Prototype<'_>> =
-                prototypes.map(|(file, instances)| Prototype { file, instances }).collect();
-            let text = stand_usda(&prototypes, &self.table(&shown)).map_err(|e| failed_to_write(&e))?;
-            last.push(write(folder, outputs, "forest.usda", |out| Ok(out.write_all(&text)?))?);
-        }
-        Ok(last)
+        folder.manifest()
     }
 
-    fn tileset(&self, args: &ForestArgs, folder: &Folder, outputs: &mut Outputs) -> Outcome<Entry> {
+    fn usd<D: TileDisk>(
+        &self,
+        shown: &Shown,
+        level: u32,
+        folder: &mut TileFolder<D>,
+    ) -> Result<(), D::Error> {
+        let files = shown.groups.keys().map(|&v| format!("models/{}.usda", stem(self.plan, v, level)));
+        let files: Vec<String> = files.collect();
+        let prototypes = files.iter().zip(shown.groups.values());
+        let prototypes: Vec<Prototype<'_>> =
+            prototypes.map(|(file, instances)| Prototype { file, instances }).collect();
+        let text = stand_usda(&prototypes, &self.table(shown)).map_err(ForestTilesError::from)?;
+        folder.write_last("forest.usda", |out| Ok(out.write_all(&text)?))
+    }
+
+    fn tileset<D: TileDisk>(&self, whole: &WholeForest, folder: &mut TileFolder<D>) -> Result<(), D::Error> {
         let trees = &self.plan.stand.trees;
         let root =
             self.plan.tiling.nodes(&self.plan.stand, &|row, wider| self.reach(&trees[row as usize], wider));
@@ -127,11 +163,11 @@ impl Writer<'_> {
             root: &root,
             // Nothing at all is twice as wrong as the coarsest tile, and no smaller than the forest.
             geometric_error_m: 2.0 * root.geometric_error_m.max(root.bounds.size().length() / 16.0),
-            transform: args.place.map(|p| earth_frame(DVec2::new(p.x, p.y), p.z)),
+            transform: whole.place.map(|p| earth_frame(DVec2::new(p.x, p.y), p.z)),
             origin_m: self.plan.stand.origin_m,
         };
         let text = tileset_json(&tileset);
-        write(folder, outputs, TILESET, |out| Ok(out.write_all(&text)?))
+        folder.write_last(TILESET, |out| Ok(out.write_all(&text)?))
     }
 
     /// The box around what stands for a tree.
@@ -156,25 +192,28 @@ impl Writer<'_> {
         bounds
     }
 
-    fn glb(&self, shown: &Shown, level: u32, folder: &Folder, outputs: &mut Outputs) -> Outcome<Entry> {
-        let groups = shown.groups.iter().map(|(&variant, instances)| {
-            Ok(Group { model: self.models.for_root(variant, level)?, instances })
-        });
-        let groups: Vec<Group<'_>> = groups.collect::<Outcome<_>>()?;
+    fn glb<D: TileDisk>(
+        &self,
+        shown: &Shown,
+        level: u32,
+        folder: &mut TileFolder<D>,
+    ) -> Result<(), D::Error> {
+        let groups = self.groups(shown, |variant| self.models.for_root(variant, level))?;
         let open = |uri: &str| {
             let file = decode_uri(uri).unwrap_or_else(|| uri.to_owned());
-            inputs::read_own(&folder.path(&file)).map_err(WriteError::Io)
+            let none = || WriteError::Io(std::io::ErrorKind::NotFound.into());
+            folder.read(&file).ok().flatten().ok_or_else(none)
         };
-        write(folder, outputs, "forest.glb", |out| {
-            let (table, packing) = (self.table(shown), Some(self.plan.packing));
-            write_tile("forest", &groups, &table, packing, Linking::Embedded(&open), out)
-        })
+        let (table, packing, mut bytes) = (self.table(shown), Some(self.plan.packing()), Vec::new());
+        write_tile("forest", &groups, &table, packing, Linking::Embedded(&open), &mut bytes)
+            .map_err(ForestTilesError::from)?;
+        folder.write_last("forest.glb", |out| Ok(out.write_all(&bytes)?))
     }
 
     /// A row a tree: what it is, and what stands for it.
-    fn csv(&self, folder: &Folder, outputs: &mut Outputs) -> Outcome<Entry> {
+    fn csv<D: TileDisk>(&self, folder: &mut TileFolder<D>) -> Result<(), D::Error> {
         let origin = self.plan.stand.origin_m;
-        write(folder, outputs, "trees.csv", |out| {
+        folder.write_last("trees.csv", |out| {
             out.write_all(
                 b"row,species,easting_m,northing_m,ground_m,height_m,dbh_m,crown_width_m,age_years,given,plant,\
                 scale_across,scale_up,height_error_m,dbh_error_m,crown_error_m\n",
@@ -235,53 +274,5 @@ fn quoted(text: &str) -> String {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
-    }
-}
-
-/// Writes a file of the last step; its entry of the manifest.
-fn write(
-    folder: &Folder,
-    outputs: &mut Outputs,
-    file: &str,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
-) -> Outcome<Entry> {
-    let (mut digest, mut bytes) = (burgeon::Digest::new(), 0);
-    outputs.write("-o", &folder.path(file), |out| {
-        let mut tally = Tally { out, digest: &mut digest, bytes: &mut bytes };
-        write(&mut tally)
-    })?;
-    Ok(Entry { file: file.to_owned(), digest: digest.hex(), bytes })
-}
-
-/// Counts and digests what goes through.
-struct Tally<'a> {
-    out: &'a mut dyn Write,
-    digest: &'a mut burgeon::Digest,
-    bytes: &'a mut u64,
-}
-
-impl Write for Tally<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let n = self.out.write(bytes)?;
-        self.digest.bytes(&bytes[..n]);
-        *self.bytes += n as u64;
-        Ok(n)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
-
-impl std::fmt::Debug for Tally<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Tally").field("bytes", self.bytes).finish_non_exhaustive()
-    }
-}
-
-pub(super) fn failure(error: &WriteError) -> Failure {
-    match error {
-        WriteError::Io(e) => Failure::Bad(format!("a file of the forest cannot be made: {e}")),
-        e => Failure::Bug(e.to_string()),
     }
 }

@@ -1,4 +1,4 @@
-"""Plants that stand together: forests, orchards, tiles of them for data sets."""
+"""Plants that stand together: groves, orchards, tiles of them for data sets."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
     from .model import View
 
-__all__ = ["Forest", "ForestCloud", "ForestMasks", "forest"]
+__all__ = ["Grove", "GroveCloud", "GroveMasks", "grove"]
 
 
-class ForestCloud(NamedTuple):
-    """Points on a forest as a scanner sees it; ``axis`` and ``organ`` are rows of the tables of each point's own plant."""
+class GroveCloud(NamedTuple):
+    """Points on a grove as a scanner sees it; ``axis`` and ``organ`` are rows of the tables of each point's own plant."""
 
     points: "np.ndarray"
     """(n, 3) float64: metres, +y up."""
@@ -44,7 +44,7 @@ class ForestCloud(NamedTuple):
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
     tree: "np.ndarray"
-    """(n,) uint32: row of ``forest.places``."""
+    """(n,) uint32: row of ``grove.places``."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes it: see ``Cloud.save``."""
@@ -55,8 +55,8 @@ class ForestCloud(NamedTuple):
         return cloud_bytes(self._asdict(), extension)
 
 
-class ForestMasks(NamedTuple):
-    """What each pixel of a picture of a forest shows; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
+class GroveMasks(NamedTuple):
+    """What each pixel of a picture of a grove shows; ``axis`` and ``organ`` are rows of the tables of the pixel's own plant."""
 
     part: "np.ndarray"
     """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
@@ -67,10 +67,10 @@ class ForestMasks(NamedTuple):
     depth: "np.ndarray"
     """(height, width) float32: metres from the eye; infinite for nothing."""
     tree: "np.ndarray"
-    """(height, width) int32: row of ``forest.places``; -1 for nothing."""
+    """(height, width) int32: row of ``grove.places``; -1 for nothing."""
 
 
-class Forest:
+class Grove:
     """Plants and the places at which copies of them stand. Nothing changes it."""
 
     __slots__ = ("_known", "_raw", "places", "plants", "seed")
@@ -111,19 +111,19 @@ class Forest:
         self.seed = seed
         rows = zip(*(column.tolist() for column in columns.values()))
         stand = [(plant, at, yaw, scale) for at, yaw, scale, plant in rows]
-        self._raw = _burgeon.RawForest([plant._raw for plant in self.plants], stand)
+        self._raw = _burgeon.RawGrove([plant._raw for plant in self.plants], stand)
         self._known: "Dict[str, Any]" = {}
 
     def __len__(self) -> int:
         return len(self.places["plant"])
 
     def __repr__(self) -> str:
-        return f"<burgeon.Forest (seed {self.seed}): {len(self)} trees, {len(self.plants)} of them different>"
+        return f"<burgeon.Grove (seed {self.seed}): {len(self)} trees, {len(self.plants)} of them different>"
 
     @property
     def name(self) -> str:
         """Its name, for files."""
-        return "forest"
+        return "grove"
 
     @property
     def digest(self) -> str:
@@ -166,15 +166,15 @@ class Forest:
         elevation: float = 5.0,
         noise: float = 0.0,
         seed: "int | None" = None,
-    ) -> ForestCloud:
-        """The forest as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
-        return ForestCloud(**seen(self, points, stations, elevation, noise, seed))
+    ) -> GroveCloud:
+        """The grove as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
+        return GroveCloud(**seen(self, points, stations, elevation, noise, seed))
 
     def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> ForestMasks:
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> GroveMasks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
         import numpy as np
 
@@ -188,7 +188,7 @@ class Forest:
         tree = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
         at, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
         part, axis, organ, depth = columns
-        return ForestMasks(part, axis, organ, depth, np.where(at < 0, np.int32(-1), tree[np.maximum(at, 0)]))
+        return GroveMasks(part, axis, organ, depth, np.where(at < 0, np.int32(-1), tree[np.maximum(at, 0)]))
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()
@@ -217,7 +217,7 @@ class Forest:
 Species = Union[str, Mapping[str, Any], SpecText]
 
 
-def forest(
+def grove(
     species: "Species | Sequence[Species] | Mapping[str, float]" = "oak",
     area: "Tuple[float, float] | float" = (20.0, 20.0),
     *,
@@ -227,13 +227,13 @@ def forest(
     vary: float = 0.15,
     budget: float = 1.0,
     **fields: Any,
-) -> Forest:
+) -> Grove:
     """Trees all over a rectangle: each at least ``spacing`` metres from the others, turned by chance.
 
     ``species``: what ``grow`` takes, or a list of it, or species with their shares: ``{"oak": 3, "birch": 1}``; ``area``:
     metres along x and z, 0.1 to 1000, or one for both; ``kinds``: different trees of each species, 1 to 100, of which the
     others are copies; ``vary``: trees are up to this share smaller or larger, 0 to 0.9; ``fields``: of ``grow``, for all
-    of them. The same seed gives the same forest.
+    of them. The same seed gives the same grove.
 
     Its trees grow alone. Trees that compete for space and light are one plant: ``grow("oak", roots=[...])``.
     """
@@ -267,7 +267,7 @@ def forest(
         chosen.append(rows[which, kind])
     x, z, yaw, scale = zip(*found)
     places = {"position": list(zip(x, [0.0] * len(x), z)), "yaw_deg": yaw, "scale": scale, "plant": chosen}
-    return Forest(plants, places, seed)
+    return Grove(plants, places, seed)
 
 
 def _shares(species: Any) -> "List[Tuple[Species, float]]":
