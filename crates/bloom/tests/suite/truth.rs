@@ -116,6 +116,7 @@ fn regions(rates: [f64; 3], determined: bool) -> GrowthLaw {
         straight_rmse: None,
         last_rmse: None,
         standard_errors: None,
+        value_errors: None,
         r2: 1.0,
         r2_adjusted: None,
         loo_rmse: None,
