@@ -243,9 +243,11 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
             bloom::leave_one_out(&loaded.stages, &spec, &MotionSpec::default(), up, &compute)
         })
     });
+    let mut warnings = loaded.warnings;
+    warnings.extend(poses::doubts(&settled.steps));
     Ok(Fitted {
         law,
-        warnings: loaded.warnings,
+        warnings,
         offset_m: loaded.origin.told(&loaded.axes),
         stages: loaded.told,
         poses: settled.steps.iter().map(poses::PoseReport::from).collect(),

@@ -484,8 +484,8 @@ fn alike(out: &mut Loaded, split: bool) {
         }
     }
     for k in 1..out.stages.len() {
-        let (before, now) = out.stages.split_at_mut(k);
-        let (Some(before), Some(now)) = (before.last(), now.first_mut()) else { continue };
+        let (all_before, now) = out.stages.split_at_mut(k);
+        let (Some(before), Some(now)) = (all_before.last(), now.first_mut()) else { continue };
         let (a, b) = (size(before), size(now));
         if b > 8.0 * a || a > 8.0 * b {
             out.warnings.push(format!(
@@ -497,7 +497,7 @@ fn alike(out: &mut Loaded, split: bool) {
             ));
         }
         if split && now.organs.iter().any(|o| o.name == "stem") {
-            bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+            bloom::name_alike(all_before, &mut now.organs, DVec3::Y);
             let leaves = |s: &Stage| s.organs.iter().filter(|o| o.name != "stem").count();
             let again =
                 now.organs.iter().any(|o| o.name != "stem" && before.organs.iter().any(|b| b.name == o.name));

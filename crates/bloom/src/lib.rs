@@ -87,7 +87,7 @@ pub use organs::Seat;
 pub use overlap::{PartTriangle, crossed, overlap_share, part_overlap, part_triangles};
 pub use parts::{Achenes, Cluster, ClusterForm, Disc, Foliage, Fruit, Nods, Stamens};
 pub use plot::plot_svg;
-pub use pose::{OrganStep, PoseStep, RigidMotion, Settled, settle};
+pub use pose::{OrganStep, PoseDoubt, PoseStep, RigidMotion, Settled, settle};
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{ScanOrgan, SegmentSpec, match_organs, organ_at, organs, single_organ};
 pub use species::{preset, preset_text};

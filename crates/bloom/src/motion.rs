@@ -73,17 +73,30 @@ pub struct Motion {
     pub residuals: Vec<(String, f64, f64, crate::ShapeError)>,
 }
 
-/// The same plant at two days, its organs brought under the same names: those of the first.
+/// Brings the organs of a day under the names that they have on the days before, in order of days.
 ///
-/// Organs of the second that have no partner keep their name with `new-` before it.
-pub fn name_alike(first: &[ScanOrgan], second: &mut [ScanOrgan], up: DVec3) {
-    let pairs = match_organs(first, second, up);
-    for (j, organ) in second.iter_mut().enumerate() {
+/// Organs are found among those of the day before. What has no partner is `new-` with its own name, or with the next number that no
+/// organ had on any day before, as one name is one organ on all days.
+pub fn name_alike(before: &[Stage], now: &mut [ScanOrgan], up: DVec3) {
+    let Some(last) = before.last().map(|s| s.organs.as_slice()) else { return };
+    let pairs = match_organs(last, now, up);
+    let mut taken: Vec<String> = before.iter().flat_map(|s| &s.organs).map(|o| o.name.clone()).collect();
+    for (j, organ) in now.iter_mut().enumerate() {
         organ.name = match pairs.iter().find(|p| p.1 == j) {
-            Some(&(i, _)) => first[i].name.clone(),
-            None => format!("new-{}", organ.name.trim_start_matches("new-")),
+            Some(&(i, _)) => last[i].name.clone(),
+            None => unused(organ.name.trim_start_matches("new-"), &taken),
         };
+        taken.push(organ.name.clone());
     }
+}
+
+/// `new-NAME`, with another number where that is taken.
+fn unused(name: &str, taken: &[String]) -> String {
+    let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let own = core::iter::once(format!("new-{name}"));
+    let numbered = (1..=taken.len() + 1).map(|k| format!("new-{kind}{k}"));
+    let mut free = own.chain(numbered).filter(|name| !taken.contains(name));
+    free.next().unwrap_or_else(|| format!("new-{name}"))
 }
 
 impl Motion {

@@ -87,7 +87,7 @@ pub fn leave_one_out(
         if let Some(up) = up {
             for later in k.max(1)..rest.len() {
                 let (before, now) = rest.split_at_mut(later);
-                name_alike(&before[later - 1].organs, &mut now[0].organs, up);
+                name_alike(before, &mut now[0].organs, up);
             }
         }
         out.push(trial(&rest, &stages[k], law, spec, run)?);
