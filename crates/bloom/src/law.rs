@@ -746,6 +746,7 @@ mod tests {
             way,
             base: DVec3::ONE,
             tip: DVec3::ONE + DVec3::X * length,
+            ..ScanOrgan::default()
         };
         Stage { day: day + 100.0, organs: vec![organ] }
     }

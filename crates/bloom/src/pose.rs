@@ -4,6 +4,7 @@ use base::Run;
 use geom::{best_rotation, extent};
 use glam::{DQuat, DVec3};
 
+use crate::register::register_organ;
 use crate::thin::thin;
 use crate::{
     BloomError, GrowthLaw, Motion, MotionSpec, OrganPoints, RegisterSpec, ScanOrgan, ShapeError, Stage,
@@ -197,7 +198,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
         let mut found: Vec<(&ScanOrgan, Vec<Places>, ShapeError)> = Vec::new();
         for organ in &a.organs {
             let Some(next) = b.organs.iter().find(|o| o.name == organ.name) else { continue };
-            let fit = register(&organ.points, organ.base, &next.points, next.base, spec, run)?;
+            let fit = register_organ(organ, (&organ.points, organ.base), next, spec, run)?;
             let rows = thin(&organ.points, SAMPLE);
             let points: Vec<DVec3> = rows.into_iter().map(|i| organ.points[i as usize]).collect();
             let moved = Weights::new(&fit.obb, spec.counts, &points)?.apply(&fit.last, run)?;

@@ -33,6 +33,7 @@ fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
             tip: at[at.len() - 1],
             points: at.iter().map(|p| *p + jitter()).collect(),
             way: sheet.points.iter().enumerate().map(|(i, _)| i as f64 / at.len() as f64).collect(),
+            ..ScanOrgan::default()
         }
     });
     Stage { day, organs: organs.collect() }
