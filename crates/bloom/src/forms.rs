@@ -381,9 +381,9 @@ impl Linearised {
             all.iter().zip(&fit.linear).map(|(s, &[_, b])| LinearPart::new(fit, s, b)).collect();
         let mut normal = [[0.0; 2]; 2];
         for part in &parts {
-            for i in 0..shared {
-                for j in 0..shared {
-                    normal[i][j] += part.rest[i].iter().zip(&part.rest[j]).map(|(x, y)| x * y).sum::<f64>();
+            for (i, row) in normal.iter_mut().enumerate().take(shared) {
+                for (j, cell) in row.iter_mut().enumerate().take(shared) {
+                    *cell += part.rest[i].iter().zip(&part.rest[j]).map(|(x, y)| x * y).sum::<f64>();
                 }
             }
         }

@@ -3,7 +3,7 @@
 use base::{CancelToken, Cancelled};
 
 use crate::forms::Linearised;
-use crate::{Form, Series, SharedFit, fit_shared};
+use crate::{Series, SharedFit, fit_shared};
 
 /// Up to so many values, times how often some are left out, all numbers are fitted anew each time. Of more, a day of an organ hardly
 /// moves the curve, and how it moves follows from its leverage (`many_values_are_left_out_by_leverage`).
@@ -134,6 +134,7 @@ pub(crate) fn rms(errors: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Form;
     use base::{Draw, Seed};
 
     /// Two leaves of two regions each, grown by one rate, whose regions share the noise of their day.

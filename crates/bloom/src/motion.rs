@@ -7,7 +7,7 @@ use crate::coloured;
 use crate::register::register_organ;
 use crate::{
     BloomError, GrowthLaw, Lattice, Quantity, RegisterSpec, Registration, ScanOrgan, Stage, Weights,
-    match_organs, register,
+    match_organs,
 };
 
 /// How the motion between two shapes is computed.

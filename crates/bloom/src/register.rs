@@ -543,7 +543,7 @@ mod tests {
             for k in 0..24_u32 {
                 let (sin, cos) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
                 points.push(DVec3::new(cos, 0.0, sin) * (0.01 * f64::from(ring)));
-                faces.push([0, points.len() as u32 - 1, 1 + (k + 1) % 24]);
+                faces.push([0, 24 * (ring - 1) + k + 1, 1 + (k + 1) % 24]);
             }
         }
         let quarter = base::turn::about(DVec3::Y, 1.5);

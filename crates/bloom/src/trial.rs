@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::register::register_organ;
 use crate::{
     BloomError, GrowthLaw, Lattice, LawSpec, MotionSpec, RegisterSpec, RigidMotion, Settled, ShapeError,
-    Stage, Weights, compare, fit_stages, name_alike, register, settle,
+    Stage, Weights, compare, fit_stages, name_alike, settle,
 };
 
 /// A way to say what a day looks like.
