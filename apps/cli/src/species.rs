@@ -205,7 +205,9 @@ fn read(args: &SpeciesFitArgs, told: &mut Report, machine: &Machine) -> Outcome<
             ));
         };
         let mut own = Report::default();
-        plants.extend(structure::read(path, input, format, &spec, &mut own)?.plants);
+        let read = structure::read(path, input, format, &spec, &mut own)?.plants;
+        read.iter().try_for_each(|plant| structure::check_height(path, plant))?;
+        plants.extend(read);
         told.warnings.extend(own.warnings.into_iter().map(|w| named(path, w)));
     }
     Ok(plants)
@@ -229,7 +231,8 @@ fn grown(spec: &TreeSpec, trees: u32, machine: &Machine) -> Outcome<Traits> {
         for tree in made {
             let tree = tree.map_err(|e| {
                 Failure::Bad(format!(
-                    "a tree of the fitted species cannot be grown: {e}; are branches of the files longer than what bears them?"
+                    "a tree of the fitted species cannot be grown: {e}; are the units right (--in-unit, --thickness-unit), and branches \
+                     no longer than what bears them?"
                 ))
             })?;
             out.add(&tree.plant);

@@ -177,8 +177,10 @@ fn trees_that_tell_too_little_are_refused_or_told() {
     fs::write(f.join("bare.csv"), bare).unwrap();
     fs::write(f.join("one.csv"), trees(3, 7)).unwrap();
     fs::write(f.join("leaf.svg"), tools::FLOWER).unwrap();
+    fs::write(f.join("cm.csv"), format!("{HEAD}0.1,0,0,0,0,0,200,0,1\n0.08,0,0,200,0,0,400,1,1\n")).unwrap();
     for (args, want) in [
         (&["bare.csv", "-o", "x.toml"][..], "branches of the first order"),
+        (&["cm.csv", "-o", "x.toml"], "--in-unit"),
         (&["leaf.svg", "-o", "x.toml"], "no structure of trees"),
         (&["one.csv", "-o", "x.json"], "name a file .toml"),
         (&["one.csv", "-o", "x.toml", "--keep-none-out"], "six trees or more"),

@@ -96,8 +96,9 @@ const TIP: f64 = 1e-3;
 const TAPERS: [f64; 2] = [0.02, 2.0];
 /// Share of an axis's length up to which it has the radius of its base.
 const COLLAR: f64 = 0.01;
-/// A branch that is longer than so many times its bearer is drawn as long as that: of a slip of a file trees would never end.
-const MOST_LENGTH_RATIO: f64 = 3.0;
+/// A branch that is longer than so many times its bearer is drawn as long as that: spurs of a few centimetres bear long shoots, but of a
+/// slip of a file trees would never end.
+const MOST_LENGTH_RATIO: f64 = 30.0;
 /// A branch that is thicker than its bearer is drawn as thick.
 const MOST_RADIUS_RATIO: f64 = 1.0;
 /// Steps of the shares at which waits are told.
