@@ -7,9 +7,6 @@
 use base::{CancelToken, Cancelled, ops};
 use serde::{Deserialize, Serialize};
 
-use crate::left_out::{Sittings, left_out_of_mean, rms};
-use crate::tails::tail_of_f;
-
 /// The curve of a law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -92,7 +89,7 @@ pub struct SharedFit {
     pub freedom: i64,
     /// r or t0 ended on the edge of what was searched.
     pub on_bound: bool,
-    /// Each value less its prediction by a fit without its organ on its day; one row a series, empty before [`choose`] asked
+    /// Each value less its prediction by a fit without its organ on its day; one row a series, empty before [`crate::choose`] asked
     /// for it. `None` where the others do not determine the curve.
     pub left_out: Vec<Vec<Option<f64>>>,
 }
@@ -286,7 +283,7 @@ pub(crate) fn curves_of(form: Form, level: bool) -> u64 {
     grid(form, level, 0.0, 1.0).len() as u64
 }
 
-/// How many curves of the grid [`choose`] compares with each value.
+/// How many curves of the grid [`crate::choose`] compares with each value.
 pub(crate) fn curves_compared() -> u64 {
     let laws = Form::LAWS.iter().map(|&form| curves_of(form, false) + curves_of(form, true));
     laws.sum::<u64>() + curves_of(Form::Straight, true)
@@ -513,66 +510,10 @@ impl SharedFit {
     }
 }
 
-/// The law that predicts series best, and what it was chosen against.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
-    /// The best law, or the straight lines.
-    pub fit: SharedFit,
-    /// The days determine it: it predicts what was left out better than straight lines and than the mean of the others, each by
-    /// more than one standard error of that difference; it fits better than straight lines do by more than chance
-    /// ([`BENDS`]); its rate is two standard errors from 0, and it has a degree of freedom and is on no bound.
-    pub determined: bool,
-    /// Leave-one-out error of straight lines.
-    pub straight_rmse: Option<f64>,
-}
-
-/// Chooses by leave-one-out among the three laws, with and without a level, and straight lines.
-///
-/// `organs` has one entry a series: series of one organ have the same. All values of an organ on one day are left out together,
-/// as what shifts one of them shifts the others. `None` without a series of 2 days that differ.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn choose(all: &[Series], organs: &[usize], cancel: &CancelToken) -> Result<Option<Choice>, Cancelled> {
-    let Some(mut straight) = fit_shared(Form::Straight, true, all, cancel)? else { return Ok(None) };
-    let sittings = Sittings::new(all, organs);
-    sittings.leave_out(&mut straight, all, cancel)?;
-    let straight_rmse = straight.loo_rmse();
-    let still = all.iter().map(left_out_of_mean).collect::<Vec<_>>();
-    let mut fits = Vec::new();
-    for (&form, level) in Form::LAWS.iter().flat_map(|form| [(form, false), (form, true)]) {
-        fits.extend(fit_shared(form, level, all, cancel)?);
-    }
-    // A rate that is not two standard errors from 0 tells no curve from a line.
-    fits.retain(|f: &SharedFit| {
-        let sure = f.errors.as_ref().is_some_and(|e| f.r > 2.0 * e.rate);
-        f.freedom > 0 && !f.on_bound && sure && bends([(straight.sse, straight.freedom), (f.sse, f.freedom)])
-    });
-    for fit in &mut fits {
-        sittings.leave_out(fit, all, cancel)?;
-    }
-    let able = fits
-        .into_iter()
-        .filter(|f| sittings.earn(&f.left_out, &straight.left_out) && sittings.earn(&f.left_out, &still));
-    let loo = |f: &SharedFit| f.loo_rmse().unwrap_or(f64::INFINITY);
-    Ok(Some(match able.min_by(|a, b| loo(a).total_cmp(&loo(b))) {
-        Some(fit) => Choice { fit, determined: true, straight_rmse },
-        None => Choice { fit: straight, determined: false, straight_rmse },
-    }))
-}
-
-/// Chance makes a curve that has more numbers fit as much better than a straight line less often than this.
-pub(crate) const BENDS: f64 = 0.05;
-
-/// A curve fits better than straight lines do by more than chance: extra sum of squares (Bates and Watts 1988), for a curve that
-/// has more numbers than they have. Each fit as its sum of squares and its degrees of freedom, the lines first.
-pub(crate) fn bends([(straight, straight_freedom), (curve, freedom)]: [(f64, i64); 2]) -> bool {
-    let extra = (straight_freedom - freedom) as f64;
-    if extra < 0.5 {
-        return curve < straight;
-    }
-    let f = ((straight - curve) / extra) / (curve / freedom as f64).max(f64::MIN_POSITIVE);
-    tail_of_f(f, [extra, freedom as f64]) < BENDS
+/// Root of the mean square; `None` of nothing.
+pub(crate) fn rms(errors: impl Iterator<Item = f64>) -> Option<f64> {
+    let rows: Vec<f64> = errors.collect();
+    (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
 }
 
 #[cfg(test)]
@@ -584,9 +525,9 @@ mod tests {
     }
 
     /// Each series is an organ of its own.
-    fn choose(all: &[Series]) -> Option<Choice> {
+    fn choose(all: &[Series]) -> Option<crate::Choice> {
         let organs: Vec<usize> = (0..all.len()).collect();
-        super::choose(all, &organs, &CancelToken::new()).expect("not cancelled")
+        crate::choose(all, &organs, &CancelToken::new()).expect("not cancelled")
     }
 
     fn made(

@@ -6,8 +6,8 @@
 
 use base::{CancelToken, Counted, Draw, Run, Seed, ops};
 
-use crate::forms::{curves_compared, curves_of};
-use crate::left_out::{Sittings, left_out_of_mean, rms};
+use crate::forms::{curves_compared, curves_of, rms};
+use crate::left_out::{Sittings, left_out_of_mean};
 use crate::tails::tail_of_f;
 use crate::{
     BloomError, FitError, Form, GrowthLaw, LAW_SCHEMA, Logistic, Quantity, RegionLaw, Series, SharedFit,

@@ -4,8 +4,9 @@ use base::{CancelToken, Counted, Run, TimeUnit};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::forms::{bends, curves_compared};
-use crate::left_out::{Sittings, earns, left_out_of_last, left_out_of_mean, rms};
+use crate::choice::bends;
+use crate::forms::{curves_compared, rms};
+use crate::left_out::{Sittings, earns, left_out_of_last, left_out_of_mean};
 use crate::logistic::fit_logistic_while;
 use crate::{
     BloomError, Choice, Fit, FitError, Form, Logistic, Offset, ScanOrgan, Series, SharedFit, choose, fit_law,

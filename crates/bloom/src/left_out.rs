@@ -125,12 +125,6 @@ pub(crate) fn earns(gains: impl Iterator<Item = f64>) -> bool {
     mean > spread.sqrt()
 }
 
-/// Root of the mean square; `None` of nothing.
-pub(crate) fn rms(errors: impl Iterator<Item = f64>) -> Option<f64> {
-    let rows: Vec<f64> = errors.collect();
-    (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,10 +12,10 @@ use super::structure::{LengthUnit, length_words};
 pub(crate) enum SpeciesCommand {
     /// Make a species of measured trees: a spec whose trees branch as they do
     ///
-    /// Reads the structure of trees (tables of cylinders of TreeQSM, rTwig, SimpleForest and `burgeon scan`; MTG, OPF, SWC),
-    /// measures by branch order how long and thick axes are, at which angles and distances they leave their bearers and how they
-    /// taper, and writes a spec that draws each of these from what was measured. Then it grows trees of the spec and says, trait by
-    /// trait, how well they agree with the trees that it was made of and with those that were kept out.
+    /// Reads the structure of trees (tables of cylinders, as programs for laser scans write them, and those of `burgeon scan`; MTG,
+    /// OPF, SWC), measures by branch order how long and thick axes are, at which angles and distances they leave their bearers and
+    /// how they taper, and writes a spec that draws each of these from what was measured. Then it grows trees of the spec and says,
+    /// trait by trait, how well they agree with the trees that it was made of and with those that were kept out.
     Fit(Box<SpeciesFitArgs>),
 }
 
