@@ -1,5 +1,9 @@
 //! Measured trees to a species, and trees of it.
-#![expect(clippy::unwrap_used, reason = "tests")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "tests: trees that are made here and now"
+)]
 
 use crate::tools;
 use std::fmt::Write as _;
