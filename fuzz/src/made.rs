@@ -363,7 +363,7 @@ fn scanned(text: &str) -> Vec<Stage> {
 /// An organ whose base is its first point.
 fn organ(name: &str, base: DVec3) -> ScanOrgan {
     let (rows, points, colors, way) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    ScanOrgan { name: name.into(), rows, points, colors, way, base, tip: base }
+    ScanOrgan { name: name.into(), rows, points, colors, way, base, tip: base, ..ScanOrgan::default() }
 }
 
 /// A plant is meshed soundly, or refused.

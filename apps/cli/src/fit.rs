@@ -29,6 +29,9 @@ struct LawReport {
     /// On day 0, and what it tends to: K and p0 with the constant under the curve; none where the days tell no end.
     first_m: f64,
     final_m: Option<f64>,
+    /// Standard errors of `final_m` and `first_m`.
+    value_errors_m: Option<[f64; 2]>,
+    /// Of K, p0 and r.
     standard_errors: Option<[f64; 3]>,
     r2: f64,
     r2_adjusted: Option<f64>,
@@ -55,6 +58,7 @@ impl LawReport {
             offset: l.law.offset,
             first_m: l.value(0.0),
             final_m: l.final_value(),
+            value_errors_m: l.value_errors,
             standard_errors: l.standard_errors,
             r2: l.r2,
             r2_adjusted: l.r2_adjusted,
@@ -239,9 +243,11 @@ fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome
             bloom::leave_one_out(&loaded.stages, &spec, &MotionSpec::default(), up, &compute)
         })
     });
+    let mut warnings = loaded.warnings;
+    warnings.extend(poses::doubts(&settled.steps));
     Ok(Fitted {
         law,
-        warnings: loaded.warnings,
+        warnings,
         offset_m: loaded.origin.told(&loaded.axes),
         stages: loaded.told,
         poses: settled.steps.iter().map(poses::PoseReport::from).collect(),
@@ -265,21 +271,20 @@ fn tell_laws(law: &GrowthLaw) {
             error(l.last_rmse)
         );
         if l.is_determined() {
-            let se = |k: usize, unit: f64| {
-                l.standard_errors.map_or_else(String::new, |e| format!(" ± {:.3}", e[k] * unit))
-            };
+            let plus_minus = |e: f64| format!(" ± {e:.3}");
+            let [last, first] =
+                l.value_errors.map_or_else(Default::default, |e| e.map(|e| plus_minus(e * 1e3)));
+            let rate = l.standard_errors.map_or_else(String::new, |e| plus_minus(e[2]));
             let end = l.final_value().map_or_else(
                 || "no end that these days tell of".to_owned(),
-                |end| format!("{:.3}{} mm at the end", end * 1e3, se(0, 1e3)),
+                |end| format!("{:.3}{last} mm at the end", end * 1e3),
             );
             say::line(&format!(
-                "{what}: {}, {:.3}{} mm on {time} {}, {end}, r {:.4}{} a {time}, R2 {:.3}; {rivals}",
+                "{what}: {}, {:.3}{first} mm on {time} {}, {end}, r {:.4}{rate} a {time}, R2 {:.3}; {rivals}",
                 l.form.word(),
                 l.value(0.0) * 1e3,
-                se(1, 1e3),
                 law.first_day,
                 l.law.r,
-                se(2, 1.0),
                 l.r2
             ));
         } else {

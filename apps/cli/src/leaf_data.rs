@@ -15,6 +15,8 @@ use crate::files;
 use crate::inputs;
 use crate::machine::Machine;
 
+/// Widths are read off to about so much of a leaf: a greater stretch of their places is told.
+const STRETCH_TOLD: f64 = 0.03;
 /// Places on each vein of a profile: a span of 5 % of the leaf between two.
 const PROFILE_MARKS: usize = 21;
 
@@ -105,14 +107,28 @@ impl Asked<'_> {
 
     fn marks(&self, path: &Path, read: ReadMarks) -> Outcome<ReadLeaf> {
         self.agree(path, read.axes, read.thickness)?;
-        let ReadMarks { name, marks, thickness, warnings, .. } = read;
+        let ReadMarks { name, marks, thickness, mut warnings, is_unit_said, .. } = read;
+        warnings.extend(self.unit_taken(is_unit_said, marks.length()));
         Ok(ReadLeaf { name, form: Form::Rows(marks), thickness, warnings })
     }
 
     fn rays(&self, path: &Path, read: ReadRays) -> Outcome<ReadLeaf> {
         self.agree(path, read.axes, read.thickness)?;
-        let ReadRays { name, rays, thickness, .. } = read;
-        Ok(ReadLeaf { name, form: Form::Rays(rays), thickness, warnings: Vec::new() })
+        let ReadRays { name, rays, thickness, is_unit_said, .. } = read;
+        let warnings = self.unit_taken(is_unit_said, rays.length()).into_iter().collect();
+        Ok(ReadLeaf { name, form: Form::Rays(rays), thickness, warnings })
+    }
+
+    /// A warning where neither the file nor the command line says a unit.
+    fn unit_taken(&self, is_said: bool, length: f64) -> Option<Warning> {
+        let message = || {
+            format!(
+                "no unit is said: lengths were taken for metres, and the leaf is {length:.4} m long. Write a line `# unit: mm`, or \
+                 say --unit"
+            )
+        };
+        let is_taken = !is_said && !self.given.has("unit");
+        is_taken.then(|| Warning { code: "unit-taken", message: message(), fields: Vec::new() })
     }
 
     /// What a file says of itself wins over what it is assumed to be; it must not contradict what was asked for.
@@ -212,6 +228,16 @@ impl Asked<'_> {
             "veins-guessed",
             "a profile holds no veins: nine parallel ones were made, as thick as a lily's",
         );
+        let stretch = leaf.profile.stretch();
+        if (stretch - 1.0).abs() > STRETCH_TOLD {
+            report.warn(
+                "profile-stretched",
+                format!(
+                    "the midrib is {stretch:.2} times as long as the last place of a width is from the first: the places were \
+                     stretched to it, and the area with them. Were all widths measured, from base to tip, in the midrib's unit?"
+                ),
+            );
+        }
         // 10 m: no leaf is longer, and tables of maize are in centimetres.
         if rays.length() > 10.0 && !self.given.has("unit") && read.axes.unit == Unit::Metre {
             rays = rays.scaled(0.01);
@@ -219,6 +245,8 @@ impl Asked<'_> {
                 "unit-guessed",
                 "the leaf is more than 10 m long: it was taken for centimetres; say --unit cm",
             );
+        } else {
+            report.warnings.extend(self.unit_taken(read.is_unit_said, rays.length()));
         }
         Ok(ReadLeaf {
             name: leaf.name,

@@ -45,6 +45,8 @@ mod scene;
 mod shape;
 mod signals;
 mod sketch;
+mod species;
+mod species_plot;
 mod stages;
 mod structure;
 mod studio;
@@ -91,6 +93,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),
         Command::Bloom(mut command) => command.settle().and_then(|()| bloom::bloom(&command)),
+        Command::Species(command) => species::species(&command),
         Command::Studio(args) => studio::studio(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

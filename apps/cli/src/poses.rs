@@ -1,6 +1,6 @@
 //! How plant and organs moved between scans, as reports and people are told.
 
-use burgeon::bloom::{OrganStep, PoseStep, RigidMotion};
+use burgeon::bloom::{OrganStep, PoseDoubt, PoseStep, RigidMotion};
 use serde::Serialize;
 
 /// A turn about an axis and a shift of the place that it is about.
@@ -68,6 +68,25 @@ impl From<&PoseStep> for PoseReport {
             vanished: s.vanished.clone(),
         }
     }
+}
+
+/// A warning for each step between scans whose organs may have been taken for one another.
+pub(crate) fn doubts(steps: &[PoseStep]) -> Vec<String> {
+    let told = |step: &PoseStep| {
+        let days = format!("from day {} to {}", step.from_day, step.to_day);
+        let way_out = "name organs by hand (`organ` and `seed` in a [[stage]]), or turn the scan as the one before stands";
+        Some(match step.doubt()? {
+            PoseDoubt::Plant { turn_deg } => format!(
+                "{days} the plant seems to have turned by {turn_deg:.0} degrees: if its pot was not turned so far, organs were \
+                 taken for one another; {way_out}"
+            ),
+            PoseDoubt::Organs { organ, turn_deg } => format!(
+                "{days} organs turned far by themselves, {organ} by {turn_deg:.0} degrees: they may have been taken for one \
+                 another, or the pot was turned by more than 60 degrees; {way_out}"
+            ),
+        })
+    };
+    steps.iter().filter_map(told).collect()
 }
 
 impl PoseReport {

@@ -415,6 +415,7 @@ fn add_entry(
         }
         (None, None) => bloom::organs(&points, &spec, &run).map_err(Failure::bloom(&scan))?,
     };
+    add_faces(&mut found, mesh.as_ref());
     if let (Some(base), [one]) = (entry.base.map(near), &mut found[..]) {
         one.base = base;
     }
@@ -434,6 +435,15 @@ fn add_entry(
         }
     }
     Ok(())
+}
+
+/// What is made of a whole model, each vertex one point, has its triangles.
+fn add_faces(organs: &mut [ScanOrgan], mesh: Option<&TriMesh>) {
+    if let ([one], Some(mesh)) = (organs, mesh)
+        && one.points.len() == mesh.positions.len()
+    {
+        one.faces = mesh.triangles.as_slice().into();
+    }
 }
 
 /// A region of an organ joins the other regions of the same day.
@@ -484,8 +494,8 @@ fn alike(out: &mut Loaded, split: bool) {
         }
     }
     for k in 1..out.stages.len() {
-        let (before, now) = out.stages.split_at_mut(k);
-        let (Some(before), Some(now)) = (before.last(), now.first_mut()) else { continue };
+        let (all_before, now) = out.stages.split_at_mut(k);
+        let (Some(before), Some(now)) = (all_before.last(), now.first_mut()) else { continue };
         let (a, b) = (size(before), size(now));
         if b > 8.0 * a || a > 8.0 * b {
             out.warnings.push(format!(
@@ -497,7 +507,7 @@ fn alike(out: &mut Loaded, split: bool) {
             ));
         }
         if split && now.organs.iter().any(|o| o.name == "stem") {
-            bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+            bloom::name_alike(all_before, &mut now.organs, DVec3::Y);
             let leaves = |s: &Stage| s.organs.iter().filter(|o| o.name != "stem").count();
             let again =
                 now.organs.iter().any(|o| o.name != "stem" && before.organs.iter().any(|b| b.name == o.name));
@@ -540,11 +550,12 @@ pub(crate) fn load_files(
             prepare(path, day, (axes, false), Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
-        let organs = if split {
+        let mut organs = if split {
             bloom::organs(&points, &spec, &run).map_err(Failure::bloom(path))?
         } else {
             vec![bloom::single_organ(&points, "organ", &spec, &run).map_err(Failure::bloom(path))?]
         };
+        add_faces(&mut organs, mesh.as_ref());
         told.organs =
             organs.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
         out.told.push(told);

@@ -72,6 +72,18 @@ pub(crate) fn choose(
     Ok((plant, tally))
 }
 
+/// Fails on a plant that is higher than any.
+pub(crate) fn check_height(path: &Path, plant: &Plant) -> Outcome {
+    let height = height_m(plant);
+    if height <= PLAUSIBLE.size_most_m {
+        return Ok(());
+    }
+    let line = format_args!(
+        "the plant would be {height:.0} m high, and none is: --in-unit cm, mm or um says the unit of the file"
+    );
+    Err(Failure::at(path, line))
+}
+
 /// Makes a plant that was read, and refuses what no plant can be.
 pub(crate) fn make(
     path: &Path,
@@ -80,13 +92,7 @@ pub(crate) fn make(
     seed: Seed,
     machine: &Machine,
 ) -> Outcome<StructureModel> {
-    let height = height_m(&plant);
-    if height > PLAUSIBLE.size_most_m {
-        let line = format_args!(
-            "the plant would be {height:.0} m high, and none is: --in-unit cm, mm or um says the unit of the file"
-        );
-        return Err(Failure::at(path, line));
-    }
+    check_height(path, &plant)?;
     let made = make_from_structure(plant, tally, options, seed, &machine.run()).map_err(|e| match e {
         StructureModelError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
         other => Failure::at(path, other),

@@ -146,6 +146,7 @@ export const CODES = {
   "rule-not-opened": [],
   "rule-not-rewritten": ["text"],
   "rule-parameters": ["names", "most"],
+  "rule-quantiles": ["count", "most"],
   "rule-range": ["name", "least", "most", "value"],
   "rule-too-deep": ["most"],
   "rule-tropism-direction": [],

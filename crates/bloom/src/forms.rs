@@ -39,6 +39,15 @@ impl Form {
         }
     }
 
+    /// How many of r and t0 a fit of this form has: another t0 of a monomolecular law is another level and size.
+    fn shared_numbers(self, level: bool) -> usize {
+        match self {
+            Self::Straight | Self::Still => 0,
+            Self::Monomolecular if level => 1,
+            _ => 2,
+        }
+    }
+
     fn curve(self, r: f64, t0: f64, t: f64) -> f64 {
         let e = ops::exp(-r * (t - t0));
         match self {
@@ -72,18 +81,30 @@ pub struct SharedFit {
     pub t0: f64,
     /// A and B of each series.
     pub linear: Vec<[f64; 2]>,
-    /// Standard errors of the final and the first state of each series ([`SharedFit::states`]), and of r and t0; `None`
-    /// without a degree of freedom or where the days do not determine them.
-    pub errors: Option<(Vec<[f64; 2]>, [f64; 2])>,
+    /// `None` without a degree of freedom or where the days do not determine the numbers.
+    pub errors: Option<SharedErrors>,
     /// Sum of squared residuals of all series.
     pub sse: f64,
     /// Values less numbers fitted.
     pub freedom: i64,
     /// r or t0 ended on the edge of what was searched.
     pub on_bound: bool,
-    /// Each value less its prediction from all other values of all series; one row a series. `None` where that value
-    /// alone determines a number. Of what [`choose`] chose among few values exact, else by the best place of the grid.
+    /// Each value less its prediction by a fit without its organ on its day; one row a series, empty before [`crate::choose`] asked
+    /// for it. `None` where the others do not determine the curve.
     pub left_out: Vec<Vec<Option<f64>>>,
+}
+
+/// Standard errors of a shared fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharedErrors {
+    /// Of the final and the first state of each series ([`SharedFit::states`]).
+    pub states: Vec<[f64; 2]>,
+    /// Of the final value of each series and of that on day 0: the states with the level under them, which is fitted as well.
+    pub values: Vec<[f64; 2]>,
+    /// Of r.
+    pub rate: f64,
+    /// Of t0.
+    pub time: f64,
 }
 
 /// Rates per span from nearly straight to a step, and places of t0 in spans from the first day, that the grid holds.
@@ -132,8 +153,6 @@ struct OnDays {
     mean: f64,
     centre: f64,
     square: f64,
-    /// How much of each value its own fit takes up.
-    leverage: Vec<f64>,
 }
 
 impl OnDays {
@@ -147,13 +166,7 @@ impl OnDays {
         let square: f64 = self.curve.iter().map(|s| (s - centre) * (s - centre)).sum();
         (self.mean, self.centre, self.square) = (mean, centre, square);
         let flat = square <= 1e-10 * self.curve.iter().map(|s| s * s).sum::<f64>().max(1e-300);
-        if flat || !square.is_finite() {
-            return false;
-        }
-        let own = if level { 1.0 / n } else { 0.0 };
-        self.leverage.clear();
-        self.leverage.extend(self.curve.iter().map(|s| (s - centre) * (s - centre) / square + own));
-        true
+        !flat && square.is_finite()
     }
 }
 
@@ -199,12 +212,6 @@ impl<'a> Cell<'a> {
         }
         total.is_finite().then_some(total)
     }
-
-    /// Residual and leverage of each value, one series after the other.
-    fn rows(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let leverage = self.group.list.iter().flat_map(|&list| &self.on_days[list].leverage);
-        self.residuals.iter().zip(leverage).map(|(&e, &h)| (e, h))
-    }
 }
 
 /// Fits one curve to all series; `None` where none of the grid's curves moves on the days of each.
@@ -232,34 +239,19 @@ pub fn fit_shared(
     let group = Group::new(all);
     let mut cell = Cell::new(form, level, &group);
     let mut best: Option<(f64, usize)> = None;
-    let mut held: Vec<(f64, Option<f64>)> = vec![(f64::INFINITY, None); values];
     for (at, &[r, t0]) in places.iter().enumerate() {
         cancel.check()?;
         let Some(total) = cell.fill(r, t0) else { continue };
         if best.is_none_or(|(sse, _)| total < sse) {
             best = Some((total, at));
         }
-        // The sum without one value follows from its residual and leverage (Allen 1974).
-        for ((e, h), held) in cell.rows().zip(&mut held) {
-            let free = 1.0 - h;
-            if free > 1e-9 {
-                let sum = total - e * e / free;
-                if sum < held.0 {
-                    *held = (sum, Some(e / free));
-                }
-            }
-        }
     }
     let Some((_, at)) = best else { return Ok(None) };
-    let Some((r, t0)) = refine(&mut cell, (places[at], first, span), FINEST, cancel)? else {
+    let Some((r, t0)) = refine(&mut cell, (places[at], first, span), cancel)? else {
         return Ok(None);
     };
     let Some(sse) = cell.fill(r, t0) else { return Ok(None) };
-    let shared = match form {
-        Form::Straight | Form::Still => 0,
-        Form::Monomolecular if level => 1,
-        _ => 2,
-    };
+    let shared = form.shared_numbers(level);
     let numbers = all.len() * if level { 2 } else { 1 } + shared;
     #[expect(clippy::cast_possible_wrap, reason = "counts of values")]
     let freedom = values as i64 - numbers as i64;
@@ -278,12 +270,10 @@ pub fn fit_shared(
         sse,
         freedom,
         on_bound,
-        left_out: Vec::with_capacity(all.len()),
+        left_out: Vec::new(),
     };
-    let mut held = held.into_iter().map(|h| h.1);
-    fit.left_out.extend(all.iter().map(|s| held.by_ref().take(s.values.len()).collect()));
     if freedom > 0 && !on_bound {
-        fit.errors = errors(&fit, all, shared);
+        fit.errors = Linearised::new(&fit, all).and_then(|l| l.errors(&fit));
     }
     Ok(Some(fit))
 }
@@ -293,7 +283,7 @@ pub(crate) fn curves_of(form: Form, level: bool) -> u64 {
     grid(form, level, 0.0, 1.0).len() as u64
 }
 
-/// How many curves of the grid [`choose`] compares with each value.
+/// How many curves of the grid [`crate::choose`] compares with each value.
 pub(crate) fn curves_compared() -> u64 {
     let laws = Form::LAWS.iter().map(|&form| curves_of(form, false) + curves_of(form, true));
     laws.sum::<u64>() + curves_of(Form::Straight, true)
@@ -315,51 +305,13 @@ fn grid(form: Form, level: bool, first: f64, span: f64) -> Vec<[f64; 2]> {
     rates.flat_map(|r| times.iter().map(move |&t0| [r, t0])).collect()
 }
 
-/// How finely a compass search ends, of the logarithm of r: for what is told, and for what is left out.
+/// How finely the compass search ends, of the logarithm of r.
 const FINEST: f64 = 1e-10;
-const FINE: f64 = 1e-5;
-
-/// Up to so many values each is left out exactly: rate and time are sought anew without it. Of more, one hardly moves them, and
-/// the least of the grid without it is taken.
-const LEFT_OUT_EXACTLY: usize = 40;
-
-/// Leaves each value out exactly, where they are few: the rest is fitted anew, from where all of them are and from the grid's
-/// place without it.
-fn leave_out(fit: &mut SharedFit, all: &[Series], cancel: &CancelToken) -> Result<(), Cancelled> {
-    let values: usize = all.iter().map(|s| s.values.len()).sum();
-    if values > LEFT_OUT_EXACTLY || fit.form == Form::Straight {
-        return Ok(());
-    }
-    let first = all.iter().filter_map(|s| s.days.first()).copied().fold(f64::INFINITY, f64::min);
-    let last = all.iter().filter_map(|s| s.days.last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut rest = all.to_vec();
-    for (k, series) in all.iter().enumerate() {
-        for i in 0..series.values.len() {
-            if fit.left_out[k][i].is_none() {
-                continue;
-            }
-            let (day, value) = (rest[k].days.remove(i), rest[k].values.remove(i));
-            let group = Group::new(&rest);
-            let mut cell = Cell::new(fit.form, fit.level, &group);
-            let refined = refine(&mut cell, ([fit.r, fit.t0], first, last - first), FINE, cancel)?;
-            if let Some((r, t0)) = refined
-                && cell.fill(r, t0).is_some()
-            {
-                let [a, b] = cell.linear[k];
-                fit.left_out[k][i] = Some(value - a - b * fit.form.curve(r, t0, day));
-            }
-            rest[k].days.insert(i, day);
-            rest[k].values.insert(i, value);
-        }
-    }
-    Ok(())
-}
 
 /// A compass search within the grid's bounds: in the logarithm of r, and in t0.
 fn refine(
     cell: &mut Cell<'_>,
     (start, first, span): ([f64; 2], f64, f64),
-    finest: f64,
     cancel: &CancelToken,
 ) -> Result<Option<(f64, f64)>, Cancelled> {
     let (form, level) = (cell.form, cell.level);
@@ -393,73 +345,125 @@ fn refine(
             Some((sse, new_r, new_t0)) if sse < best => (best, r, t0) = (sse, new_r, new_t0),
             _ => step = [step[0] * 0.5, step[1] * 0.5],
         }
-        if step[0] < finest {
+        if step[0] < FINEST {
             break;
         }
     }
     Ok(Some((r, t0)))
 }
 
-/// Standard errors by the linearised least squares of all numbers together.
-fn errors(fit: &SharedFit, all: &[Series], shared: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
-    let variance = fit.sse / fit.freedom as f64;
-    let mut normal = [[0.0; 2]; 2];
-    let mut parts = Vec::with_capacity(all.len());
-    for (series, &[_, b]) in all.iter().zip(&fit.linear) {
+/// One series of a fit whose numbers change a little.
+struct LinearPart {
+    curve: Vec<f64>,
+    centre: f64,
+    square: f64,
+    /// What A and B take up of the curve's change with r and t0.
+    taken: [[f64; 2]; 2],
+    /// What they cannot take up, one a value.
+    rest: [Vec<f64>; 2],
+}
+
+/// The least squares of all numbers together, linear near the fit.
+pub(crate) struct Linearised {
+    parts: Vec<LinearPart>,
+    /// Of the normal matrix of r and t0.
+    inverse: [[f64; 2]; 2],
+}
+
+impl Linearised {
+    /// `None` where rate and time cannot be told apart.
+    pub(crate) fn new(fit: &SharedFit, all: &[Series]) -> Option<Self> {
+        let shared = fit.form.shared_numbers(fit.level);
+        let parts: Vec<LinearPart> =
+            all.iter().zip(&fit.linear).map(|(s, &[_, b])| LinearPart::new(fit, s, b)).collect();
+        let mut normal = [[0.0; 2]; 2];
+        for part in &parts {
+            for (i, row) in normal.iter_mut().enumerate().take(shared) {
+                for (j, cell) in row.iter_mut().enumerate().take(shared) {
+                    *cell += part.rest[i].iter().zip(&part.rest[j]).map(|(x, y)| x * y).sum::<f64>();
+                }
+            }
+        }
+        let inverse = match shared {
+            0 => [[0.0; 2]; 2],
+            1 => [[1.0 / normal[0][0], 0.0], [0.0, 0.0]],
+            _ => {
+                let det = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
+                // Rate and time that cannot be told apart are not determined.
+                if det <= 1e-9 * normal[0][0] * normal[1][1] {
+                    return None;
+                }
+                [[normal[1][1] / det, -normal[0][1] / det], [-normal[1][0] / det, normal[0][0] / det]]
+            }
+        };
+        Some(Self { parts, inverse })
+    }
+
+    fn quadratic(&self, v: [f64; 2]) -> f64 {
+        let i = self.inverse;
+        v[0] * (i[0][0] * v[0] + i[0][1] * v[1]) + v[1] * (i[1][0] * v[0] + i[1][1] * v[1])
+    }
+
+    fn errors(&self, fit: &SharedFit) -> Option<SharedErrors> {
+        let variance = fit.sse / fit.freedom as f64;
+        let start = fit.form.curve(fit.r, fit.t0, 0.0);
+        let by_curve = slopes_at(fit.form, fit.r, fit.t0, 0.0);
+        // u A + v B, and how it changes with the curve by itself.
+        let of = |part: &LinearPart, b: f64, u: f64| {
+            [(1.0, [0.0; 2]), (start, by_curve)].map(|(v, direct)| {
+                let level = if fit.level { u * u / part.curve.len() as f64 } else { 0.0 };
+                let own = level + (v - u * part.centre) * (v - u * part.centre) / part.square;
+                let by_shared = [0, 1].map(|k| b * direct[k] - u * part.taken[k][0] - v * part.taken[k][1]);
+                (variance * (own + self.quadratic(by_shared))).sqrt()
+            })
+        };
+        let each = |u: f64| -> Vec<[f64; 2]> {
+            self.parts.iter().zip(&fit.linear).map(|(part, l)| of(part, l[1], u)).collect()
+        };
+        let one_if = |is: bool| if is { 1.0 } else { 0.0 };
+        let errors = SharedErrors {
+            states: each(one_if(fit.whole_level())),
+            values: each(one_if(fit.level)),
+            rate: (variance * self.inverse[0][0]).sqrt(),
+            time: (variance * self.inverse[1][1]).sqrt(),
+        };
+        let numbers = || errors.states.iter().chain(&errors.values).flatten();
+        let is_finite = numbers().chain([&errors.rate, &errors.time]).all(|x| x.is_finite());
+        is_finite.then_some(errors)
+    }
+
+    /// How much of each value the fit takes up: all of it at 1.
+    pub(crate) fn leverage(&self, fit: &SharedFit) -> Vec<Vec<f64>> {
+        let of = |part: &LinearPart| {
+            let level = if fit.level { 1.0 / part.curve.len() as f64 } else { 0.0 };
+            let rows = part.curve.iter().zip(&part.rest[0]).zip(&part.rest[1]);
+            rows.map(|((s, &by_r), &by_t0)| {
+                level + (s - part.centre) * (s - part.centre) / part.square + self.quadratic([by_r, by_t0])
+            })
+            .collect()
+        };
+        self.parts.iter().map(of).collect()
+    }
+}
+
+impl LinearPart {
+    fn new(fit: &SharedFit, series: &Series, b: f64) -> Self {
         let curve: Vec<f64> = series.days.iter().map(|&t| fit.form.curve(fit.r, fit.t0, t)).collect();
         let n = curve.len() as f64;
         let centre = if fit.level { curve.iter().sum::<f64>() / n } else { 0.0 };
         let square: f64 = curve.iter().map(|s| (s - centre) * (s - centre)).sum();
-        // What A and B cannot take up of the curve's change with r and t0, and what they take up.
         let slopes = slopes(fit.form, fit.r, fit.t0, &series.days);
         let mut taken = [[0.0; 2]; 2];
-        let mut rest = [Vec::new(), Vec::new()];
-        for k in 0..shared {
+        let mut rest = [vec![0.0; curve.len()], vec![0.0; curve.len()]];
+        for k in 0..fit.form.shared_numbers(fit.level) {
             let mean = if fit.level { slopes[k].iter().sum::<f64>() / n } else { 0.0 };
             let by_b = slopes[k].iter().zip(&curve).map(|(d, s)| d * (s - centre)).sum::<f64>() / square;
             taken[k] = [b * (mean - by_b * centre), b * by_b];
             rest[k] =
                 slopes[k].iter().zip(&curve).map(|(d, s)| b * (d - mean - by_b * (s - centre))).collect();
         }
-        for i in 0..shared {
-            for j in 0..shared {
-                normal[i][j] += rest[i].iter().zip(&rest[j]).map(|(x, y)| x * y).sum::<f64>();
-            }
-        }
-        // A state is u A + v B; with the curve it also changes by itself.
-        let start = fit.form.curve(fit.r, fit.t0, 0.0);
-        let by_curve = slopes_at(fit.form, fit.r, fit.t0, 0.0);
-        let whole = fit.whole_level();
-        parts.push([(1.0, [0.0; 2]), (start, by_curve)].map(|(v, direct)| {
-            let u = if whole { 1.0 } else { 0.0 };
-            let level = if fit.level { u * u / n } else { 0.0 };
-            let own = level + (v - u * centre) * (v - u * centre) / square;
-            (own, [0, 1].map(|k| b * direct[k] - u * taken[k][0] - v * taken[k][1]))
-        }));
+        Self { curve, centre, square, taken, rest }
     }
-    let inverse = match shared {
-        0 => [[0.0; 2]; 2],
-        1 => [[1.0 / normal[0][0], 0.0], [0.0, 0.0]],
-        _ => {
-            let det = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
-            // Rate and time that cannot be told apart are not determined.
-            if det <= 1e-9 * normal[0][0] * normal[1][1] {
-                return None;
-            }
-            [[normal[1][1] / det, -normal[0][1] / det], [-normal[1][0] / det, normal[0][0] / det]]
-        }
-    };
-    let quadratic = |v: [f64; 2]| {
-        v[0] * (inverse[0][0] * v[0] + inverse[0][1] * v[1])
-            + v[1] * (inverse[1][0] * v[0] + inverse[1][1] * v[1])
-    };
-    let linear: Vec<[f64; 2]> = parts
-        .iter()
-        .map(|states| states.map(|(own, by_shared)| (variance * (own + quadratic(by_shared))).sqrt()))
-        .collect();
-    let both = [(variance * inverse[0][0]).sqrt(), (variance * inverse[1][1]).sqrt()];
-    let finite = linear.iter().flatten().chain(&both).all(|x| x.is_finite());
-    finite.then_some((linear, both))
 }
 
 /// How the curve changes with r and with t0, at each day.
@@ -502,93 +506,13 @@ impl SharedFit {
 
     /// Root of the mean square of what [`left_out`](Self::left_out) holds; `None` where it holds nothing.
     pub fn loo_rmse(&self) -> Option<f64> {
-        let rows: Vec<f64> = self.left_out.iter().flatten().flatten().copied().collect();
-        (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
+        rms(self.left_out.iter().flatten().flatten().copied())
     }
 }
 
-/// The law that predicts series best, and what it was chosen against.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
-    /// The best law, or the straight lines.
-    pub fit: SharedFit,
-    /// The days determine it: it predicts values that were left out better than straight lines and than the mean of the
-    /// others, each by more than one standard error of that difference, its rate is two standard errors from 0, and it has a
-    /// degree of freedom and is on no bound.
-    pub determined: bool,
-    /// Leave-one-out error of straight lines.
-    pub straight_rmse: Option<f64>,
-}
-
-/// Chooses by leave-one-out among the three laws, with and without a level, and straight lines.
-///
-/// `None` without a series of 2 days that differ.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn choose(all: &[Series], cancel: &CancelToken) -> Result<Option<Choice>, Cancelled> {
-    let Some(straight) = fit_shared(Form::Straight, true, all, cancel)? else { return Ok(None) };
-    let straight_rmse = straight.loo_rmse();
-    let still = left_out_of_means(all);
-    let mut fits = Vec::new();
-    for (&form, level) in Form::LAWS.iter().flat_map(|form| [(form, false), (form, true)]) {
-        fits.extend(fit_shared(form, level, all, cancel)?);
-    }
-    // A rate that is not two standard errors from 0 tells no curve from a line.
-    fits.retain(|f: &SharedFit| {
-        let sure = f.errors.as_ref().is_some_and(|(_, [r, _])| f.r > 2.0 * r);
-        f.freedom > 0 && !f.on_bound && sure
-    });
-    for fit in &mut fits {
-        leave_out(fit, all, cancel)?;
-    }
-    let able = fits.into_iter().filter(|f| {
-        let own = || f.left_out.iter().flatten().copied();
-        earns(own(), straight.left_out.iter().flatten()) && earns(own(), still.iter().flatten())
-    });
-    let loo = |f: &SharedFit| f.loo_rmse().unwrap_or(f64::INFINITY);
-    Ok(Some(match able.min_by(|a, b| loo(a).total_cmp(&loo(b))) {
-        Some(fit) => Choice { fit, determined: true, straight_rmse },
-        None => Choice { fit: straight, determined: false, straight_rmse },
-    }))
-}
-
-/// Each value less the mean of the others of its series: what no growth predicts.
-fn left_out_of_means(all: &[Series]) -> Vec<Vec<Option<f64>>> {
-    all.iter().map(left_out_of_mean).collect()
-}
-
-pub(crate) fn left_out_of_mean(s: &Series) -> Vec<Option<f64>> {
-    let n = s.values.len() as f64;
-    let sum: f64 = s.values.iter().sum();
-    s.values.iter().map(|y| (n > 1.5).then(|| y - (sum - y) / (n - 1.0))).collect()
-}
-
-/// Each value less the one before it, the first less the next: what the last value predicts.
-pub(crate) fn left_out_of_last(s: &Series) -> Vec<Option<f64>> {
-    let v = &s.values;
-    let other = |i: usize| if i == 0 { v.get(1) } else { v.get(i - 1) };
-    (0..v.len()).map(|i| other(i).map(|o| v[i] - o)).collect()
-}
-
-/// The mean of the squared errors falls by more than its standard error.
-pub(crate) fn earns<'a>(
-    law: impl Iterator<Item = Option<f64>>,
-    rival: impl Iterator<Item = &'a Option<f64>>,
-) -> bool {
-    let gains: Vec<f64> = law.zip(rival).filter_map(|(a, b)| Some((*b)? * (*b)? - a? * a?)).collect();
-    let n = gains.len() as f64;
-    if gains.len() < 3 {
-        return false;
-    }
-    let mean = gains.iter().sum::<f64>() / n;
-    let spread = gains.iter().map(|g| (g - mean) * (g - mean)).sum::<f64>() / (n * (n - 1.0));
-    mean > spread.sqrt()
-}
-
-/// Root of the mean square of what was left out; `None` where nothing was.
-pub(crate) fn rms_of(errors: &[Option<f64>]) -> Option<f64> {
-    let rows: Vec<f64> = errors.iter().flatten().copied().collect();
+/// Root of the mean square; `None` of nothing.
+pub(crate) fn rms(errors: impl Iterator<Item = f64>) -> Option<f64> {
+    let rows: Vec<f64> = errors.collect();
     (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
 }
 
@@ -600,8 +524,10 @@ mod tests {
         super::fit_shared(form, level, all, &CancelToken::new()).expect("not cancelled")
     }
 
-    fn choose(all: &[Series]) -> Option<Choice> {
-        super::choose(all, &CancelToken::new()).expect("not cancelled")
+    /// Each series is an organ of its own.
+    fn choose(all: &[Series]) -> Option<crate::Choice> {
+        let organs: Vec<usize> = (0..all.len()).collect();
+        crate::choose(all, &organs, &CancelToken::new()).expect("not cancelled")
     }
 
     fn made(
@@ -634,7 +560,7 @@ mod tests {
         // One number is shared by the monomolecular law: three days of six series determine it.
         let all = made(Form::Monomolecular, &[0.0, 1.0, 5.0], &LINEAR, 0.6, 0.0, 0.1, 1);
         let fit = fit_shared(Form::Monomolecular, true, &all).unwrap();
-        let (_, [se, _]) = fit.errors.clone().unwrap();
+        let se = fit.errors.clone().unwrap().rate;
         assert!((fit.r - 0.6).abs() < 3.0 * se && se < 0.06, "{} ± {se}", fit.r);
         assert_eq!(fit.freedom, 5);
         let choice = choose(&all).unwrap();
@@ -648,7 +574,7 @@ mod tests {
             for days in [&[0.0, 1.0, 2.0, 4.0, 6.0, 9.0][..], &[0.0, 2.0, 5.0, 9.0]] {
                 let all = made(form, days, &LINEAR, 0.7, 3.0, 0.15, 7);
                 let fit = fit_shared(form, true, &all).unwrap();
-                let (linear, [r, t0]) = fit.errors.clone().unwrap();
+                let SharedErrors { states: linear, rate: r, time: t0, .. } = fit.errors.clone().unwrap();
                 assert!((fit.r - 0.7).abs() < 3.0 * r, "{form:?} {} ± {r}", fit.r);
                 if form != Form::Monomolecular {
                     assert!((fit.t0 - 3.0).abs() < 3.0 * t0, "{form:?} {} ± {t0}", fit.t0);
@@ -723,29 +649,15 @@ mod tests {
         for (form, level) in [(Form::Logistic, true), (Form::Gompertz, false), (Form::Straight, true)] {
             let mut together = Cell::new(form, level, &group);
             let total = together.fill(0.6, 2.0).unwrap();
-            let rows: Vec<(f64, f64)> = together.rows().collect();
+            let rows = together.residuals.clone();
             let (mut sum, mut alone) = (0.0, Vec::new());
             for one in mixed.chunks(1) {
                 let group = Group::new(one);
                 let mut cell = Cell::new(form, level, &group);
                 sum += cell.fill(0.6, 2.0).unwrap();
-                alone.extend(cell.rows());
+                alone.extend(cell.residuals);
             }
             assert!((sum - total).abs() <= 1e-12 * total && rows == alone, "{form:?}");
         }
-    }
-
-    #[test]
-    fn what_is_left_out_is_predicted_from_the_rest() {
-        let all = made(Form::Monomolecular, &[0.0, 1.0, 5.0, 8.0], &LINEAR[..2], 0.4, 0.0, 0.2, 5);
-        let mut fit = fit_shared(Form::Monomolecular, true, &all).unwrap();
-        leave_out(&mut fit, &all, &CancelToken::new()).unwrap();
-        let mut rest = all.clone();
-        rest[1].days.remove(2);
-        let y = rest[1].values.remove(2);
-        let without = fit_shared(Form::Monomolecular, true, &rest).unwrap();
-        let want = y - without.value(1, 5.0);
-        let got = fit.left_out[1][2].unwrap();
-        assert!((got - want).abs() < 1e-4, "{got} {want}");
     }
 }

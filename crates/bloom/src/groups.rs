@@ -6,7 +6,9 @@
 
 use base::{CancelToken, Counted, Draw, Run, Seed, ops};
 
-use crate::forms::{curves_compared, curves_of, rms_of};
+use crate::forms::{curves_compared, curves_of, rms};
+use crate::left_out::{Sittings, left_out_of_mean};
+use crate::tails::tail_of_f;
 use crate::{
     BloomError, FitError, Form, GrowthLaw, LAW_SCHEMA, Logistic, Quantity, RegionLaw, Series, SharedFit,
     fit_shared,
@@ -95,7 +97,10 @@ pub fn fit_groups(
         return Err(FitError::TooFew { got: pooled.len() }.into());
     };
     let span_days = last_day - first_day;
-    let laws = groups.iter().zip(&pooled).zip(&best).map(|((g, s), fit)| law_of(g, s, fit, span_days));
+    let mut laws = Vec::with_capacity(groups.len());
+    for ((group, series), fit) in groups.iter().zip(&pooled).zip(&best) {
+        laws.push(law_of(group, series, fit, span_days, run.cancel)?);
+    }
     let law = GrowthLaw {
         schema: LAW_SCHEMA.into(),
         name: name.to_owned(),
@@ -103,7 +108,7 @@ pub fn fit_groups(
         span_days,
         time: base::TimeUnit::default(),
         regions: 1,
-        laws: laws.collect(),
+        laws,
     };
     let test = if groups.len() > 1 { test(groups, &pooled, &best, (first_day, seed), run)? } else { None };
     Ok(Groups { law, test })
@@ -162,7 +167,25 @@ fn criterion(fits: &[SharedFit], values: usize) -> f64 {
     n * ops::ln((squares / n).max(f64::MIN_POSITIVE)) + 2.0 * k + few
 }
 
-fn law_of(group: &PlantGroup, series: &Series, fit: &SharedFit, span: f64) -> RegionLaw {
+fn law_of(
+    group: &PlantGroup,
+    series: &Series,
+    fit: &SharedFit,
+    span: f64,
+    cancel: &CancelToken,
+) -> Result<RegionLaw, BloomError> {
+    let one = core::slice::from_ref(series);
+    // A day of a group is left out with all of its plants.
+    let (sittings, mut fit) = (Sittings::new(one, &[0]), fit.clone());
+    sittings.leave_out(&mut fit, one, cancel)?;
+    let mut straight_rmse = None;
+    let mut predicts_better = false;
+    if let Some(mut line) = fit_shared(Form::Straight, true, one, cancel)? {
+        sittings.leave_out(&mut line, one, cancel)?;
+        straight_rmse = line.loo_rmse();
+        predicts_better = sittings.earn(&fit.left_out, &line.left_out)
+            && sittings.earn(&fit.left_out, &[left_out_of_mean(series)]);
+    }
     let at = |day: f64| fit.value(0, day);
     let [_, slope] = fit.linear[0];
     let law = match fit.form {
@@ -175,24 +198,28 @@ fn law_of(group: &PlantGroup, series: &Series, fit: &SharedFit, span: f64) -> Re
     let values = &series.values;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let total: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    let errors = fit.errors.as_ref().map(|(states, both)| [states[0][0], states[0][1], both[0]]);
+    let is_curve = fit.form != Form::Straight;
+    let errors = fit.errors.as_ref().filter(|_| is_curve);
+    let value_errors = errors.map(|e| e.values[0]);
+    let errors = errors.map(|e| [e.states[0][0], e.states[0][1], e.rate]);
     let is_sure = errors.is_some_and(|[_, _, r]| fit.r.abs() > 2.0 * r);
-    RegionLaw {
+    Ok(RegionLaw {
         organ: group.name.clone(),
         region: 0,
         axis: Quantity::Size,
         form: fit.form,
         law,
-        determined: Some(fit.form != Form::Straight && is_sure),
-        straight_rmse: None,
+        determined: Some(is_curve && is_sure && predicts_better),
+        straight_rmse,
         last_rmse: None,
-        standard_errors: errors.filter(|_| fit.form != Form::Straight),
+        standard_errors: errors,
+        value_errors,
         r2: if total > 0.0 { 1.0 - fit.sse / total } else { 1.0 },
         r2_adjusted: None,
-        loo_rmse: rms_of(&fit.left_out[0]),
+        loo_rmse: rms(fit.left_out[0].iter().flatten().copied()),
         days: series.days.clone(),
         values: values.clone(),
-    }
+    })
 }
 
 fn test(
@@ -216,7 +243,7 @@ fn test(
     let (d1, d2) = (f64::from(more), f64::from(left));
     let extra = (squares[0] - squares[1]).max(0.0);
     let f = (extra / d1) / (squares[1] / d2).max(f64::MIN_POSITIVE);
-    let p = incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
+    let p = tail_of_f(f, [d1, d2]);
     let values: u64 = pooled.iter().map(|s| s.values.len() as u64).sum();
     let permuted = permuted(groups, form, squares[1], (first_day, values, seed), run)?;
     Ok(Some(GroupTest { squares, freedom: [more, left], f, p, permuted }))
@@ -272,61 +299,6 @@ fn ways(sizes: &[usize]) -> f64 {
     ways
 }
 
-/// The regularised incomplete beta function, by its continued fraction (Lentz 1976; Press et al. 2007, section 6.4).
-fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
-    if x <= 0.0 || x >= 1.0 {
-        return if x >= 1.0 { 1.0 } else { 0.0 };
-    }
-    let front = ops::exp(ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * ops::ln(x) + b * ops::ln(1.0 - x));
-    if x < (a + 1.0) / (a + b + 2.0) {
-        front * fraction(a, b, x) / a
-    } else {
-        1.0 - front * fraction(b, a, 1.0 - x) / b
-    }
-}
-
-fn fraction(a: f64, b: f64, x: f64) -> f64 {
-    const TINY: f64 = 1e-300;
-    let away = |x: f64| if x.abs() < TINY { TINY } else { x };
-    let mut c = 1.0;
-    let mut d = 1.0 / away(1.0 - (a + b) * x / (a + 1.0));
-    let mut h = d;
-    for m in 1..500 {
-        let m = f64::from(m);
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        for step in [even, odd] {
-            d = 1.0 / away(1.0 + step * d);
-            c = away(1.0 + step / c);
-            h *= d * c;
-        }
-        if (d * c - 1.0).abs() < 1e-14 {
-            break;
-        }
-    }
-    h
-}
-
-/// The logarithm of the gamma function of a positive number (Lanczos 1964).
-fn ln_gamma(x: f64) -> f64 {
-    const G: [f64; 6] = [
-        76.180_091_729_471_46,
-        -86.505_320_329_416_77,
-        24.014_098_240_830_91,
-        -1.231_739_572_450_155,
-        0.001_208_650_973_866_179,
-        -0.000_005_395_239_384_953,
-    ];
-    let base = x + 5.5;
-    let mut sum = 1.000_000_000_190_015;
-    let mut at = x;
-    for g in G {
-        at += 1.0;
-        sum += g / at;
-    }
-    (x + 0.5) * ops::ln(base) - base + ops::ln(2.506_628_274_631_000_5 * sum / x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -353,16 +325,6 @@ mod tests {
     /// Plants change their groups some 40 times, which takes a second and not ten.
     fn brief() -> Run<'static> {
         Run { budget: base::Budget { times: 0.03, raise: None }, ..Run::plain() }
-    }
-
-    #[test]
-    fn the_tails_of_f_are_those_of_tables() {
-        // 5 % points of F (Snedecor and Cochran 1989).
-        for (d1, d2, f) in [(1.0, 10.0, 4.965), (3.0, 20.0, 3.098), (6.0, 60.0, 2.254)] {
-            let p = incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f));
-            assert!((p - 0.05).abs() < 1e-4, "{d1} {d2}: {p}");
-        }
-        assert_eq!((incomplete_beta(2.0, 3.0, 0.0), incomplete_beta(2.0, 3.0, 1.0)), (0.0, 1.0));
     }
 
     #[test]

@@ -10,7 +10,10 @@
 //! | `obb` | [`Obb`]: the box of an organ |
 //! | `lattice` | [`Lattice`], [`Weights`]: Bernstein free-form deformation |
 //! | `logistic` | [`fit_logistic`]: K, p0, r with their errors |
-//! | `forms` | [`choose`]: one law for several series, if they determine one |
+//! | `forms` | [`fit_shared`]: one curve for several series |
+//! | `left_out` | what is left of a day of an organ without it |
+//! | `choice` | [`choose`]: one law for several series, if they determine one |
+//! | `tails` | how often chance gives as much |
 //! | `clean` | [`clean`]: stray points and the ground go |
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
 //! | `blades` | [`blades`]: one leaf, or several |
@@ -34,6 +37,7 @@
 
 mod blades;
 mod centre;
+mod choice;
 mod clean;
 mod cluster;
 mod coloured;
@@ -46,6 +50,7 @@ mod groups;
 mod kernel;
 mod lattice;
 mod law;
+mod left_out;
 mod limb;
 mod logistic;
 mod motion;
@@ -60,17 +65,19 @@ mod pose;
 mod register;
 mod segment;
 mod species;
+mod tails;
 mod thin;
 mod trial;
 mod wanted;
 mod whorl;
 
 pub use blades::blades;
+pub use choice::{Choice, choose};
 pub use clean::{CleanSpec, Cleaned, clean, largest_thing, on_table};
 pub use coloured::OrganPoints;
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
-pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
+pub use forms::{Form, Series, SharedErrors, SharedFit, fit_shared};
 pub use groups::{GroupTest, Groups, Permuted, PlantGroup, fit_groups};
 pub use lattice::{Lattice, Weights};
 pub use law::{
@@ -85,7 +92,7 @@ pub use organs::Seat;
 pub use overlap::{PartTriangle, crossed, overlap_share, part_overlap, part_triangles};
 pub use parts::{Achenes, Cluster, ClusterForm, Disc, Foliage, Fruit, Nods, Stamens};
 pub use plot::plot_svg;
-pub use pose::{OrganStep, PoseStep, RigidMotion, Settled, settle};
+pub use pose::{OrganStep, PoseDoubt, PoseStep, RigidMotion, Settled, settle};
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{ScanOrgan, SegmentSpec, match_organs, organ_at, organs, single_organ};
 pub use species::{preset, preset_text};

@@ -4,9 +4,10 @@ use base::Run;
 use glam::DVec3;
 
 use crate::coloured;
+use crate::register::register_organ;
 use crate::{
     BloomError, GrowthLaw, Lattice, Quantity, RegisterSpec, Registration, ScanOrgan, Stage, Weights,
-    match_organs, register,
+    match_organs,
 };
 
 /// How the motion between two shapes is computed.
@@ -73,17 +74,30 @@ pub struct Motion {
     pub residuals: Vec<(String, f64, f64, crate::ShapeError)>,
 }
 
-/// The same plant at two days, its organs brought under the same names: those of the first.
+/// Brings the organs of a day under the names that they have on the days before, in order of days.
 ///
-/// Organs of the second that have no partner keep their name with `new-` before it.
-pub fn name_alike(first: &[ScanOrgan], second: &mut [ScanOrgan], up: DVec3) {
-    let pairs = match_organs(first, second, up);
-    for (j, organ) in second.iter_mut().enumerate() {
+/// Organs are found among those of the day before. What has no partner is `new-` with its own name, or with the next number that no
+/// organ had on any day before, as one name is one organ on all days.
+pub fn name_alike(before: &[Stage], now: &mut [ScanOrgan], up: DVec3) {
+    let Some(last) = before.last().map(|s| s.organs.as_slice()) else { return };
+    let pairs = match_organs(last, now, up);
+    let mut taken: Vec<String> = before.iter().flat_map(|s| &s.organs).map(|o| o.name.clone()).collect();
+    for (j, organ) in now.iter_mut().enumerate() {
         organ.name = match pairs.iter().find(|p| p.1 == j) {
-            Some(&(i, _)) => first[i].name.clone(),
-            None => format!("new-{}", organ.name.trim_start_matches("new-")),
+            Some(&(i, _)) => last[i].name.clone(),
+            None => unused(organ.name.trim_start_matches("new-"), &taken),
         };
+        taken.push(organ.name.clone());
     }
+}
+
+/// `new-NAME`, with another number where that is taken.
+fn unused(name: &str, taken: &[String]) -> String {
+    let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let own = core::iter::once(format!("new-{name}"));
+    let numbered = (1..=taken.len() + 1).map(|k| format!("new-{kind}{k}"));
+    let mut free = own.chain(numbered).filter(|name| !taken.contains(name));
+    free.next().unwrap_or_else(|| format!("new-{name}"))
 }
 
 impl Motion {
@@ -150,7 +164,7 @@ impl Motion {
         let mut segments = Vec::new();
         for (k, stage) in stages.iter().enumerate().skip(begin + 1) {
             let Some(next) = stage.organs.iter().find(|o| o.name == organ.name) else { continue };
-            let fit = register(&points, base, &next.points, next.base, &self.spec.register, run)?;
+            let fit = register_organ(organ, (&points, base), next, &self.spec.register, run)?;
             let weights = Weights::new(&fit.obb, self.spec.register.counts, &points)?;
             let along = places(&fit, &points, &organ.way);
             self.residuals.push((organ.name.clone(), day(at), day(k), fit.residual));
@@ -393,6 +407,31 @@ mod tests {
         assert!(reach(0.0) < 0.003 && reach(0.0) < reach(1.0) && reach(1.0) < reach(2.0), "it grows");
         let end = motion.at(2.0, &run).unwrap();
         assert!(end[motion.organs[1].1.clone()].iter().zip(&new.points).all(|(a, b)| a.distance(*b) < 1e-12));
+    }
+
+    /// An organ that comes on a third day must not get the name of another that came on the second.
+    #[test]
+    fn one_name_is_one_organ_on_all_days() {
+        let at = |name: &str, tip: DVec3| ScanOrgan {
+            name: name.into(),
+            points: vec![tip; 9],
+            tip,
+            ..ScanOrgan::default()
+        };
+        let stem = || at("stem", DVec3::Y);
+        let day = |day: f64, organs: Vec<ScanOrgan>| Stage { day, organs };
+        let first = day(0.0, vec![stem(), at("leaf-1", DVec3::X)]);
+        let second = day(1.0, vec![stem(), at("leaf-1", DVec3::X), at("new-leaf-2", DVec3::NEG_X)]);
+        // The larger of its leaves is the new one of the day before, and one more is new.
+        let mut third =
+            vec![stem(), at("leaf-1", DVec3::NEG_X), at("leaf-3", DVec3::X), at("leaf-2", DVec3::Z * 3.0)];
+        name_alike(&[first.clone(), second.clone()], &mut third, DVec3::Y);
+        let names: Vec<&str> = third.iter().map(|o| o.name.as_str()).collect();
+        assert_eq!(names, ["stem", "new-leaf-2", "leaf-1", "new-leaf-1"]);
+        // Nor that of an organ that went before.
+        let mut fourth = vec![stem(), at("leaf-1", DVec3::X), at("leaf-2", DVec3::NEG_Z * 9.0)];
+        name_alike(&[second, first], &mut fourth, DVec3::Y);
+        assert_eq!((fourth[1].name.as_str(), fourth[2].name.as_str()), ("leaf-1", "new-leaf-1"));
     }
 
     #[test]

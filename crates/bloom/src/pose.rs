@@ -4,6 +4,7 @@ use base::Run;
 use geom::{best_rotation, extent};
 use glam::{DQuat, DVec3};
 
+use crate::register::register_organ;
 use crate::thin::thin;
 use crate::{
     BloomError, GrowthLaw, Motion, MotionSpec, OrganPoints, RegisterSpec, ScanOrgan, ShapeError, Stage,
@@ -116,6 +117,55 @@ pub struct PoseStep {
     pub vanished: Vec<String>,
 }
 
+/// Turns between two scans beyond which organs may have been taken for one another.
+struct Believable {
+    /// A pot is seldom turned by more, and leaves are not looked for beyond it ([`crate::match_organs`]). Degrees.
+    plant_deg: f64,
+    /// One organ by itself, in the frame of the plant. A seed leaf swings by 34 degrees in a night. Degrees.
+    organ_deg: f64,
+    /// Half of the organs, each by itself. Degrees.
+    most_organs_deg: f64,
+}
+
+const BELIEVABLE: Believable = Believable { plant_deg: 60.0, organ_deg: 60.0, most_organs_deg: 40.0 };
+
+/// Why it may be that organs of two scans were taken for one another.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PoseDoubt {
+    /// The whole plant turned far.
+    Plant {
+        /// By how much, degrees.
+        turn_deg: f64,
+    },
+    /// What is left when the turn of the plant is taken off are organs that turned far, each its own way.
+    Organs {
+        /// The one that turned farthest.
+        organ: String,
+        /// By how much, degrees.
+        turn_deg: f64,
+    },
+}
+
+impl PoseStep {
+    /// Whether organs may have been taken for one another between the two scans, or the plant was turned so far that they were;
+    /// `None` where fewer than two organs are on both days, as one may turn as it likes.
+    pub fn doubt(&self) -> Option<PoseDoubt> {
+        if self.organs.len() < 2 {
+            return None;
+        }
+        let degrees = |turn: &RigidMotion| turn.angle() * 180.0 / base::ops::PI;
+        let turns = || self.organs.iter().map(|o| degrees(&o.pose));
+        let far = turns().filter(|&turn| turn > BELIEVABLE.most_organs_deg).count();
+        let farthest = self.organs.iter().max_by(|a, b| a.pose.angle().total_cmp(&b.pose.angle()))?;
+        let turn_deg = degrees(&farthest.pose);
+        if turn_deg > BELIEVABLE.organ_deg || 2 * far > self.organs.len() {
+            return Some(PoseDoubt::Organs { organ: farthest.organ.clone(), turn_deg });
+        }
+        let turn_deg = degrees(&self.plant);
+        (turn_deg > BELIEVABLE.plant_deg).then_some(PoseDoubt::Plant { turn_deg })
+    }
+}
+
 /// Scans in the frame of the plant, and the pose of the plant on each day.
 #[derive(Clone, Debug)]
 pub struct Settled {
@@ -148,7 +198,7 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
         let mut found: Vec<(&ScanOrgan, Vec<Places>, ShapeError)> = Vec::new();
         for organ in &a.organs {
             let Some(next) = b.organs.iter().find(|o| o.name == organ.name) else { continue };
-            let fit = register(&organ.points, organ.base, &next.points, next.base, spec, run)?;
+            let fit = register_organ(organ, (&organ.points, organ.base), next, spec, run)?;
             let rows = thin(&organ.points, SAMPLE);
             let points: Vec<DVec3> = rows.into_iter().map(|i| organ.points[i as usize]).collect();
             let moved = Weights::new(&fit.obb, spec.counts, &points)?.apply(&fit.last, run)?;
@@ -301,4 +351,43 @@ fn stride(small: &[DVec3], whole: &[DVec3]) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the number of points")]
     let step = (1.0 / (share * share).max(1e-9)).min(small.len() as f64).max(1.0) as usize;
     step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(plant_deg: f64, organs_deg: &[f64]) -> PoseStep {
+        let turned = |degrees: f64| RigidMotion {
+            turn: base::turn::about(DVec3::Y, degrees * base::ops::PI / 180.0),
+            ..RigidMotion::REST
+        };
+        let organ = |(k, &degrees): (usize, &f64)| OrganStep {
+            organ: format!("leaf-{k}"),
+            pose: turned(degrees),
+            scale: 1.0,
+            shape_m: 0.0,
+            residual: ShapeError::default(),
+        };
+        PoseStep {
+            from_day: 0.0,
+            to_day: 1.0,
+            plant: turned(plant_deg),
+            organs: organs_deg.iter().enumerate().map(organ).collect(),
+            appeared: vec![],
+            vanished: vec![],
+        }
+    }
+
+    #[test]
+    fn a_plant_that_turned_far_or_organs_that_disagree_are_doubted() {
+        assert_eq!(step(34.0, &[5.0, 29.0, 34.0]).doubt(), None, "leaves that swing by day and night");
+        assert!(
+            matches!(step(124.0, &[5.0, 9.0]).doubt(), Some(PoseDoubt::Plant { turn_deg }) if turn_deg > 123.0)
+        );
+        let far = step(34.0, &[3.0, 86.0, 18.0]).doubt();
+        assert!(matches!(&far, Some(PoseDoubt::Organs { organ, .. }) if organ == "leaf-1"), "{far:?}");
+        assert!(step(20.0, &[45.0, 51.0, 12.0]).doubt().is_some(), "most of them");
+        assert_eq!(step(0.0, &[150.0]).doubt(), None, "a petal by itself turns as it likes");
+    }
 }

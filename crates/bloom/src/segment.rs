@@ -4,6 +4,7 @@
 //! Reeb graph); its branches are organs.
 
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
 use base::{CancelToken, Cancelled, Run};
 use geom::{KdTree, Step, Voxels};
@@ -28,6 +29,9 @@ pub struct ScanOrgan {
     pub base: DVec3,
     /// Its farthest place along the surface.
     pub tip: DVec3,
+    /// Of a model the corners of its triangles among the points; else empty. Models of equal triangles have the same vertices in the
+    /// same order, and need not be searched for like places.
+    pub faces: Arc<[[u32; 3]]>,
 }
 
 impl ScanOrgan {
@@ -37,6 +41,11 @@ impl ScanOrgan {
         let own: Vec<[u8; 3]> = self.rows.iter().filter_map(|&row| colors.get(row).copied()).collect();
         self.colors = if own.len() == self.points.len() { own } else { Vec::new() };
         self
+    }
+
+    /// Whether each point of this organ is that of the other in the same row.
+    pub(crate) fn shares_vertices(&self, other: &Self) -> bool {
+        !self.faces.is_empty() && self.points.len() == other.points.len() && self.faces == other.faces
     }
 
     /// Rows of `points` by region: equal parts of the way from base to tip, base first.

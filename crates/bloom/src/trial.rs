@@ -4,9 +4,10 @@ use base::{CancelToken, Run};
 use geom::{KdTree, best_rotation};
 use glam::DVec3;
 
+use crate::register::register_organ;
 use crate::{
     BloomError, GrowthLaw, Lattice, LawSpec, MotionSpec, RegisterSpec, RigidMotion, Settled, ShapeError,
-    Stage, Weights, compare, fit_stages, name_alike, register, settle,
+    Stage, Weights, compare, fit_stages, name_alike, settle,
 };
 
 /// A way to say what a day looks like.
@@ -87,7 +88,7 @@ pub fn leave_one_out(
         if let Some(up) = up {
             for later in k.max(1)..rest.len() {
                 let (before, now) = rest.split_at_mut(later);
-                name_alike(&before[later - 1].organs, &mut now[0].organs, up);
+                name_alike(before, &mut now[0].organs, up);
             }
         }
         out.push(trial(&rest, &stages[k], law, spec, run)?);
@@ -154,7 +155,7 @@ fn straight(
     let mut pairs = Vec::new();
     for organ in &near.organs {
         let Some(other) = far.organs.iter().find(|o| o.name == organ.name) else { continue };
-        let fit = register(&organ.points, organ.base, &other.points, other.base, spec, run)?;
+        let fit = register_organ(organ, (&organ.points, organ.base), other, spec, run)?;
         let weights = Weights::new(&fit.obb, spec.counts, &organ.points)?;
         let there = weights.apply(&fit.last, run)?;
         pairs.extend(organ.points.iter().copied().zip(there));

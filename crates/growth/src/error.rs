@@ -291,6 +291,14 @@ pub enum RuleFault {
         /// How many numbers it takes.
         numbers: usize,
     },
+    /// A draw from too few or too many quantiles.
+    #[error("`drawn` needs 2 to {most} numbers, not {count}")]
+    Quantiles {
+        /// How many there are.
+        count: usize,
+        /// The most.
+        most: usize,
+    },
 }
 
 /// Modules as a sentence names them.
@@ -388,4 +396,5 @@ base::coded!(RuleFault {
     Self::Unknown(name) => "rule-unknown" { name },
     Self::NotCalled(name) => "rule-not-called" { name },
     Self::Call { name, numbers } => "rule-call" { name, numbers },
+    Self::Quantiles { count, most } => "rule-quantiles" { count, most },
 });

@@ -22,6 +22,7 @@
 //! | `scars` | stubs, knots, burls, hollows and broken limbs on stems |
 //! | `surface_roots` | roots that run along the ground from the foot of a stem |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
+//! | `species` | measured trees → rules whose trees branch as they do, and how well they agree |
 //! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
 //! | `tree` | the whole way: [`grow`] |
 
@@ -48,6 +49,7 @@ mod sieve;
 mod skeleton;
 mod solid;
 mod spec;
+mod species;
 mod surface_roots;
 mod tree;
 mod tropism;
@@ -72,6 +74,10 @@ pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use set_down::SetDown;
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
+pub use species::{
+    Agreement, FittedSpecies, OrderTraits, SpeciesError, SpeciesLimits, Trait, Traits, Unfitted, agree,
+    fit_species,
+};
 pub use tree::{FlowerPlace, Grown, GrowthTally, grow};
 pub use tropism::Tropism;
 pub use variation::VariationSpec;

@@ -84,6 +84,14 @@ impl LeafProfile {
         Ok(Rays::side_by_side(VEINS, marks, 0.5 * widest, place))
     }
 
+    /// By how much [`rays`](Self::rays) stretches the places of the widths, so that their whole is the midrib's length: 1 where the
+    /// two agree. The area grows by as much. Not finite, or 0, for what makes no leaf.
+    pub fn stretch(&self) -> f64 {
+        let line: Vec<DVec3> = self.midrib.iter().map(|p| p.extend(0.0)).collect();
+        let span = self.width.last().zip(self.width.first()).map_or(0.0, |(last, first)| last.0 - first.0);
+        geom::polyline_length3(&line) / span
+    }
+
     /// The point of the midrib at `s` from its base.
     fn at(&self, s: f64) -> DVec2 {
         crate::graph::along(&self.midrib, s).0
@@ -120,6 +128,20 @@ mod tests {
         assert!((across[0].distance(across[10]) - want).abs() < 1e-12, "{across:?}");
         assert!(across[0].z > 0.0, "the right margin is at +z");
         assert!(crate::RayLeaf::new(&rays, crate::ThicknessRule::Diameter).is_ok());
+    }
+
+    #[test]
+    fn widths_that_are_stretched_to_the_midrib_are_told() {
+        assert!((blade().stretch() - 1.0).abs() < 1e-12);
+        let mut short = blade();
+        short.width.iter_mut().for_each(|w| w.0 *= 0.5);
+        assert!((short.stretch() - 2.0).abs() < 1e-12);
+        let area = |leaf: &LeafProfile| {
+            let rays = leaf.rays(40).unwrap().rays;
+            let width = |k: usize| rays[0].points[k].distance(rays[10].points[k]);
+            (0..40).map(width).sum::<f64>() * leaf.stretch().max(1.0)
+        };
+        assert!(area(&short) > 1.9 * area(&blade()));
     }
 
     #[test]

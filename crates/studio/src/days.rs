@@ -81,9 +81,9 @@ impl ScannedDays {
         }
         for k in 1..stages.len() {
             let (before, now) = stages.split_at_mut(k);
-            let (Some(before), Some(now)) = (before.last(), now.first_mut()) else { continue };
+            let Some(now) = now.first_mut() else { continue };
             if now.organs.len() > 1 {
-                bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+                bloom::name_alike(before, &mut now.organs, DVec3::Y);
             }
         }
         Ok(Self { settled: bloom::settle(&stages, &RegisterSpec::default(), run)? })

@@ -19,6 +19,7 @@ mod settings;
 mod shape;
 mod shared;
 mod sketch;
+mod species;
 mod structure;
 
 pub(crate) use bloom::{BloomAtArgs, BloomCommand, BloomRunArgs, FitArgs, FrameWord, ScanTextureWord};
@@ -40,6 +41,7 @@ pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{AxesArgs, CheckArgs, CommonArgs, PackWord, PictureArgs, SkinArgs};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
+pub(crate) use species::{SpeciesCommand, SpeciesFitArgs};
 pub(crate) use structure::StructureArgs;
 
 use clap::{Args, Parser, Subcommand};
@@ -128,6 +130,9 @@ pub(crate) enum Command {
     /// Grow organs through scans of several days; flowers that open
     #[command(subcommand)]
     Bloom(BloomCommand),
+    /// Make a species of measured trees
+    #[command(subcommand)]
+    Species(SpeciesCommand),
     /// Open the Studio: draw on the left, see the plant grow on the right
     ///
     /// Serves the built Studio on 127.0.0.1, to this machine's own browser only, and opens it. Nothing is sent

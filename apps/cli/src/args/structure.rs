@@ -76,7 +76,7 @@ impl LengthUnit {
 }
 
 /// The words of [`LengthUnit`].
-fn length_words() -> impl TypedValueParser<Value = LengthUnit> {
+pub(super) fn length_words() -> impl TypedValueParser<Value = LengthUnit> {
     let words = LENGTHS.map(|(unit, help)| PossibleValue::new(unit.word).help(help));
     let find = |word: String| LENGTHS.iter().map(|l| l.0).find(|u| u.word == word).ok_or("no unit");
     PossibleValuesParser::new(words).try_map(find)

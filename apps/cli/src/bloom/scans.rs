@@ -132,6 +132,7 @@ pub(super) fn run(
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     head.items[0].warnings.extend(no_pace(args, &made.law));
+    head.items[0].warnings.extend(poses::doubts(&made.settled.steps));
     if let Some(item) = item {
         head.items[0].warnings.extend(item.warnings);
         head.items[0].edits = item.edits;

@@ -24,6 +24,7 @@ mod robots;
 mod scans;
 mod shape;
 mod signals;
+mod species;
 mod structure;
 mod times;
 mod tools;

@@ -131,6 +131,7 @@ const VALUES: &[(&str, &str)] = &[
     ("texture", "veins"),
     ("textures", "256"),
     ("thickness", "radius"),
+    ("trees", "40"),
     ("triangles", "100"),
     ("tropism", "0.9"),
     ("turbidity", "5"),
@@ -190,6 +191,7 @@ const USES: &[&[&str]] = &[
     &["scan", "stem.xyz", "-o", "o.glb", "--no-textures"],
     &["scan", "stem.xyz", "--qsm", "o.csv"],
     &["scan", "stem.xyz", "--all", "-o", "folder/", "--no-textures"],
+    &["species", "fit", "trees.csv", "-o", "o.toml"],
     &["info", "box.obj"],
     &["info", "box.glb"],
     &["info", "rose.svg"],
@@ -231,6 +233,7 @@ fn inputs(dir: &Path) {
     write("rose.svg", &FLOWER.replace("</svg>", contour));
     write("classes.csv", "1,axis\n");
     write("growth.csv", "day,size\n0,1\n1,2\n2,3.5\n4,5\n6,5.5\n");
+    write("trees.csv", &crate::species::trees(6, 5));
     write("spec.json", r#"{"height_m": 2}"#);
     let shaded = "pattern = \"shaded\"\ncolor = \"#aa3355\"";
     write("materials.toml", &format!("[leaf]\n{shaded}\n[petal]\n{shaded}\n"));
@@ -305,7 +308,7 @@ fn inputs(dir: &Path) {
 
 /// The options that a command's help lists, and whether a value follows.
 fn listed(dir: &Path, use_: &[&str]) -> Vec<(String, bool)> {
-    let words = if use_[0] == "bloom" { 2 } else { 1 };
+    let words = if ["bloom", "species"].contains(&use_[0]) { 2 } else { 1 };
     let help = good(dir, &[&use_[..words], &["--help"]].concat());
     let option = |line: &str| {
         let line = line.trim_start();

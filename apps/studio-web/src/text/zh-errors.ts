@@ -121,6 +121,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'rule-unknown': '“{name}”不是参数、常量或函数',
   'rule-not-called': '“{name}”是函数，要写 ( 和 )',
   'rule-call': '“{name}”需要 {numbers} 个数和一个 )',
+  'rule-quantiles': 'drawn 需要 2 到 {most} 个数，而不是 {count} 个',
   'no-room': '轮廓几乎没有空间：{wanted} 个点只放下 {found} 个；请放大轮廓或移开障碍物',
   'graph-node': '节点 {node} 的坐标或半径不可用',
   'graph-radii': '{nodes} 个节点有 {radii} 个半径，每个节点要有一个',

@@ -45,9 +45,7 @@ fn stages() -> Option<Vec<Stage>> {
         let step = kept.kept.len().div_ceil(25_000);
         let points: Vec<DVec3> = kept.kept.iter().step_by(step).map(|&i| all[i]).collect();
         let mut found = organs(&points, &SegmentSpec::default(), &run).unwrap();
-        if let Some(before) = stages.last() {
-            name_alike(&before.organs, &mut found, DVec3::Y);
-        }
+        name_alike(&stages, &mut found, DVec3::Y);
         println!("{name}: {} points, {} stray", all.len(), kept.outliers);
         for o in &found {
             println!(

@@ -33,6 +33,7 @@ fn stage(day: f64, law: &GrowthLaw, noise: f64) -> Stage {
             tip: at[at.len() - 1],
             points: at.iter().map(|p| *p + jitter()).collect(),
             way: sheet.points.iter().enumerate().map(|(i, _)| i as f64 / at.len() as f64).collect(),
+            ..ScanOrgan::default()
         }
     });
     Stage { day, organs: organs.collect() }
@@ -116,6 +117,7 @@ fn regions(rates: [f64; 3], determined: bool) -> GrowthLaw {
         straight_rmse: None,
         last_rmse: None,
         standard_errors: None,
+        value_errors: None,
         r2: 1.0,
         r2_adjusted: None,
         loo_rmse: None,

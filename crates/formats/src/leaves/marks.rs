@@ -38,6 +38,8 @@ pub struct ReadMarks {
     pub thickness: Option<ThicknessRule>,
     /// Unit and up axis that were taken: the file's, or those given to the reader.
     pub axes: MarksAxes,
+    /// The file says its unit; else that of the reader was taken.
+    pub is_unit_said: bool,
     /// What was odd and what was done about it.
     pub warnings: Vec<Warning>,
 }
@@ -76,14 +78,21 @@ struct Entry {
 pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadMarks, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;
-    let mut out =
-        ReadMarks { name: name.into(), marks: Marks::default(), thickness: None, axes, warnings: vec![] };
+    let mut out = ReadMarks {
+        name: name.into(),
+        marks: Marks::default(),
+        thickness: None,
+        axes,
+        is_unit_said: false,
+        warnings: vec![],
+    };
     let mut axes = axes;
     let mut columns: Option<(Fields, Columns)> = None;
     let mut entries: BTreeMap<(usize, usize), Entry> = BTreeMap::new();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
         if let Some(comment) = super::comment_of(line) {
+            out.is_unit_said |= says_unit(comment);
             setting(comment, &mut axes, &mut out.name, &mut out.thickness)
                 .map_err(|e| LeafFileError::new(Place::line(k + 1), e))?;
         } else if !super::is_blank(line) {
@@ -140,6 +149,11 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
     }
     out.warnings = base::gathered(out.warnings);
     Ok(out)
+}
+
+/// Whether a comment is `unit: ...`.
+pub(super) fn says_unit(comment: &str) -> bool {
+    comment.split_once(':').is_some_and(|(key, _)| key.trim().eq_ignore_ascii_case("unit"))
 }
 
 /// `# key: value`; other comments are left alone.

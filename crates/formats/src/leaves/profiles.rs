@@ -30,6 +30,8 @@ pub struct ReadProfiles {
     pub leaves: Vec<ReadProfile>,
     /// The unit that was taken: the file's, or the one given to the reader.
     pub axes: MarksAxes,
+    /// The file says its unit; else that of the reader was taken.
+    pub is_unit_said: bool,
 }
 
 #[derive(Deserialize)]
@@ -86,6 +88,7 @@ pub fn read_profiles(input: impl Read, name: &str, axes: MarksAxes) -> Result<Re
         File::Named(f) => (f.unit, f.leaves),
         File::One(leaf) => (None, vec![*leaf]),
     };
+    let is_unit_said = unit.is_some();
     let unit = match unit.as_deref() {
         None => axes.unit,
         Some(word) => Unit::from_word(word).ok_or_else(|| {
@@ -136,7 +139,7 @@ pub fn read_profiles(input: impl Read, name: &str, axes: MarksAxes) -> Result<Re
         })
     };
     let leaves = leaves.into_iter().enumerate().map(one).collect::<Result<_, _>>()?;
-    Ok(ReadProfiles { leaves, axes: MarksAxes { unit, up: UpAxis::Y } })
+    Ok(ReadProfiles { leaves, axes: MarksAxes { unit, up: UpAxis::Y }, is_unit_said })
 }
 
 #[cfg(test)]
@@ -156,6 +159,7 @@ mod tests {
         assert_eq!((one.leaves.len(), list.leaves.len(), &one.leaves[0]), (1, 2, &list.leaves[1]));
         assert_eq!(one.leaves[0].name, "maize 10-3");
         assert!((one.leaves[0].profile.midrib[2] - DVec2::new(0.03, 0.05)).length() < 1e-15);
+        assert!(named.is_unit_said && !one.is_unit_said);
         assert!((named.leaves[0].profile.width[1].1 - 0.002).abs() < 1e-15);
     }
 

@@ -25,6 +25,8 @@ pub struct ReadRays {
     pub thickness: Option<ThicknessRule>,
     /// Unit and up axis that were taken: the file's, or those given to the reader.
     pub axes: MarksAxes,
+    /// The file says its unit; else that of the reader was taken.
+    pub is_unit_said: bool,
 }
 
 /// The text of a leaf starts with the column `vein`: it is for [`read_rays`], not for
@@ -47,7 +49,8 @@ pub fn is_rays(start: &[u8]) -> bool {
 pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRays, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
     let text = super::text(input)?;
-    let mut out = ReadRays { name: name.into(), rays: Rays::default(), thickness: None, axes };
+    let mut out =
+        ReadRays { name: name.into(), rays: Rays::default(), thickness: None, axes, is_unit_said: false };
     let mut axes = axes;
     let mut columns: Option<(Fields, [Option<usize>; 6])> = None;
     let mut marks: BTreeMap<(usize, usize), (DVec3, Option<f64>, usize)> = BTreeMap::new();
@@ -55,6 +58,7 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
         let line = line.trim_start_matches('\u{feff}').trim();
         let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
         if let Some(comment) = super::comment_of(line) {
+            out.is_unit_said |= super::marks::says_unit(comment);
             super::marks::setting(comment, &mut axes, &mut out.name, &mut out.thickness).map_err(placed)?;
             continue;
         }

@@ -18,7 +18,14 @@ enum Op {
     Not,
     Binary(Binary),
     Call(Function),
+    /// A draw from so many quantiles at even shares, the least first.
+    Drawn(usize),
 }
+
+/// Quantiles of one draw: more tell nothing that trees show.
+const MOST_QUANTILES: usize = 64;
+/// The name of a draw from quantiles.
+const DRAWN: &str = "drawn";
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Binary {
@@ -99,6 +106,20 @@ impl Expression {
                         Binary::And => truth(a != 0.0 && b != 0.0),
                         Binary::Or => truth(a != 0.0 || b != 0.0),
                     }
+                }
+                Op::Drawn(count) => {
+                    draws += 1;
+                    let from = stack.len().saturating_sub(count);
+                    let at = seed.child(draws).stream(Draw::Size).range(0.0, (count - 1) as f64);
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_sign_loss,
+                        reason = "0 to the quantiles"
+                    )]
+                    let low = from + at as usize;
+                    let [a, b] = [low, low + 1].map(|k| stack.get(k).copied().unwrap_or(f64::NAN));
+                    stack.truncate(from);
+                    ops::lerp(a, b, at - at.floor())
                 }
                 Op::Call(f) => {
                     let two = matches!(f, Function::Min | Function::Max | Function::Rand | Function::Normal);
@@ -256,6 +277,28 @@ impl<'a> Reader<'a> {
         self.name(&name)
     }
 
+    /// The numbers of [`DRAWN`], at least two.
+    fn quantiles(&mut self) -> Result<(), RuleFault> {
+        if !self.take("(") {
+            return Err(RuleFault::NotCalled(DRAWN));
+        }
+        self.deeper()?;
+        let mut count = 0;
+        while count == 0 || self.take(",") {
+            self.level(0)?;
+            count += 1;
+        }
+        self.depth -= 1;
+        if !self.take(")") {
+            return Err(RuleFault::NotClosed(')'));
+        }
+        if !(2..=MOST_QUANTILES).contains(&count) {
+            return Err(RuleFault::Quantiles { count, most: MOST_QUANTILES });
+        }
+        self.code.push(Op::Drawn(count));
+        Ok(())
+    }
+
     fn name(&mut self, name: &str) -> Result<(), RuleFault> {
         if let Some(i) = self.parameters.iter().position(|p| p == name) {
             self.code.push(Op::Parameter(i));
@@ -264,6 +307,9 @@ impl<'a> Reader<'a> {
         if let Some((_, value)) = self.constants.iter().find(|(n, _)| n == name) {
             self.code.push(Op::Number(*value));
             return Ok(());
+        }
+        if name == DRAWN {
+            return self.quantiles();
         }
         let Some((name, function, numbers)) = Function::ALL.into_iter().find(|(n, ..)| *n == name) else {
             return Err(RuleFault::Unknown(base::quoted(name)));
@@ -325,6 +371,10 @@ mod tests {
         let drawn = value("rand(2, 3)").expect("sound");
         assert!((2.0..3.0).contains(&drawn) && value("rand(2, 3)") == Ok(drawn));
         assert_ne!(value("rand(2, 3) - rand(2, 3)"), Ok(0.0), "two draws are two");
+        let drawn = value("drawn(2, 3, 10)").expect("sound");
+        assert!((2.0..10.0).contains(&drawn) && value("drawn(2, 3, 10)") == Ok(drawn));
+        assert_eq!(value("drawn(4, 2 * 2, k - 1) + 1"), Ok(5.0));
+        assert!(value("drawn(4)").is_err_and(|e| e.contains("2 to 64")) && value("drawn(1, 2").is_err());
     }
 
     #[test]

@@ -7,6 +7,8 @@ use crate::error::{LsystemError, RuleFault};
 
 /// Parameters of one module: more are a slip.
 const MOST_PARAMETERS: usize = 8;
+/// Rewriting steps. Each copies all modules, of which there may be many more than a step makes.
+const MOST_STEPS: u32 = 1000;
 /// What a rule may not rewrite: brackets, and the marks that the grammar itself uses.
 const RESERVED: &[u8] = b"[](),;#";
 
@@ -74,7 +76,7 @@ const LIFE: &str = "life";
 impl Lsystem {
     /// Reads an L-system.
     ///
-    /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 100, default 5),
+    /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 1000, default 5),
     /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`,
     /// `ages = steps` (a plant at a share of its years is what that share of the steps makes: for rules that follow growth),
     /// `ages = rules` (it is what the rules make of `life`, the share of its years, which is 1 for the whole and known to
@@ -83,7 +85,8 @@ impl Lsystem {
     /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
     /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
     /// `^(a)` down and up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf and
-    /// `*(s)` flower of that scale, `[` `]` branch. All others are skipped. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
+    /// `*(s)` flower of that scale, `[` `]` branch. All others are skipped. `rand(a, b)` is even between two numbers, `normal(m, s)` has a
+    /// mean and a deviation, and `drawn(least, ..., greatest)` has 2 to 64 quantiles at even shares. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
     ///
     /// # Errors
     /// [`LsystemError`] with the line.
@@ -147,8 +150,12 @@ impl Lsystem {
         match name {
             "axiom" => self.axiom = read_modules(value, &[], constants)?,
             "steps" => {
-                let n = number("steps", 0.0, 100.0)?;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+                let n = number("steps", 0.0, f64::from(MOST_STEPS))?;
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "0 to a thousand"
+                )]
                 let n = n as u32;
                 self.steps = n;
             }

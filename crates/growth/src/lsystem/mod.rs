@@ -181,7 +181,7 @@ mod tests {
             ("axiom = A\nA(x) if x >  -> F", "line 2: a number or name"),
             ("axiom = A\n[ -> F", "line 2: `[` is no module"),
             ("axiom = A\nstps = 3", "line 2: `stps` is no setting"),
-            ("axiom = A\nsteps = 1000", "line 2: steps must be 0 to 100, not 1000"),
+            ("axiom = A\nsteps = 10000", "line 2: steps must be 0 to 1000, not 10000"),
             ("axiom = A\nhello", "line 2: neither"),
             ("axiom = A\nA prob -1 -> F", "line 2: prob must be"),
             ("axiom = A\nA when x -> F", "line 2: `when x`"),
