@@ -165,7 +165,7 @@ def test_ray_writes_the_same_also_after_a_worker_was_killed(wood, whole, tmp_pat
         (lambda at: bg.forest.read(TREES.encode(), ground={"kind": "swamp"}), "ground"),
         (lambda at: bg.forest.read(7), "an inventory is"),
         (lambda at: bg.forest.grow("oak"), "a TOML file"),
-        (lambda at: bg.forest.grow({**WOOD, "yeras": 3}), "yeras"),
+        (lambda at: bg.forest.grow({**WOOD, "yearz": 3}), "yearz"),
         (lambda at: bg.forest.grow({**WOOD, "species": [{"name": "brich"}]}), "birch"),
         (lambda at: bg.forest.grow({**WOOD, "masks": [{"file": "../mask.png"}]}), "trust_paths"),
         (lambda at: bg.forest.grow(WOOD).tiles(at, variants=0), "variants must be 1 to 64"),
