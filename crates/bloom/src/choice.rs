@@ -12,8 +12,7 @@ pub struct Choice {
     /// The best law, or the straight lines.
     pub fit: SharedFit,
     /// The days determine it: it predicts what was left out better than straight lines and than the mean of the others, each by
-    /// more than one standard error of that difference; it fits better than straight lines do by more than chance
-    /// ([`BENDS`]); its rate is two standard errors from 0, and it has a degree of freedom and is on no bound.
+    /// more than one standard error of that difference; it fits better than straight lines do by more than chance; its rate is two standard errors from 0, and it has a degree of freedom and is on no bound.
     pub determined: bool,
     /// Leave-one-out error of straight lines.
     pub straight_rmse: Option<f64>,
