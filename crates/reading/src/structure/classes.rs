@@ -194,6 +194,9 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
     if 2 * crowns > alike.len() {
         return None;
     }
+    if alike.len() >= LIMITS.repeated && are_discs(sheet, &alike) {
+        return Some(StrokeClass::Disc);
+    }
     if alike.len() >= LIMITS.repeated {
         return Some(class_of_repeated(sheet, &alike));
     }
@@ -212,6 +215,20 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
     let round = facts.outline.as_ref().is_some_and(|o| o.roundness > LIMITS.round);
     let textured = facts.marks >= LIMITS.texture && round;
     Some(if textured { StrokeClass::Fruit } else { StrokeClass::Blade })
+}
+
+/// Whether most of some round outlines alike lie each where three larger outlines meet, and none touches another of them: the
+/// middles of flowers along a stem. Berries touch one another, or hang.
+fn are_discs(sheet: &Sheet, alike: &[usize]) -> bool {
+    let outline = |k: usize| sheet.facts[k].outline.as_ref();
+    let is_disc = |&&k: &&usize| {
+        let Some(own) = outline(k).filter(|o| o.roundness > LIMITS.round) else { return false };
+        let larger =
+            |j: usize| outline(j).is_some_and(|o| o.area > LIMITS.petal * own.area && own.touches(o));
+        let around = (0..sheet.facts.len()).filter(|&j| !alike.contains(&j) && larger(j)).count();
+        around >= 3 && !alike.iter().any(|&j| j != k && outline(j).is_some_and(|o| own.touches(o)))
+    };
+    2 * alike.iter().filter(is_disc).count() > alike.len()
 }
 
 /// Whether some outlines are seen whole, and most touch none that is unlike them: petals lie before and behind others.

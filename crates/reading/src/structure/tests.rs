@@ -121,3 +121,37 @@ fn lines_side_by_side_up_a_stem_are_one_and_hatching_is_none() {
     let many: Vec<Vec<DVec2>> = (0..9).map(|k| upright(0.8 * f64::from(k))).collect();
     assert!(tubes_of(&many).is_empty());
 }
+
+/// A flower of three petals about a small ring, hidden lines removed.
+fn orchid(centre: DVec2) -> Vec<Vec<DVec2>> {
+    let ring: Vec<DVec2> = (0..=30).map(|k| centre + at(TAU * f64::from(k) / 30.0, 0.06)).collect();
+    let petal = |k: i32| {
+        let way = TAU * f64::from(k) / 3.0;
+        let middle = centre + at(way, 0.31);
+        (0..=40).map(|i| middle + at(way + TAU * f64::from(i) / 40.0, 0.25)).collect()
+    };
+    let mut lines = vec![ring];
+    lines.extend((0..3).map(petal));
+    lines
+}
+
+#[test]
+fn small_rings_where_petals_meet_are_discs_and_rings_on_stalks_are_none() {
+    let classes_of = |lines: &[Vec<DVec2>]| {
+        let ink = clean(&Drawing::from_polylines("spray", lines), &mut Report::default());
+        let said = vec![Classified::by_shares([0.0; StrokeClass::ALL.len()]); ink.strokes.len()];
+        Structure::new(&Sheet::new(&ink), &[], &said).classes().to_vec()
+    };
+    let flowers: Vec<Vec<DVec2>> = (0..4).flat_map(|k| orchid(DVec2::new(1.5 * f64::from(k), 0.0))).collect();
+    let classes = classes_of(&flowers);
+    assert!((0..4).all(|k| classes[4 * k] == Some(StrokeClass::Disc)), "{classes:?}");
+    // The same rings each at the end of a line.
+    let berries: Vec<Vec<DVec2>> = (0..4)
+        .flat_map(|k| {
+            let x = 1.5 * f64::from(k);
+            let ring = orchid(DVec2::new(x, 0.0)).swap_remove(0);
+            [ring, straight((x, 0.06), (x, 1.0))]
+        })
+        .collect();
+    assert!(!classes_of(&berries).contains(&Some(StrokeClass::Disc)));
+}
