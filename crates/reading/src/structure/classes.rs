@@ -226,7 +226,8 @@ fn are_discs(sheet: &Sheet, alike: &[usize]) -> bool {
         let larger =
             |j: usize| outline(j).is_some_and(|o| o.area > LIMITS.petal * own.area && own.touches(o));
         let around = (0..sheet.facts.len()).filter(|&j| !alike.contains(&j) && larger(j)).count();
-        around >= 3 && !alike.iter().any(|&j| j != k && outline(j).is_some_and(|o| own.touches(o)))
+        around >= LIMITS.petals_about
+            && !alike.iter().any(|&j| j != k && outline(j).is_some_and(|o| own.touches(o)))
     };
     2 * alike.iter().filter(is_disc).count() > alike.len()
 }

@@ -78,8 +78,10 @@ pub(crate) struct StructureLimits {
     pub(crate) as_wide_as_long: f64,
     /// and stand round no empty middle, as petals do: none is nearer to it than this share of their mean distance from it.
     pub(crate) empty_middle: f64,
-    /// A petal has at least so many times the area of the disc of its flower.
+    /// A petal has at least so many times the area of the disc of its flower,
     pub(crate) petal: f64,
+    /// and so many petals at least meet at it.
+    pub(crate) petals_about: usize,
     /// A flower head has so many rays at least, and no wider angle than this between neighbours, radians.
     pub(crate) rays: usize,
     pub(crate) ray_gap: f64,
@@ -118,6 +120,7 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     as_wide_as_long: 0.86,
     empty_middle: 0.6,
     petal: 2.5,
+    petals_about: 3,
     rays: 7,
     ray_gap: 1.6,
     believed: 0.5,
