@@ -131,8 +131,8 @@ def _with_ray(
         raise ImportError("ray=True needs Ray: pip install 'ray>=2' (or leave ray out: workers=N)") from error
     if not ray.is_initialized():
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
-    # A worker that is killed is replaced, and its job done again.
-    remote = ray.remote(num_cpus=1, max_retries=TRIES)(_alone)
+    # A worker that is killed is replaced, and its job done again. Its process and the dashboard name the job.
+    remote = ray.remote(num_cpus=1, max_retries=TRIES)(_alone).options(name=task.__name__)
     # Sent once, not with each job.
     shared = [ray.put(value) for value in common]
     jobs = [remote.remote(task, *shared, item) for item in items]
