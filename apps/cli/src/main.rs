@@ -20,6 +20,7 @@ mod inputs;
 mod leaf;
 mod leaf_data;
 mod lease;
+mod lettering;
 mod levels;
 mod light;
 mod machine;

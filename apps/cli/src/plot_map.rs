@@ -3,6 +3,8 @@
 use burgeon::render::Picture;
 use burgeon::scan::Plot;
 
+use crate::lettering::{put_dot, write_text};
+
 /// Pixels of the longer side, and of a margin.
 const LONG: f64 = 1200.0;
 const MARGIN: f64 = 20.0;
@@ -20,19 +22,6 @@ const COLOURS: [[u8; 3]; 7] = [
 const OTHER: [u8; 3] = [205, 205, 205];
 const DARK: [u8; 3] = [40, 40, 40];
 
-/// Digits of 3 x 5 pixels, rows from above, the leftmost pixel in the highest bit.
-const DIGITS: [[u8; 5]; 10] = [
-    [7, 5, 5, 5, 7],
-    [2, 6, 2, 2, 7],
-    [7, 1, 7, 4, 7],
-    [7, 1, 7, 1, 7],
-    [5, 5, 7, 1, 1],
-    [7, 4, 7, 1, 7],
-    [7, 4, 7, 5, 7],
-    [7, 1, 1, 1, 1],
-    [7, 5, 7, 5, 7],
-    [7, 5, 7, 1, 7],
-];
 /// Pixels of a pixel of a digit.
 const DOT: i64 = 3;
 
@@ -50,27 +39,12 @@ impl Map {
         [at(x, self.low[0]), at(z, self.low[1])]
     }
 
-    fn dot(&mut self, [x, y]: [i64; 2], colour: [u8; 3]) {
-        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
-        if x >= self.picture.width || y >= self.picture.height {
-            return;
-        }
-        let at = 4 * (y as usize * self.picture.width as usize + x as usize);
-        self.picture.pixels[at..at + 3].copy_from_slice(&colour);
+    fn dot(&mut self, at: [i64; 2], colour: [u8; 3]) {
+        put_dot(&mut self.picture, at, colour);
     }
 
-    fn number(&mut self, [x, y]: [i64; 2], number: usize) {
-        for (k, digit) in (0_i64..).zip(number.to_string().bytes()) {
-            let rows = DIGITS[usize::from(digit - b'0')];
-            for (row, bits) in (0_i64..).zip(rows) {
-                for column in (0..3_i64).filter(|c| bits >> (2 - c) & 1 == 1) {
-                    let corner = [x + DOT * (4 * k + column), y + DOT * row];
-                    for i in 0..DOT * DOT {
-                        self.dot([corner[0] + i % DOT, corner[1] + i / DOT], DARK);
-                    }
-                }
-            }
-        }
+    fn number(&mut self, corner: [i64; 2], number: usize) {
+        write_text(&mut self.picture, corner, &number.to_string(), (DOT, DARK));
     }
 }
 

@@ -3,6 +3,8 @@
 use burgeon::growth::{Agreement, Trait, Traits};
 use burgeon::render::Picture;
 
+use crate::lettering::{ADVANCE, put_dot, write_text};
+
 /// Pixels of a panel, and round its curves.
 const PANEL: [i64; 2] = [230, 140];
 const ROOM: [i64; 4] = [14, 34, 14, 20];
@@ -14,76 +16,15 @@ const PALE: [u8; 3] = [200, 200, 200];
 const LOTS: [[u8; 3]; 3] = [[0, 114, 178], [230, 159, 0], [213, 94, 0]];
 const LOT_NAMES: [&str; 3] = ["fitted", "kept out", "grown"];
 
-/// Letters of 3 x 5 pixels, rows from above, the leftmost pixel in the highest bit: A to Z, 0 to 9, then a point.
-const LETTERS: [[u8; 5]; 37] = [
-    [2, 5, 7, 5, 5],
-    [6, 5, 6, 5, 6],
-    [3, 4, 4, 4, 3],
-    [6, 5, 5, 5, 6],
-    [7, 4, 6, 4, 7],
-    [7, 4, 6, 4, 4],
-    [3, 4, 5, 5, 3],
-    [5, 5, 7, 5, 5],
-    [7, 2, 2, 2, 7],
-    [1, 1, 1, 5, 2],
-    [5, 5, 6, 5, 5],
-    [4, 4, 4, 4, 7],
-    [5, 7, 7, 5, 5],
-    [6, 5, 5, 5, 5],
-    [2, 5, 5, 5, 2],
-    [6, 5, 6, 4, 4],
-    [2, 5, 5, 6, 3],
-    [6, 5, 6, 5, 5],
-    [3, 4, 2, 1, 6],
-    [7, 2, 2, 2, 2],
-    [5, 5, 5, 5, 7],
-    [5, 5, 5, 5, 2],
-    [5, 5, 7, 7, 5],
-    [5, 5, 2, 5, 5],
-    [5, 5, 2, 2, 2],
-    [7, 1, 2, 4, 7],
-    [7, 5, 5, 5, 7],
-    [2, 6, 2, 2, 7],
-    [7, 1, 7, 4, 7],
-    [7, 1, 7, 1, 7],
-    [5, 5, 7, 1, 1],
-    [7, 4, 7, 1, 7],
-    [7, 4, 7, 5, 7],
-    [7, 1, 1, 1, 1],
-    [7, 5, 7, 5, 7],
-    [7, 5, 7, 1, 7],
-    [0, 0, 0, 0, 2],
-];
-
 struct Sheet(Picture);
 
 impl Sheet {
-    fn dot(&mut self, [x, y]: [i64; 2], colour: [u8; 3]) {
-        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
-        if x >= self.0.width || y >= self.0.height {
-            return;
-        }
-        let at = 4 * (y as usize * self.0.width as usize + x as usize);
-        self.0.pixels[at..at + 3].copy_from_slice(&colour);
+    fn dot(&mut self, at: [i64; 2], colour: [u8; 3]) {
+        put_dot(&mut self.0, at, colour);
     }
 
-    fn text(&mut self, [x, y]: [i64; 2], text: &str, colour: [u8; 3]) {
-        for (k, c) in (0_i64..).zip(text.bytes()) {
-            let row = match c.to_ascii_uppercase() {
-                c @ b'A'..=b'Z' => c - b'A',
-                c @ b'0'..=b'9' => 26 + c - b'0',
-                b'.' => 36,
-                _ => continue,
-            };
-            for (row, bits) in (0_i64..).zip(LETTERS[usize::from(row)]) {
-                for column in (0..3_i64).filter(|c| bits >> (2 - c) & 1 == 1) {
-                    let corner = [x + DOT * (4 * k + column), y + DOT * row];
-                    for i in 0..DOT * DOT {
-                        self.dot([corner[0] + i % DOT, corner[1] + i / DOT], colour);
-                    }
-                }
-            }
-        }
+    fn text(&mut self, corner: [i64; 2], text: &str, colour: [u8; 3]) {
+        write_text(&mut self.0, corner, text, (DOT, colour));
     }
 
     /// The share of sorted values below each place of a panel, as a line.
@@ -168,7 +109,7 @@ fn panel(
     }
     sheet.text([left, bottom + 5], &short(low), DARK);
     let end = short(high);
-    sheet.text([right - DOT * 4 * end.len() as i64, bottom + 5], &end, DARK);
+    sheet.text([right - DOT * ADVANCE * end.len() as i64, bottom + 5], &end, DARK);
     for (values, colour) in values.iter().zip(LOTS).filter(|(v, _)| !v.is_empty()) {
         sheet.steps(corner, values, [low, high], colour);
     }

@@ -3,7 +3,7 @@
 //! Engravings and traced scans are areas of ink whose centre lines run along outlines, shading and veins alike. The readers
 //! take most of these for axes. A plant of bare axes is a bare tree; a plant that has organs bears them on its axes.
 
-use glam::DVec2;
+use geom::polyline_length;
 use plant::AxisKind;
 
 use crate::Reading;
@@ -41,12 +41,8 @@ pub fn tangled_length(reading: &Reading) -> f64 {
         return 0.0;
     }
     let counted = || axes.iter().zip(&leads).filter(|(a, _)| a.kind != AxisKind::Root);
-    let whole: f64 = counted().map(|(a, _)| length(&a.points)).sum();
-    let bare: f64 = counted().filter(|(_, leads)| !**leads).map(|(a, _)| length(&a.points)).sum();
+    let whole: f64 = counted().map(|(a, _)| polyline_length(&a.points)).sum();
+    let bare: f64 = counted().filter(|(_, leads)| !**leads).map(|(a, _)| polyline_length(&a.points)).sum();
     let is_tangle = bare > TANGLE_LIMITS.length_most && bare > TANGLE_LIMITS.share_most * whole;
     if is_tangle { bare } else { 0.0 }
-}
-
-fn length(points: &[DVec2]) -> f64 {
-    points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }

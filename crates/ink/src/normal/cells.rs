@@ -6,6 +6,7 @@
 use glam::DVec2;
 
 use super::{Change, Extent, Figure, LIMITS, Work, is_closed, places, some_of};
+use crate::InkSample;
 
 /// When an area with holes is line art. Shares are of areas.
 struct CellLimits {
@@ -21,6 +22,8 @@ struct CellLimits {
     within: f64,
     /// An area behind a hole that is smaller than this share of it is a thing of its own, such as the disc of a flower.
     own_thing: f64,
+    /// A point lies within the outer outline if it is nearer to it than this share of the drawing's diagonal, too.
+    near: f64,
     /// Channels of colours of one hue, in shares of their sum, differ by less than this: shade, and no other thing.
     one_hue: f64,
 }
@@ -32,12 +35,16 @@ const LIMITS_OF_CELLS: CellLimits = CellLimits {
     hole_least: 0.004,
     within: 0.85,
     own_thing: 0.5,
+    near: 0.01,
     one_hue: 0.15,
 };
 
 /// Places along each side of the box of a hole at which the colour behind it is looked up.
 const PLACES: u32 = 7;
-/// More holes times areas are not compared.
+/// Points of a hole, and of an area behind holes, of which it is asked where they lie.
+const OF_HOLE: usize = 8;
+const OF_AREA: usize = 32;
+/// Areas of more sub-paths are traced, and no line art over colours.
 const MOST_HOLES: usize = 400;
 
 /// A hole of line art, and the topmost area behind it.
@@ -53,18 +60,18 @@ impl Work {
     /// Cost: holes times the points of the areas behind them.
     pub(super) fn open_line_art(&mut self) {
         let outlines: Vec<Option<Vec<DVec2>>> = self.figures.iter().map(painted_outline).collect();
-        let mut k = 0;
         let mut gone = vec![false; self.figures.len()];
         let mut opened: Vec<(usize, Vec<Figure>)> = Vec::new();
-        while k < self.figures.len() {
-            if let Some((outer, holes)) = self.line_art(k, &outlines) {
-                let figures = holes.iter().map(|h| self.figure_of(k, h)).collect();
-                opened.push((k, figures));
-                for below in self.colours_behind(k, &outer, &holes, &outlines) {
-                    gone[below] = true;
-                }
+        for (k, outline) in outlines.iter().enumerate() {
+            let Some((outer, holes)) =
+                outline.as_deref().and_then(|o| Some((o, self.holes(k, o, &outlines)?)))
+            else {
+                continue;
+            };
+            opened.push((k, holes.iter().map(|h| self.figure_of(k, h)).collect()));
+            for (below, gone) in gone[..k].iter_mut().enumerate() {
+                *gone |= outlines[below].as_ref().is_some_and(|o| self.is_behind(below, o, outer, &holes));
             }
-            k += 1;
         }
         let colours = gone.iter().filter(|g| **g).count();
         let mut opened = opened.into_iter().peekable();
@@ -80,22 +87,20 @@ impl Work {
         self.note(Change::Colour, colours);
     }
 
-    /// The outer outline and the holes of an area that is line art over colours.
-    fn line_art(&self, k: usize, outlines: &[Option<Vec<DVec2>>]) -> Option<(Vec<DVec2>, Vec<Hole>)> {
+    /// The holes of an area, if it is line art over colours. `outer`: its outer outline.
+    fn holes(&self, k: usize, outer: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<Vec<Hole>> {
         let figure = &self.figures[k];
-        let is_solid = figure.fill.is_some_and(|f| f.said && f.opacity >= LIMITS.translucent);
-        if figure.lined || !is_solid || !(2..MOST_HOLES).contains(&figure.lines.len()) || k == 0 {
+        if figure.lined || !(2..MOST_HOLES).contains(&figure.lines.len()) {
             return None;
         }
         let rings: Vec<Vec<DVec2>> = figure.lines.iter().map(|l| places(l)).collect();
         let areas: Vec<f64> = rings.iter().map(|r| geom::signed_area(r).abs()).collect();
-        let largest = (0..rings.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]))?;
-        let outer = rings[largest].clone();
+        let whole = geom::signed_area(outer).abs();
         let is_hole = |j: &usize| {
-            *j != largest
-                && areas[*j] >= LIMITS_OF_CELLS.hole_least * areas[largest]
+            rings[*j] != outer
+                && areas[*j] >= LIMITS_OF_CELLS.hole_least * whole
                 && is_closed(&figure.lines[*j])
-                && some_of(&rings[*j], 8).all(|p| geom::contains(&outer, p))
+                && some_of(&rings[*j], OF_HOLE).all(|p| geom::contains(outer, p))
         };
         let candidates: Vec<usize> = (0..rings.len()).filter(is_hole).collect();
         // An island of ink in a hole is no hole.
@@ -113,14 +118,14 @@ impl Work {
                 line: j,
                 outline: rings[j].clone(),
                 area: areas[j],
-                behind: topmost_behind(&rings[j], &outlines[..k]),
+                behind: topmost_behind(&figure.lines[j], &rings[j], &outlines[..k]),
             })
             .collect();
         let open: f64 = holes.iter().map(|h| h.area).sum();
         let covered: f64 = holes.iter().filter(|h| h.behind.is_some()).map(|h| h.area).sum();
-        let is_line_art = areas[largest] - open < LIMITS_OF_CELLS.ink_most * areas[largest]
-            && covered > LIMITS_OF_CELLS.covered * open;
-        is_line_art.then_some((outer, holes))
+        let is_line_art =
+            whole - open < LIMITS_OF_CELLS.ink_most * whole && covered > LIMITS_OF_CELLS.covered * open;
+        is_line_art.then_some(holes)
     }
 
     /// A hole as an outline that somebody drew, in the colour behind it.
@@ -131,34 +136,25 @@ impl Work {
         Figure { like, lines: vec![figure.lines[hole.line].clone()], lined: true, fill: None }
     }
 
-    /// Areas whose colour the holes have taken over.
-    fn colours_behind(
-        &self,
-        k: usize,
-        outer: &[DVec2],
-        holes: &[Hole],
-        outlines: &[Option<Vec<DVec2>>],
-    ) -> Vec<usize> {
-        let is_taken = |&below: &usize| {
-            let Some(outline) = &outlines[below] else { return false };
-            let points: Vec<DVec2> = some_of(outline, 32).collect();
-            let near = 0.01 * self.diagonal();
-            let is_within = |p: &&DVec2| {
-                geom::contains(outer, **p)
-                    || geom::closest_on_polyline(outer, **p).is_some_and(|c| c.point.distance(**p) < near)
-            };
-            let inside = points.iter().filter(is_within).count();
-            let area = geom::signed_area(outline).abs();
-            let is_own = |h: &Hole| {
-                area < LIMITS_OF_CELLS.own_thing * h.area
-                    && points.iter().all(|p| geom::contains(&h.outline, *p))
-                    && !self.is_one_hue(h.behind, below)
-            };
-            #[expect(clippy::cast_precision_loss, reason = "a few points")]
-            let is_within = inside as f64 >= LIMITS_OF_CELLS.within * points.len() as f64;
-            is_within && !holes.iter().any(is_own)
+    /// Whether holes have taken over the colour of an area: it lies within the outer outline, and is no thing of its own in one of
+    /// them.
+    fn is_behind(&self, below: usize, outline: &[DVec2], outer: &[DVec2], holes: &[Hole]) -> bool {
+        let points: Vec<DVec2> = some_of(outline, OF_AREA).collect();
+        let near = LIMITS_OF_CELLS.near * self.diagonal();
+        let is_within = |p: &&DVec2| {
+            geom::contains(outer, **p)
+                || geom::closest_on_polyline(outer, **p).is_some_and(|c| c.point.distance(**p) < near)
         };
-        (0..k).filter(is_taken).collect()
+        let inside = points.iter().filter(is_within).count();
+        #[expect(clippy::cast_precision_loss, reason = "a few points")]
+        let lies_within = inside as f64 >= LIMITS_OF_CELLS.within * points.len() as f64;
+        let area = geom::signed_area(outline).abs();
+        let is_own_in = |h: &Hole| {
+            area < LIMITS_OF_CELLS.own_thing * h.area
+                && points.iter().all(|p| geom::contains(&h.outline, *p))
+                && !self.is_one_hue(h.behind, below)
+        };
+        lies_within && !holes.iter().any(is_own_in)
     }
 
     fn is_one_hue(&self, a: Option<usize>, b: usize) -> bool {
@@ -183,9 +179,8 @@ fn painted_outline(figure: &Figure) -> Option<Vec<DVec2>> {
 }
 
 /// The topmost of some areas that lies behind most of a hole.
-fn topmost_behind(hole: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<usize> {
-    let line: Vec<crate::InkSample> = hole.iter().map(|p| crate::InkSample::from(*p)).collect();
-    let Extent { lo, hi } = Extent::of(&line)?;
+fn topmost_behind(line: &[InkSample], hole: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<usize> {
+    let Extent { lo, hi } = Extent::of(line)?;
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES);
     let grid =
         (0..PLACES * PLACES).map(|k| lo + (hi - lo) * DVec2::new(place(k % PLACES), place(k / PLACES)));

@@ -139,8 +139,9 @@ fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(
             pens.entry(c.color).or_default().push(ribbon.width);
         }
     }
-    let pens: LiteMap<_, f64> = pens.into_iter().map(|(color, widths)| (color, median(widths))).collect();
-    let pen_of = |c: &Candidate<'_>| pens.get(&c.color).copied();
+    let pens: LiteMap<_, Option<f64>> =
+        pens.into_iter().map(|(color, widths)| (color, base::median(widths))).collect();
+    let pen_of = |c: &Candidate<'_>| pens.get(&c.color).copied().flatten();
     let mut found: Vec<Option<Centre>> = candidates
         .iter()
         .zip(measured)
@@ -157,12 +158,6 @@ fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(
         *width = if widest > 0.0 { (*width / widest).clamp(0.0, 1.0) } else { 1.0 };
     }
     found
-}
-
-/// The middle one of some numbers; 0 of none.
-fn median(mut numbers: Vec<f64>) -> f64 {
-    base::sort_numbers(&mut numbers);
-    numbers.get(numbers.len() / 2).copied().unwrap_or_default()
 }
 
 struct Ribbon {

@@ -60,6 +60,16 @@ impl Tube {
         self.sides.contains(&row) || self.between.contains(&row)
     }
 
+    /// Whether it is between two lines.
+    fn joins(&self, one: usize, other: usize) -> bool {
+        self.sides.contains(&one) && self.sides.contains(&other)
+    }
+
+    /// Whether a line is of both.
+    fn meets(&self, other: &Self) -> bool {
+        other.rows().iter().any(|&row| self.has(row))
+    }
+
     /// The rows of all its lines.
     pub(crate) fn rows(&self) -> Vec<usize> {
         self.sides.iter().chain(&self.between).copied().collect()
@@ -85,44 +95,43 @@ pub(crate) fn tubes(ink: &Ink, sheet: &Sheet) -> Vec<Tube> {
     let partners = |k: usize, near: f64| {
         found.iter().filter(|t| t.sides.contains(&k) && t.width < LIMITS.third * near).count()
     };
-    let mut alone: Vec<Tube> =
-        found.iter().filter(|t| t.sides.iter().all(|&k| partners(k, t.width) == 1)).cloned().collect();
-    for bundle in bundles(ink, &found) {
-        if !alone.iter().any(|t| bundle.rows().iter().any(|&k| t.has(k))) {
-            alone.push(bundle);
-        }
-    }
-    alone
+    let alone = found.iter().filter(|t| t.sides.iter().all(|&k| partners(k, t.width) == 1)).cloned();
+    let mut kept: Vec<Tube> = alone.collect();
+    let bundles = bundles(ink, &found).into_iter().filter(|b| !kept.iter().any(|tube| tube.meets(b)));
+    let bundles: Vec<Tube> = bundles.collect();
+    kept.extend(bundles);
+    kept
 }
 
-/// Lines side by side of which each pair is near, as one axis between the outer two.
+/// Lines side by side of which each pair is near, as one axis between the outer two. Of bundles with a line in common that of
+/// most lines.
 fn bundles(ink: &Ink, pairs: &[Tube]) -> Vec<Tube> {
-    let mut found: Vec<Tube> = Vec::new();
-    for widest in pairs {
-        let [a, b] = widest.sides;
-        let is_pair = |j: usize, k: usize| pairs.iter().any(|t| t.sides.contains(&j) && t.sides.contains(&k));
-        let mut between: Vec<usize> = pairs.iter().flat_map(|t| t.sides).collect();
-        between.sort_unstable();
-        between.dedup();
-        between.retain(|&k| k != a && k != b && is_pair(k, a) && is_pair(k, b));
-        let width_to = |k: usize, side: usize| {
-            pairs.iter().find(|t| t.sides.contains(&k) && t.sides.contains(&side)).map_or(0.0, |t| t.width)
-        };
-        let are_between = between.iter().all(|&k| width_to(k, a).max(width_to(k, b)) < widest.width);
-        let tube = Tube { between, ..widest.clone() };
-        let are_long = tube.rows().iter().all(|&k| ink.strokes[k].length > LIMITS.sheath);
-        if are_between && are_long && LIMITS.sheaths.contains(&tube.rows().len()) {
-            found.push(tube);
-        }
-    }
+    let mut lines: Vec<usize> = pairs.iter().flat_map(|t| t.sides).collect();
+    lines.sort_unstable();
+    lines.dedup();
+    let mut found: Vec<Tube> = pairs.iter().filter_map(|widest| bundle(ink, pairs, &lines, widest)).collect();
     base::sort_by(&mut found, |a, b| b.between.len().cmp(&a.between.len()).then(a.sides.cmp(&b.sides)));
     let mut kept: Vec<Tube> = Vec::new();
     for tube in found {
-        if !kept.iter().any(|k| tube.rows().iter().any(|&row| k.has(row))) {
+        if !kept.iter().any(|other| other.meets(&tube)) {
             kept.push(tube);
         }
     }
     kept
+}
+
+/// A pair with the lines that are near to both its sides, if they all lie between these and are long.
+fn bundle(ink: &Ink, pairs: &[Tube], lines: &[usize], widest: &Tube) -> Option<Tube> {
+    let width = |one: usize, other: usize| pairs.iter().find(|t| t.joins(one, other)).map(|t| t.width);
+    let [a, b] = widest.sides;
+    let is_near = |k: &usize| *k != a && *k != b && width(*k, a).is_some() && width(*k, b).is_some();
+    let between: Vec<usize> = lines.iter().copied().filter(is_near).collect();
+    let is_nearer = |k: usize, side: usize| width(k, side).is_some_and(|w| w < widest.width);
+    let are_between = between.iter().all(|&k| is_nearer(k, a) && is_nearer(k, b));
+    let tube = Tube { between, ..widest.clone() };
+    let rows = tube.rows();
+    let are_long = rows.iter().all(|&k| ink.strokes[k].length > LIMITS.sheath);
+    (are_between && are_long && LIMITS.sheaths.contains(&rows.len())).then_some(tube)
 }
 
 /// Two lines as the sides of one axis, if they run side by side.
