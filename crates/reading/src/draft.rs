@@ -133,6 +133,8 @@ pub(crate) struct Draft<'a> {
     pub(crate) hidden: LiteMap<usize, Hidden>,
     /// Petals of flowers that are known as a whole, by the strokes of each.
     pub(crate) heads: Vec<Vec<usize>>,
+    /// Strokes that are leaves by their venation.
+    pub(crate) veined: Vec<usize>,
     /// Its strokes are the parts of a plant already: none is cut in two.
     pub(crate) is_cut: bool,
 }
@@ -167,6 +169,7 @@ impl<'a> Draft<'a> {
             one_go: LiteMap::new(),
             hidden: LiteMap::new(),
             heads: Vec::new(),
+            veined: Vec::new(),
             is_cut: false,
         }
     }
@@ -184,6 +187,7 @@ impl<'a> Draft<'a> {
         }
         self.hidden = structure.hidden().clone();
         self.heads = structure.heads().to_vec();
+        self.veined = structure.leaves().to_vec();
     }
 
     /// The whole is taken for a tree: what stands is its trunk, and what leaves that are branches.
@@ -352,6 +356,12 @@ impl<'a> Draft<'a> {
                 None => self.line_of(k, OrganWord::Branch),
             }
         }
+    }
+
+    /// Blades with the venation of a leaf are no petals.
+    pub(crate) fn veined_leaves(&mut self) {
+        let veined = &self.veined;
+        self.blades.iter_mut().for_each(|b| b.leaf |= veined.contains(&b.stroke));
     }
 
     /// Blades drawn in green are leaves where others, or a corolla, were drawn in another colour.

@@ -13,7 +13,7 @@ use crate::glance::Glance;
 use crate::no_plant::NO_PLANT_LIMITS;
 use crate::rules::GREEN_LEAVES;
 use crate::silhouette::{Drawn, Shaping, Silhouette};
-use crate::structure::{Composed, Sheet, Structure};
+use crate::structure::{Composed, Joined, Sheet, Structure};
 use crate::thresholds::FEWEST_PETALS;
 use crate::{
     BESIDE_THE_PLANT, BladeReading, KeptStrokes, Kind, OrganWord, PlantReading, READ_AS, Reading, Scored,
@@ -621,7 +621,9 @@ fn by_structure(
     likely: impl Fn(Kind) -> f64,
 ) -> Option<Structural> {
     let count = ink.strokes.len();
-    if !(structure::LIMITS.fewest_strokes..=MOST_STROKES).contains(&count) || asked.off.contains(&READ_AS) {
+    if !(structure::LIMITS.fewest_strokes..=structure::LIMITS.most_strokes).contains(&count)
+        || asked.off.contains(&READ_AS)
+    {
         return None;
     }
     let sheet = Sheet::new(ink);
@@ -643,8 +645,17 @@ fn by_structure(
     if tubes.iter().any(|t| is_wide(t) && t.sides.iter().all(|&k| is_trunk(k))) {
         tubes.clear();
     }
+    let may_be_side = |k: usize| {
+        !pot.contains(&k)
+            && classes.get(k).is_none_or(|c| c.source != Source::User || c.class == StrokeClass::Blade)
+    };
+    let is_of_many = count >= structure::LIMITS.many_strokes;
+    let chains = if is_of_many { structure::chains(ink, &sheet, may_be_side) } else { Vec::new() };
+    tubes.retain(|t| !chains.iter().flat_map(|c| &c.rows).any(|&k| t.has(k)));
+    let joined: Vec<Joined> =
+        chains.iter().map(Joined::blade).chain(tubes.iter().map(Joined::axis)).collect();
     let mut report = Report::default();
-    let (tried, says) = if let Some(cut) = Composed::without_sides(ink, classes, &tubes) {
+    let (tried, says) = if let Some(cut) = Composed::with_joined(ink, classes, &joined) {
         let kept = RefCell::default();
         let own = Asked { kind: None, kept: &kept, ..*asked };
         let proposal = Proposal { structure: Some(cut.structure.clone()), ..Proposal::default() };
@@ -669,7 +680,7 @@ fn by_structure(
     // A solid with so many strokes inside is a glance at a drawing of many organs.
     let is_solid_of_many =
         is_new && count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit);
-    let margin = if by_user {
+    let margin = if by_user || is_new && count >= structure::LIMITS.no_doodle && !is_solid_of_many {
         0.0
     } else if is_solid_of_many {
         -structure::LIMITS.solid_of_many
@@ -692,6 +703,7 @@ fn as_likely(
     // One solid explains little of what lies in it, whatever it scores.
     let is_shown = classes.iter().any(|c| c.shown.is_some());
     if is_shown
+        || ink.strokes.len() >= structure::LIMITS.no_doodle
         || likely.is_like(Kind::Fruit)
         || likely.is_like(Kind::of(structural))
         || !asked.is_free(ink, classes)
@@ -805,6 +817,7 @@ fn understood(
     if !off.contains(&GREEN_LEAVES) {
         draft.green_leaves();
     }
+    draft.veined_leaves();
     let discs = flowers::discs(&draft);
     flowers::corollas(&mut draft, &discs);
     if draft.kind.is_some_and(bears_no_flower) {

@@ -29,6 +29,8 @@ pub(crate) struct Structure {
     hidden: LiteMap<usize, Hidden>,
     /// Petals of one flower, by rows.
     heads: Vec<Vec<usize>>,
+    /// Rows of blades with the venation of a leaf.
+    leaves: Vec<usize>,
 }
 
 impl Structure {
@@ -63,7 +65,9 @@ impl Structure {
                 hidden.insert(k, Hidden { outline: points.clone(), root: hidden_root(points) });
             }
         }
-        Self { classes, hidden, heads }
+        let in_head = |k: usize| heads.iter().any(|head| head.contains(&k));
+        let leaves = (0..sheet.facts.len()).filter(|&k| sheet.facts[k].is_veined && !in_head(k)).collect();
+        Self { classes, hidden, heads, leaves }
     }
 
     /// What a reader says of the strokes that it made of the drawing: the class of each, and where blades are attached.
@@ -72,7 +76,7 @@ impl Structure {
         hidden: LiteMap<usize, Hidden>,
         heads: Vec<Vec<usize>>,
     ) -> Self {
-        Self { classes: classes.into_iter().map(Some).collect(), hidden, heads }
+        Self { classes: classes.into_iter().map(Some).collect(), hidden, heads, leaves: Vec::new() }
     }
 
     /// The class of each stroke of which the structure says one.
@@ -83,6 +87,11 @@ impl Structure {
     /// Completed outlines of blades, by rows.
     pub(crate) const fn hidden(&self) -> &LiteMap<usize, Hidden> {
         &self.hidden
+    }
+
+    /// Rows of blades that are leaves by their venation.
+    pub(crate) fn leaves(&self) -> &[usize] {
+        &self.leaves
     }
 
     /// Rows of the petals of each flower that is known as a whole.
@@ -164,9 +173,9 @@ fn class_of(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Opti
     }
 }
 
-/// A mark in an outline: one of many is texture, one of few a vein.
+/// A mark in an outline: one of many is texture, one of few or of a venation is a vein.
 fn mark_in(holder: &Facts) -> StrokeClass {
-    if holder.marks > LIMITS.texture { StrokeClass::Scribble } else { StrokeClass::Vein }
+    if holder.marks > LIMITS.texture && !holder.is_veined { StrokeClass::Scribble } else { StrokeClass::Vein }
 }
 
 /// A line that lies in nothing is no blade, disc or fruit, and a pot, trunk or crown only if the classifier is sure.
@@ -213,7 +222,7 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
         return None;
     }
     let round = facts.outline.as_ref().is_some_and(|o| o.roundness > LIMITS.round);
-    let textured = facts.marks >= LIMITS.texture && round;
+    let textured = facts.is_textured && round;
     Some(if textured { StrokeClass::Fruit } else { StrokeClass::Blade })
 }
 

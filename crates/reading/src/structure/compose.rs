@@ -4,6 +4,7 @@ use base::LiteMap;
 use glam::DVec2;
 use ink::{Classified, Ink, Source, StrokeClass};
 
+use super::chains::Chain;
 use super::classes::{Hidden, STRUCTURE, Structure};
 use super::readers::{ARRANGEMENT, Proposal};
 use super::sheet::Sheet;
@@ -12,6 +13,27 @@ use super::vessel::vessel;
 use crate::confidence::CONFIDENCE_LIMITS;
 use crate::several::Back;
 use crate::{Reading, StrokeReading};
+
+/// Several strokes of a drawing as one line.
+#[derive(Clone, Debug)]
+pub(crate) struct Joined {
+    /// Their rows, the first most of it; at least one.
+    pub(crate) rows: Vec<usize>,
+    pub(crate) line: Vec<DVec2>,
+    pub(crate) class: StrokeClass,
+}
+
+impl Joined {
+    /// Both sides of an axis as that axis.
+    pub(crate) fn axis(tube: &Tube) -> Self {
+        Self { rows: tube.rows(), line: tube.middle.clone(), class: StrokeClass::Axis }
+    }
+
+    /// The lines round a blade as its outline.
+    pub(crate) fn blade(chain: &Chain) -> Self {
+        Self { rows: chain.rows.clone(), line: chain.outline.clone(), class: StrokeClass::Blade }
+    }
+}
 
 /// Ink that was cut anew from the strokes of a drawing, and what is said of it.
 pub(crate) struct Composed {
@@ -44,21 +66,22 @@ impl Composed {
         Self { ink: own, classes: classified, structure, made_of }
     }
 
-    /// The strokes of a drawing with one line in place of both sides of each tube; `None` where there are no tubes.
-    pub(crate) fn without_sides(ink: &Ink, classes: &[Classified], tubes: &[Tube]) -> Option<Self> {
-        if tubes.is_empty() {
+    /// The strokes of a drawing with one line in place of those that were joined; `None` where none were.
+    pub(crate) fn with_joined(ink: &Ink, classes: &[Classified], joined: &[Joined]) -> Option<Self> {
+        if joined.is_empty() {
             return None;
         }
-        let is_side = |k: &usize| tubes.iter().any(|t| t.has(*k));
-        let kept: Vec<usize> = (0..ink.strokes.len()).filter(|k| !is_side(k)).collect();
+        let is_joined = |k: &usize| joined.iter().any(|j| j.rows.contains(k));
+        let said_of = |k: usize| classes.get(k).copied().unwrap_or_default();
+        let kept: Vec<usize> = (0..ink.strokes.len()).filter(|k| !is_joined(k)).collect();
         let mut made_of: Vec<Vec<usize>> = kept.iter().map(|&k| vec![k]).collect();
-        made_of.extend(tubes.iter().map(Tube::rows));
+        made_of.extend(joined.iter().map(|j| j.rows.clone()));
         let points = kept.iter().map(|&k| ink.strokes[k].points.clone());
-        let points = points.chain(tubes.iter().map(|t| t.middle.clone()));
+        let points = points.chain(joined.iter().map(|j| j.line.clone()));
         let own = ink.with_lines(&lines(points, &made_of));
-        let mut classified: Vec<Classified> =
-            kept.iter().map(|&k| classes.get(k).copied().unwrap_or_default()).collect();
-        classified.extend(tubes.iter().map(|_| said(StrokeClass::Axis, 1.0, STRUCTURE)));
+        let mut classified: Vec<Classified> = kept.iter().map(|&k| said_of(k)).collect();
+        let by_user = |j: &Joined| Some(said_of(j.rows[0])).filter(|c| c.source == Source::User);
+        classified.extend(joined.iter().map(|j| by_user(j).unwrap_or_else(|| said(j.class, 1.0, STRUCTURE))));
         let structure = Structure::new(&Sheet::new(&own), &vessel(&own), &classified);
         Some(Self { ink: own, classes: classified, structure, made_of })
     }

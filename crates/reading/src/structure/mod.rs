@@ -8,6 +8,7 @@
 //! | `sheet` | the facts of each stroke, found once and never changed |
 //! | `hidden` | outlines completed behind what covers them |
 //! | `classes` | what strokes are by these facts |
+//! | `chains` | blades whose outline was drawn in several strokes |
 //! | `score` | how well a reading explains the drawing |
 //! | `tubes` | stems that were drawn by both their sides |
 //! | `vessel` | pots that were drawn in several strokes |
@@ -15,6 +16,7 @@
 //! | `readers` | plants that are known by the arrangement of their faces and lines |
 //! | `compose` | from the parts that a reader proposes to a reading |
 
+mod chains;
 mod classes;
 mod compose;
 mod faces;
@@ -26,8 +28,9 @@ mod sheet;
 mod tubes;
 mod vessel;
 
+pub(crate) use chains::chains;
 pub(crate) use classes::{Hidden, STRUCTURE, Structure};
-pub(crate) use compose::Composed;
+pub(crate) use compose::{Composed, Joined};
 pub use readers::ARRANGEMENT;
 pub(crate) use readers::widest_gap;
 pub(crate) use score::score;
@@ -54,6 +57,12 @@ pub(crate) struct StructureLimits {
     pub(crate) spanned: usize,
     /// It bulges to one side: to the other side by less than this share of that.
     pub(crate) one_sided: f64,
+    /// A stroke is both sides of a blade, wherever its ends lie, if they are nearer than this share of its length,
+    pub(crate) hairpin: f64,
+    /// and it goes round more than this many times the triangle of its ends and its tip.
+    pub(crate) round_something: f64,
+    /// ... and more than this share of its hull.
+    pub(crate) round_convex: f64,
     /// A stroke lies in an outline with more than this share of its points.
     pub(crate) inside: f64,
     /// An outline lies in another one only if its area is below this share of the other's.
@@ -66,6 +75,12 @@ pub(crate) struct StructureLimits {
     pub(crate) repeated: usize,
     /// So many marks in one outline are its texture (scales, seeds), not its veins.
     pub(crate) texture: usize,
+    /// The diagonals of the boxes of most of them are shorter than this share of that of its box.
+    pub(crate) small_mark: f64,
+    /// A midrib is longer than this share of the diagonal of its leaf's box,
+    pub(crate) midrib: f64,
+    /// and it and its side veins are so many lines at least.
+    pub(crate) veins: usize,
     /// Repeated outlines are fruits or florets, not blades, if they are rounder than this: 4 pi area / perimeter^2, 1 of a circle.
     pub(crate) round: f64,
     /// Repeated outlines are fruits only if they are plumper than this (slenderness).
@@ -94,8 +109,13 @@ pub(crate) struct StructureLimits {
     /// A drawing of so many strokes is of many organs. Where it was read as one solid, a structural reading may explain this much less.
     pub(crate) many_strokes: usize,
     pub(crate) solid_of_many: f64,
+    /// A drawing of so many strokes is none of those from which kinds were learnt: what it resembles does not weigh against its
+    /// structure.
+    pub(crate) no_doodle: usize,
     /// The structural reading replaces another one only if its score is better by more than this.
     pub(crate) clearly_better: f64,
+    /// A drawing of more strokes is not looked at: the facts of each are found among those of all others.
+    pub(crate) most_strokes: usize,
 }
 
 /// Chosen on 16 illustrations and on doodles of the part to choose by; see `docs/strokes.md`.
@@ -107,12 +127,18 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     bulge: 0.3,
     spanned: 3,
     one_sided: 0.35,
+    hairpin: 0.5,
+    round_something: 1.15,
+    round_convex: 0.5,
     inside: 0.85,
     smaller: 0.5,
     alike_area: 2.5,
     alike_slenderness: 0.2,
     repeated: 4,
     texture: 6,
+    small_mark: 0.35,
+    midrib: 0.45,
+    veins: 4,
     round: 0.85,
     plump: 0.72,
     small_area: 0.0015,
@@ -128,7 +154,9 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     weight_of_kind: 0.02,
     many_strokes: 15,
     solid_of_many: 0.05,
+    no_doodle: 40,
     clearly_better: 0.02,
+    most_strokes: 400,
 };
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The facts of each stroke: form, outline, what holds it, what it holds.
 
 use base::ops;
-use geom::{bounds, contains, distance_to_polyline, pca2, polyline_length, signed_area};
+use geom::{bounds, contains, convex_hull, distance_to_polyline, pca2, polyline_length, signed_area};
 use glam::DVec2;
 use ink::{Ink, InkStroke, StrokeMode};
 
@@ -93,6 +93,10 @@ pub(crate) struct Facts {
     joined: usize,
     /// Strokes that lie in its outline and in no smaller one.
     pub(crate) marks: usize,
+    /// Whether these are the venation of a leaf: a midrib with others that begin on it.
+    pub(crate) is_veined: bool,
+    /// Whether these are many and small: scales or seeds.
+    pub(crate) is_textured: bool,
 }
 
 /// The facts of all strokes of one plant, by their rows.
@@ -108,7 +112,9 @@ impl Sheet {
     pub(crate) fn new(ink: &Ink) -> Self {
         let mut near = Near::new(LIMITS.junction);
         ink.strokes.iter().enumerate().for_each(|(k, s)| near.add_line(k, &s.points));
-        let mut facts: Vec<Facts> = ink.strokes.iter().enumerate().map(|(k, s)| alone(&near, k, s)).collect();
+        let is_of_many = ink.strokes.len() >= LIMITS.many_strokes;
+        let mut facts: Vec<Facts> =
+            ink.strokes.iter().enumerate().map(|(k, s)| alone(&near, k, s, is_of_many)).collect();
         let mut holders: Vec<Option<usize>> = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
         let spanning = spanning(&facts, &holders);
         if !spanning.is_empty() {
@@ -122,6 +128,12 @@ impl Sheet {
             if let Some(holder) = holder {
                 facts[holder].marks += 1;
             }
+        }
+        for k in veined(ink, &facts) {
+            facts[k].is_veined = true;
+        }
+        for k in textured(ink, &facts) {
+            facts[k].is_textured = true;
         }
         let open = facts.iter().filter(|f| f.form != Form::Ring).count();
         let joined: usize = facts.iter().filter(|f| f.form != Form::Ring).map(|f| f.joined).sum();
@@ -149,8 +161,9 @@ fn spanning(facts: &[Facts], holders: &[Option<usize>]) -> Vec<usize> {
     (0..facts.len()).filter(|&k| facts[k].form == Form::Bay && held(k) >= LIMITS.spanned).collect()
 }
 
-/// What a stroke is by itself and by what its ends lie on.
-fn alone(near: &Near, k: usize, stroke: &InkStroke) -> Facts {
+/// What a stroke is by itself and by what its ends lie on. `is_of_many`: whether the drawing is one of many organs; in others an
+/// open arc is a gloss, or a line of a hasty hand.
+fn alone(near: &Near, k: usize, stroke: &InkStroke, is_of_many: bool) -> Facts {
     let points = &stroke.points;
     let (start, end) = (points[0], points[points.len() - 1]);
     let covered = |p: DVec2| near.nearest(p, LIMITS.junction, |owner| owner != k).is_some();
@@ -159,14 +172,73 @@ fn alone(near: &Near, k: usize, stroke: &InkStroke) -> Facts {
         (Form::Line, None)
     } else if start.distance(end) < LIMITS.closed * stroke.length {
         (Form::Ring, Outline::new(points.clone()))
-    } else if bulges(points) && ends == [true; 2] {
+    } else if bulges(points) && ends == [true; 2] || is_of_many && goes_round(points, stroke.length) {
         (Form::Bay, Outline::new(complete(points)))
     } else {
         (Form::Line, None)
     };
     let form = if outline.is_none() { Form::Line } else { form };
     let joined = ends.into_iter().filter(|on| *on).count();
-    Facts { form, outline, holder: None, joined, marks: 0 }
+    Facts { form, outline, holder: None, joined, marks: 0, is_veined: false, is_textured: false }
+}
+
+/// Whether a line leads out and back again, round something: both sides of a blade, with its tip between them, however its ends
+/// lie. Two stalks that spread from one foot go round nothing: they are straight, or bend outwards.
+pub(crate) fn goes_round(points: &[DVec2], length: f64) -> bool {
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let Some(tip) = farthest_from_chord(points) else { return false };
+    let triangle = 0.5 * (tip - start).perp_dot(end - start).abs();
+    let area = signed_area(points).abs();
+    start.distance(end) < LIMITS.hairpin * length
+        && area > LIMITS.round_something * triangle
+        && area > LIMITS.round_convex * signed_area(&convex_hull(points)).abs()
+}
+
+/// The point of a line that is farthest from the middle between its ends.
+fn farthest_from_chord(points: &[DVec2]) -> Option<DVec2> {
+    let middle = points.first()?.midpoint(*points.last()?);
+    let off = |p: &DVec2| p.distance_squared(middle);
+    points.iter().max_by(|a, b| off(a).total_cmp(&off(b))).copied()
+}
+
+/// Outlines with many marks, most of them small beside the outline.
+fn textured(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
+    let is_textured = |&k: &usize| {
+        let Some(outline) = facts[k].outline.as_ref().filter(|_| facts[k].marks >= LIMITS.texture) else {
+            return false;
+        };
+        let extent = outline.low.distance(outline.high);
+        let is_small = |j: &usize| {
+            let size = bounds(&ink.strokes[*j].points).map_or(0.0, |(low, high)| low.distance(high));
+            facts[*j].holder == Some(k) && size < LIMITS.small_mark * extent
+        };
+        2 * (0..facts.len()).filter(is_small).count() > facts[k].marks && !facts[k].is_veined
+    };
+    (0..facts.len()).filter(is_textured).collect()
+}
+
+/// Outlines with a venation: of the lines in one, the longest leads through most of it, and most others begin on that.
+fn veined(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
+    let is_veined = |&k: &usize| {
+        let Some(outline) = facts[k].outline.as_ref().filter(|_| facts[k].marks >= LIMITS.veins) else {
+            return false;
+        };
+        let is_mark = |j: &usize| facts[*j].holder == Some(k) && facts[*j].form == Form::Line;
+        let marks: Vec<usize> = (0..facts.len()).filter(is_mark).collect();
+        let lines = || marks.iter().map(|&j| &ink.strokes[j]);
+        let Some(midrib) = lines().max_by(|a, b| a.length.total_cmp(&b.length)) else { return false };
+        let begins_on = |s: &&InkStroke| {
+            let ends = [s.points[0], s.points[s.points.len() - 1]];
+            let is_on =
+                |p: DVec2| distance_to_polyline(&midrib.points, p).is_some_and(|d| d < 2.0 * LIMITS.junction);
+            !core::ptr::eq(*s, midrib) && ends.into_iter().any(is_on)
+        };
+        let side_veins = lines().filter(begins_on).count();
+        midrib.length > LIMITS.midrib * outline.low.distance(outline.high)
+            && 2 * side_veins + 1 >= facts[k].marks
+            && side_veins + 1 >= LIMITS.veins
+    };
+    (0..facts.len()).filter(is_veined).collect()
 }
 
 /// Whether a line leaves its chord to one side, and far.

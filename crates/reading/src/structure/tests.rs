@@ -155,3 +155,58 @@ fn small_rings_where_petals_meet_are_discs_and_rings_on_stalks_are_none() {
         .collect();
     assert!(!classes_of(&berries).contains(&Some(StrokeClass::Disc)));
 }
+
+/// One side of a leaf, from its foot to its tip, `bend` wide at half its length.
+fn side(foot: (f64, f64), tip: (f64, f64), bend: f64) -> Vec<DVec2> {
+    let (foot, tip) = (DVec2::from(foot), DVec2::from(tip));
+    let out = (tip - foot).perp().normalize_or_zero() * bend;
+    let to = |t: f64| foot.lerp(tip, t) + out * (4.0 * t * (1.0 - t));
+    (0..=30).map(|k| to(f64::from(k) / 30.0)).collect()
+}
+
+fn chains_of(lines: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
+    let ink = clean(&Drawing::from_polylines("herb", lines), &mut Report::default());
+    super::chains(&ink, &Sheet::new(&ink), |_| true).into_iter().map(|c| c.rows).collect()
+}
+
+#[test]
+fn sides_that_bend_outwards_and_meet_at_a_tip_are_one_blade_and_stalks_from_one_foot_are_none() {
+    let stem = straight((0.0, -40.0), (0.0, 40.0));
+    let left = side((0.0, 0.0), (30.0, 25.0), 4.0);
+    let right: Vec<DVec2> = side((1.0, -6.0), (30.0, 25.0), -4.0);
+    let mut found = chains_of(&[stem.clone(), left.clone(), right.clone()]);
+    found.iter_mut().for_each(|rows| rows.sort_unstable());
+    assert_eq!(found, [[1, 2]]);
+    // Of three parts, with the midrib up to the tip.
+    let (low, high) = (right[..16].to_vec(), right[15..].to_vec());
+    let midrib = straight((0.0, -3.0), (30.0, 25.0));
+    let mut found = chains_of(&[stem.clone(), left, low, high, midrib]);
+    found.iter_mut().for_each(|rows| rows.sort_unstable());
+    assert_eq!(found, [[1, 2, 3]]);
+    // Stalks are straight, or bend apart.
+    for bend in [0.0, 4.0] {
+        let one = side((0.0, -40.0), (-12.0, 20.0), -bend);
+        let other = side((0.0, -40.0), (12.0, 20.0), bend);
+        assert!(chains_of(&[one, other]).is_empty(), "{bend}");
+    }
+}
+
+#[test]
+fn blades_with_a_midrib_and_side_veins_are_leaves() {
+    let leaf = |way: f64| {
+        let turn = |p: DVec2| at(way, 1.0).rotate(p);
+        let outline: Vec<DVec2> = (0..=60)
+            .map(|k| DVec2::new(6.0, 0.0) + at(TAU * f64::from(k) / 60.0, 1.0) * DVec2::new(5.0, 2.5))
+            .collect();
+        let vein = |x: f64, y: f64| straight((x, 0.0), (x + 1.5, y));
+        let midrib = straight((1.0, 0.0), (11.0, 0.0));
+        let lines = [outline, midrib, vein(3.0, 1.2), vein(4.0, -1.4), vein(5.0, 1.4)];
+        lines.map(|line| line.into_iter().map(turn).collect::<Vec<_>>())
+    };
+    let lines: Vec<Vec<DVec2>> = (0..5).flat_map(|k| leaf(TAU * f64::from(k) / 5.0)).collect();
+    let ink = clean(&Drawing::from_polylines("whorl", &lines), &mut Report::default());
+    let sheet = Sheet::new(&ink);
+    assert!((0..5).all(|k| sheet.facts[5 * k].is_veined && !sheet.facts[5 * k].is_textured));
+    let said = vec![Classified::by_shares([0.0; StrokeClass::ALL.len()]); ink.strokes.len()];
+    assert_eq!(Structure::new(&sheet, &[], &said).leaves(), [0, 5, 10, 15, 20]);
+}

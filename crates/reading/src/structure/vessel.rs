@@ -18,15 +18,17 @@ struct VesselLimits {
     side: f64,
     /// over at least this share of the pot's height below the rim.
     down: f64,
+    /// Leaves that hang over the rim reach at most this share of the height down beside the pot.
+    hang: f64,
     /// The pot is between these many times as high as wide.
     high: core::ops::Range<f64>,
 }
 
 const LIMITS: VesselLimits =
-    VesselLimits { level: 4.0, rim: 0.08, slack: 0.06, side: 0.2, down: 0.6, high: 0.12..1.6 };
+    VesselLimits { level: 4.0, rim: 0.08, slack: 0.06, side: 0.2, down: 0.6, hang: 0.6, high: 0.12..1.6 };
 
 /// The strokes of a pot at the foot of a drawing, its rim first; none unless something stands above it and nothing reaches
-/// below its rim beside it. Cost: strokes times rims.
+/// far below its rim beside it. Cost: strokes times rims.
 pub(crate) fn vessel(ink: &Ink) -> Vec<usize> {
     let boxes: Vec<(DVec2, DVec2)> =
         ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
@@ -50,20 +52,30 @@ fn below(boxes: &[(DVec2, DVec2)], rim: usize) -> Option<Vec<usize>> {
             && boxes[k].1.x < high.x + slack
     };
     let parts: Vec<usize> = (0..boxes.len()).filter(is_part).collect();
-    let is_beside = |k: usize| k != rim && !parts.contains(&k) && boxes[k].0.y < low.y - slack;
+    let foot = parts.iter().map(|&k| boxes[k].0.y).fold(low.y, f64::min);
+    let tall = low.y - foot;
+    let is_beside =
+        |k: usize| k != rim && !parts.contains(&k) && boxes[k].0.y < low.y - slack.max(LIMITS.hang * tall);
     let grows = (0..boxes.len()).any(|k| k != rim && !parts.contains(&k));
     if parts.is_empty() || !grows || (0..boxes.len()).any(is_beside) {
         return None;
     }
-    let foot = parts.iter().map(|&k| boxes[k].0.y).fold(low.y, f64::min);
-    let tall = low.y - foot;
     if !LIMITS.high.contains(&(tall / wide)) {
         return None;
     }
-    let goes_down = |k: &usize| boxes[*k].1.y > low.y - slack && low.y - boxes[*k].0.y > LIMITS.down * tall;
     let reach = LIMITS.side * wide;
-    let left = parts.iter().any(|k| goes_down(k) && boxes[*k].0.x < low.x + reach);
-    let right = parts.iter().any(|k| goes_down(k) && boxes[*k].1.x > high.x - reach);
+    let on_left = |k: &usize| boxes[*k].1.x < low.x + 2.0 * reach && boxes[*k].0.x < low.x + reach;
+    let on_right = |k: &usize| boxes[*k].0.x > high.x - 2.0 * reach && boxes[*k].1.x > high.x - reach;
+    // A side may be interrupted where a broader rim meets the wall.
+    let goes_down = |is_side: &dyn Fn(&usize) -> bool| {
+        let side = || parts.iter().filter(|k| is_side(k)).map(|&k| boxes[k]);
+        let top = side().map(|b| b.1.y).fold(f64::NEG_INFINITY, f64::max);
+        let covered: f64 = side().map(|b| b.1.y.min(low.y) - b.0.y).sum();
+        top > low.y - slack && covered > LIMITS.down * tall
+    };
+    let is_whole = |k: &usize| boxes[*k].0.x < low.x + reach && boxes[*k].1.x > high.x - reach;
+    let left = goes_down(&|k| on_left(k) || is_whole(k));
+    let right = goes_down(&|k| on_right(k) || is_whole(k));
     (left && right).then(|| core::iter::once(rim).chain(parts).collect())
 }
 
@@ -92,6 +104,13 @@ mod tests {
         let leaf = line(&[[16.0, 60.0], [30.0, 66.0], [16.0, 70.0], [16.0, 60.0]]);
         let mut lines = vec![rim, left, right, bottom, stem, leaf];
         assert_eq!(pot_of(&lines), [0, 1, 2, 3]);
+        // A broader rim above the wall, and a leaf that hangs over it.
+        let mut rimmed = lines.clone();
+        rimmed[0] = line(&[[-2.0, 24.0], [32.0, 24.0]]);
+        rimmed.push(line(&[[-2.0, 24.0], [-2.0, 20.0]]));
+        rimmed.push(line(&[[32.0, 24.0], [32.0, 20.0]]));
+        rimmed.push(line(&[[16.0, 40.0], [36.0, 38.0], [40.0, 14.0], [34.0, 30.0], [16.0, 38.0]]));
+        assert_eq!(pot_of(&rimmed), [0, 1, 2, 3, 6, 7]);
         // A root that reaches past it, and a pot without sides.
         lines.push(line(&[[40.0, 23.0], [44.0, 0.0]]));
         assert!(pot_of(&lines).is_empty());
