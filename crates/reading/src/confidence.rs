@@ -29,6 +29,10 @@ pub struct ConfidenceLimits {
     /// The confidence in a drawing of so many strokes that no kind is weighed against another: both such drawings among the line
     /// art by people are read wrong.
     pub not_weighed: f64,
+    /// A reading of many strokes that explains less of them than this (0 to 1) is a guess at the whole.
+    pub explained_least: f64,
+    /// The most confidence in such a guess: of 8 in line art by people none is right.
+    pub guess_most: f64,
     /// The strokes of a botanical illustration, where a doodle has fewer.
     pub many_strokes: usize,
 }
@@ -42,6 +46,8 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     by_arrangement_least: 0.8,
     tangle_most: 0.05,
     not_weighed: 0.35,
+    explained_least: 0.8,
+    guess_most: 0.35,
     many_strokes: 15,
 };
 
@@ -62,6 +68,11 @@ pub struct Evidence {
     pub by_arrangement: bool,
     /// Whether most of its axes lead to nothing.
     pub is_tangle: bool,
+    /// Whether it is a tree, palm or bush: kinds of which the model has seen all forms, so that its share counts whatever the
+    /// structure says.
+    pub is_wood: bool,
+    /// How much of a drawing of many strokes it explains: 0 to 1.
+    pub explained: f64,
 }
 
 /// Names of the numbers of [`Evidence::row`], in their order.
@@ -80,17 +91,20 @@ impl Evidence {
         let Some(coefficients) = fitted() else { return self.share };
         let sum: f64 = self.row().iter().zip(coefficients).map(|(x, c)| x * c).sum();
         let chance = 1.0 / (1.0 + ops::exp(-sum));
+        let limits = CONFIDENCE_LIMITS;
         if self.is_tangle {
-            return chance.min(CONFIDENCE_LIMITS.tangle_most);
+            return chance.min(limits.tangle_most);
+        }
+        let is_many = self.strokes >= limits.many_strokes;
+        if is_many && self.explained < limits.explained_least {
+            return chance.min(limits.guess_most);
         }
         if self.by_arrangement {
-            return chance.max(CONFIDENCE_LIMITS.by_arrangement_least);
+            return chance.max(limits.by_arrangement_least);
         }
-        if !self.by_structure {
+        if !self.by_structure || self.is_wood {
             return chance;
         }
-        let limits = CONFIDENCE_LIMITS;
-        let is_many = self.strokes >= limits.many_strokes;
         chance.max(if is_many { limits.by_structure_of_many } else { limits.by_structure_least })
     }
 }
@@ -134,6 +148,8 @@ mod tests {
             by_structure: false,
             by_arrangement: false,
             is_tangle: false,
+            is_wood: false,
+            explained: 1.0,
         };
         let now = own.confidence();
         assert!(now > 0.0 && now < 1.0);
@@ -156,10 +172,17 @@ mod tests {
             by_structure: true,
             by_arrangement: false,
             is_tangle: false,
+            is_wood: false,
+            explained: 1.0,
         };
         assert!(own.confidence() >= CONFIDENCE_LIMITS.by_structure_of_many);
         assert!(Evidence { by_structure: false, ..own }.confidence() < own.confidence());
         let tangle = Evidence { is_tangle: true, ..own }.confidence();
         assert!(tangle <= CONFIDENCE_LIMITS.tangle_most);
+        // Trees the model knows, and what leaves most of the ink aside is a guess.
+        assert!(Evidence { is_wood: true, ..own }.confidence() < own.confidence());
+        let guess = Evidence { share: 1.0, by_structure: false, explained: 0.5, ..own };
+        assert!(guess.confidence() <= CONFIDENCE_LIMITS.guess_most);
+        assert!(Evidence { explained: 1.0, ..guess }.confidence() > CONFIDENCE_LIMITS.guess_most);
     }
 }

@@ -393,11 +393,22 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_structure: is_structural,
         by_arrangement: sure.is_some(),
         is_tangle: tangled_length(&reading) > 0.0,
+        is_wood: matches!(kind, Kind::Tree | Kind::Conifer | Kind::Palm | Kind::Bush),
+        explained: explained(ink, &reading),
     };
     let readings = readings(kind, &evidence, &scores);
     let word = called.or_else(|| glance::word(kind, &glance.words));
     reading.plants = vec![described(ink, kind, (evidence, readings), word)];
     reading
+}
+
+/// How much of a drawing of many organs a reading explains: 0 to 1. Of a drawing of few strokes, or of more than are looked at, 1.
+fn explained(ink: &Ink, reading: &Reading) -> f64 {
+    let limits = structure::LIMITS;
+    if !(limits.many_strokes..=limits.most_strokes).contains(&ink.strokes.len()) {
+        return 1.0;
+    }
+    structure::score(ink, &Sheet::new(ink), reading, &[])
 }
 
 /// How likely a kind is, with all that are built alike.

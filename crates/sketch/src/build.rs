@@ -11,7 +11,7 @@ use reading::{BladeReading, Reading, RegionKind};
 use crate::bodies::name_bodies;
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
-    leaf_shape, place_flower, place_fruit, place_leaf, place_pot, place_thorn,
+    leaf_shape, place_flower, place_fruit, place_leaf, place_pot, place_thorn, usual_colour,
 };
 use crate::fill::{FillContext, GrownContour, KeptBodies, fill};
 use crate::front::Front;
@@ -104,8 +104,16 @@ pub fn build_again(
     let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
     let colors = blades.map(|b| b.color).chain(filled);
     let pressed = base::map_of(reading.pressed.iter().copied().filter(|p| p.1.is_finite() && p.1 > 0.0));
-    let scene =
-        Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors), pressed: &pressed };
+    let scene = Scene {
+        spec,
+        seed,
+        map,
+        plans: &plans,
+        ids: &ids,
+        coloured: coloured(colors),
+        petals: usual_colour(reading.flowers.iter().flat_map(|f| &f.petals)),
+        pressed: &pressed,
+    };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);
     let templates: Vec<(ShapeId, Option<u32>)> = leaves.iter().map(|l| (l.shape, l.leaf.source)).collect();

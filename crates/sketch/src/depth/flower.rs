@@ -11,7 +11,7 @@ use reading::{BladeReading, FlowerReading};
 use super::axes::{Part, key_of};
 use super::fruit::{Profile, profile};
 use super::leaf::LocalBlade;
-use super::scene::{Bearing, Scene, around_one, sane, usable};
+use super::scene::{Bearing, Scene, around_one, drawn_light, sane, usable, usual_colour};
 
 /// Half opening of a flower whose drawing does not tell (60 degrees).
 const OPEN: f64 = ops::PI / 3.0;
@@ -108,7 +108,8 @@ pub(crate) fn place_flower(
         half_angle: corolla.fit.cone.half_angle.clamp(0.0, ops::FRAC_PI_2),
         whorls: u32::try_from(whorls.len()).unwrap_or(u32::MAX),
     });
-    let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key, color: None };
+    let usual = usual_colour(flower.petals.iter()).or(scene.petals);
+    let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key, color: None, usual };
     let id = FlowerId::new(part.plant.flowers.len() - 1);
     let mut part = Organs { flower: id, ..part };
     if let Some(petal) = bell(flower) {
@@ -209,9 +210,16 @@ struct Organs<'a, 'b> {
     key: u64,
     /// Of the petal at hand.
     color: Option<[u8; 3]>,
+    /// Of petals that were drawn in ink alone.
+    usual: Option<[u8; 3]>,
 }
 
 impl Organs<'_, '_> {
+    /// The colour that a petal was drawn in, or that of its neighbours.
+    fn colour_of(&self, petal: &BladeReading) -> Option<[u8; 3]> {
+        petal.color.filter(|&c| drawn_light(c).is_some()).or(self.usual)
+    }
+
     fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, key: u64, source: Option<u32>) {
         let shape = self.plant.add_shape(shape);
         let petal = kind == OrganKind::Petal;
@@ -304,7 +312,7 @@ impl Organs<'_, '_> {
         let key = key_of(Part::Petal, petal.source, 0, self.key);
         let lean = self.scene.seed.child(key).stream(Draw::Curl).range(-LEAN, LEAN);
         let frame = Frame::looking(at + shift.extend(0.0), along.extend(lean).normalize(), DVec3::Z);
-        self.color = petal.color;
+        self.color = self.colour_of(petal);
         self.push(OrganKind::Petal, Shape::Revolution { profile }, frame, key, petal.source);
     }
 
@@ -369,7 +377,7 @@ impl Organs<'_, '_> {
             lift,
             relief,
         };
-        self.color = petal.color;
+        self.color = self.colour_of(petal);
         self.push(OrganKind::Petal, Shape::Blade(blade), frame, key, petal.source);
     }
 

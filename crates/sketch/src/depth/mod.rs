@@ -15,5 +15,5 @@ pub(crate) use branch::{bend_by_light_and_weight, branch_depths};
 pub(crate) use flower::place_flower;
 pub(crate) use fruit::place_fruit;
 pub(crate) use leaf::{LocalBlade, blade_key, leaf_shape, place_leaf};
-pub(crate) use scene::{Bearing, Scene, coloured, drawn_light};
+pub(crate) use scene::{Bearing, Scene, coloured, drawn_light, usual_colour};
 pub(crate) use solid::{place_pot, place_thorn};

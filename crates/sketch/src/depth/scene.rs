@@ -3,7 +3,7 @@
 use base::{Draw, LiteMap, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, Paint, Plant};
-use reading::Attachment;
+use reading::{Attachment, BladeReading};
 
 use super::Plans;
 use crate::{PlantMap, SketchSpec};
@@ -22,6 +22,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) ids: &'a [Option<AxisId>],
     /// Drawn with coloured pens: organs take the colour that they were drawn in.
     pub(crate) coloured: bool,
+    /// The colour of petals that were drawn in ink alone, in a coloured drawing: that of most petals with one.
+    pub(crate) petals: Option<[u8; 3]>,
     /// How boldly strokes were drawn, beside the usual one, of those that differ from it.
     pub(crate) pressed: &'a LiteMap<u32, f64>,
 }
@@ -116,6 +118,20 @@ impl Scene<'_> {
         let times = |light: [f64; 3]| [0, 1, 2].map(|i| (light[i] * varied[i]) as f32);
         drawn.map_or_else(|| Paint::Natural(times([1.0; 3])), |light| Paint::Drawn(times(light)))
     }
+}
+
+/// The colour in which most blades were drawn that have one; of as many the first. Those of one kind that have none are hidden in
+/// part: their colour lies under those in front.
+pub(crate) fn usual_colour<'a>(blades: impl Iterator<Item = &'a BladeReading>) -> Option<[u8; 3]> {
+    let mut counts: Vec<([u8; 3], usize)> = Vec::new();
+    for color in blades.filter_map(|b| b.color).filter(|&c| drawn_light(c).is_some()) {
+        match counts.iter_mut().find(|(c, _)| *c == color) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((color, 1)),
+        }
+    }
+    let most = counts.iter().map(|(_, count)| *count).max()?;
+    counts.into_iter().find(|(_, count)| *count == most).map(|(color, _)| color)
 }
 
 /// Whether a drawing was made with coloured pens: its organs have two different colours at least, one of which is
