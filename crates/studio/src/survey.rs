@@ -10,6 +10,8 @@ use render::{Hit, PictureSpec, View};
 use skin::{Layout, Owner};
 use spec::RangeFault;
 
+use crate::site::Site;
+
 /// How a plant is scanned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurveySpec {
@@ -77,10 +79,16 @@ base::coded!(SurveyError {} wraps {
 });
 
 /// What a point lies on, by the row that is its label.
-pub const PARTS: [&str; 19] = [
+pub const PARTS: [&str; 21] = [
     "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
-    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub",
+    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub", "soil", "stone",
 ];
+
+/// The row of [`PARTS`] of soil.
+pub const PART_OF_SOIL: u8 = 19;
+
+/// The row of [`PARTS`] of stones.
+pub const PART_OF_STONE: u8 = 20;
 
 /// The row of [`PARTS`] of an axis.
 pub const fn part_of_axis(kind: AxisKind) -> u8 {
@@ -92,6 +100,11 @@ pub const fn part_of_axis(kind: AxisKind) -> u8 {
         AxisKind::Stub => 18,
         _ => 4,
     }
+}
+
+/// Whether a row of [`PARTS`] is an axis, not an organ.
+pub const fn part_is_of_axis(part: u8) -> bool {
+    part < 5 || part == part_of_axis(AxisKind::Stub)
 }
 
 /// The row of [`PARTS`] of an organ.
@@ -267,19 +280,20 @@ pub struct Stood<'a> {
 }
 
 /// Scans a stand from stations around all of it, as [`survey`] scans a plant: plants hide one another. Labels are rows of
-/// the tables of each point's own plant.
+/// the tables of each point's own plant. `site`: what it stands on, which is seen as well.
 ///
-/// Returns the cloud, and of each point the plant, by its place in the stand.
+/// Returns the cloud, and of each point the plant, by its place in the stand; [`NOTHING`] on the site.
 ///
 /// # Errors
 /// [`SurveyError`].
 pub fn survey_stand(
     stand: &[Stood<'_>],
+    site: Option<&Site>,
     spec: &SurveySpec,
-    seed: Seed,
-    run: &Run<'_>,
-) -> Result<(Surveyed, Vec<u32>), SurveyError> {
-    let standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
+    (seed, run): (Seed, &Run<'_>),
+) -> Result<(Surveyed, Vec<i32>), SurveyError> {
+    let mut standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
+    standing.extend(site.map(|site| Standing::home("site", &site.model)));
     let model = crate::scene_model("stand", &standing);
     let owned: Vec<Owned<'_>> = stand.iter().map(|s| Owned::new(s.plant, s.layout)).collect();
     // The parts of the plants follow one another.
@@ -293,10 +307,14 @@ pub fn survey_stand(
         })
         .collect();
     let label = |hit: &Hit| {
+        if let Some(part) = hit.part.checked_sub(first) {
+            let part = *site?.labels.get(part as usize)?;
+            return Some((Label { part, axis: NOTHING, organ: NOTHING, order: 0 }, NOTHING));
+        }
         let row = firsts.partition_point(|f| *f <= hit.part).checked_sub(1)?;
         let Standing { position, turn, scale, .. } = stand[row].standing;
         let at = turn.inverse() * (hit.at - position) / scale;
-        Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, u32::try_from(row).ok()?))
+        Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, i32::try_from(row).ok()?))
     };
     beams(&model, spec, (seed, run), label)
 }
@@ -306,8 +324,8 @@ fn beams(
     model: &Model,
     spec: &SurveySpec,
     (seed, run): (Seed, &Run<'_>),
-    label: impl Fn(&Hit) -> Option<(Label, u32)>,
-) -> Result<(Surveyed, Vec<u32>), SurveyError> {
+    label: impl Fn(&Hit) -> Option<(Label, i32)>,
+) -> Result<(Surveyed, Vec<i32>), SurveyError> {
     spec.check()?;
     let wanted = spec.points as usize;
     // A fifth of the beams meet a plant of a dense crown, fewer a thin one: then the grid becomes finer.
@@ -454,11 +472,13 @@ mod tests {
             Stood { standing, plant, layout }
         };
         let alone = Stood { standing: Standing::home("a tree", model), plant, layout };
-        let (same, plants) = survey_stand(&[alone], &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        let (same, plants) =
+            survey_stand(&[alone], None, &spec, (Seed::new(5), &Run::plain())).expect("a cloud");
         assert_eq!(same, scanned(&tree, &spec));
         assert!(plants.iter().all(|p| *p == 0));
         let stand = [at(-2.0, 1.0), at(0.0, 0.7), at(2.0, 1.2)];
-        let (cloud, plants) = survey_stand(&stand, &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        let (cloud, plants) =
+            survey_stand(&stand, None, &spec, (Seed::new(5), &Run::plain())).expect("a cloud");
         assert_eq!((cloud.points.len(), plants.len()), (6000, 6000));
         for (k, p) in cloud.points.iter().enumerate().filter(|(k, _)| cloud.organ[*k] != NOTHING) {
             let Stood { standing, .. } = stand[plants[k] as usize];
