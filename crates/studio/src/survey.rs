@@ -103,7 +103,7 @@ pub const fn part_of_axis(kind: AxisKind) -> u8 {
 }
 
 /// Whether a row of [`PARTS`] is an axis, not an organ.
-pub const fn part_is_of_axis(part: u8) -> bool {
+pub(crate) const fn part_is_of_axis(part: u8) -> bool {
     part < 5 || part == part_of_axis(AxisKind::Stub)
 }
 
@@ -487,7 +487,7 @@ mod tests {
             let reach = standing.scale * organ.scale * plant.shapes[organ.shape.index()].reach();
             assert!(DVec3::from_array(*p).distance(root) <= 1.5 * reach + 1e-3);
         }
-        let of = |row: u32| plants.iter().filter(|p| **p == row).count();
+        let of = |row: i32| plants.iter().filter(|p| **p == row).count();
         // The small one stands in the middle.
         assert!(of(1) > 0 && of(1) < of(0).min(of(2)), "{} {} {}", of(0), of(1), of(2));
     }
