@@ -1,4 +1,4 @@
-"""Makes docs/pictures/labels.png: a scene of two potted shrubs, its instances with boxes and keypoints, its depth, its normals."""
+"""Makes docs/pictures/labels.png: two potted shrubs, their instances with boxes and keypoints, their depth, their normals."""
 
 import pathlib
 

@@ -1,8 +1,8 @@
 """Wood and leaf in point clouds: a classifier that learns from scans of grown plants alone, and how well it does.
 
-One learns from trees, one from small plants. Each is measured on plants of other seeds, on species that it never saw and, where its files lie beside the repository, on a laser scan
-of a tomato plant (../shared/data/scans/tomato_series), of which the points have no labels: they take that of the nearest edge of
-the skeleton that goes with the scan, stem or leaf.
+One learns from trees, one from small plants. Each is measured on plants of other seeds, on species that it never saw and, where
+its files lie beside the repository, on a laser scan of a tomato plant (../shared/data/scans/tomato_series), of which the points
+have no labels: they take that of the nearest edge of the skeleton that goes with the scan, stem or leaf.
 
     pip install scikit-learn
     python apps/python/notebooks/wood_and_leaf.py
@@ -73,9 +73,8 @@ def scanned(kind, species, seed):
 
 def told(name, truth, found):
     wood, leaf = f1_score(~truth, ~found), f1_score(truth, found)
-    share = np.mean(truth)
-    line = f"{name}: {len(truth):,} points, {share:.0%} of them leaf: F1 of wood {wood:.3f}, of leaf {leaf:.3f}, mean {(wood + leaf) / 2:.3f}"
-    print(line, flush=True)
+    shares = f"{len(truth):,} points, {np.mean(truth):.0%} of them leaf"
+    print(f"{name}: {shares}: F1 of wood {wood:.3f}, of leaf {leaf:.3f}, mean {(wood + leaf) / 2:.3f}", flush=True)
 
 
 def tomato():

@@ -33,6 +33,7 @@ mod made;
 mod make;
 mod motion;
 mod opening;
+mod parts;
 mod refusal;
 mod report;
 mod robot;
@@ -75,6 +76,7 @@ pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
+pub use parts::{NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, part_of_axis, part_of_organ};
 pub use refusal::Refusal;
 pub use report::{
     CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
@@ -101,10 +103,7 @@ pub use stands::{
     stand_map,
 };
 pub use structure::{write_structure, write_structure_with};
-pub use survey::{
-    NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, Stood, SurveyError, SurveySpec, Surveyed, part_of_axis,
-    part_of_organ, survey, survey_stand, triangle_labels,
-};
+pub use survey::{Stood, SurveyError, SurveySpec, Surveyed, survey, survey_stand, triangle_labels};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

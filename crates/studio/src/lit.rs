@@ -13,7 +13,8 @@ use light::{
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Standing};
 use serde::Serialize;
 
-use crate::survey::{NOTHING, PARTS, Stood, part_is_of_axis, part_of_axis, part_of_organ, triangle_labels};
+use crate::parts::{NOTHING, PARTS, part_is_of_axis, part_of_axis, part_of_organ};
+use crate::survey::{Stood, triangle_labels};
 
 /// What light is counted in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -5,11 +5,12 @@
 use base::{Cancelled, Draw, Run, Seed};
 use glam::DVec3;
 use mesh::{Model, Standing};
-use plant::{AxisId, AxisKind, OrganKind, Plant};
+use plant::{AxisId, Plant};
 use render::{Hit, PictureSpec, View};
 use skin::{Layout, Owner};
 use spec::RangeFault;
 
+use crate::parts::{NOTHING, part_of_axis, part_of_organ};
 use crate::site::Site;
 
 /// How a plant is scanned.
@@ -78,57 +79,6 @@ base::coded!(SurveyError {} wraps {
     Self::Cancelled(e) => e, Cancelled;
 });
 
-/// What a point lies on, by the row that is its label.
-pub const PARTS: [&str; 21] = [
-    "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
-    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub", "soil", "stone",
-];
-
-/// The row of [`PARTS`] of soil.
-pub const PART_OF_SOIL: u8 = 19;
-
-/// The row of [`PARTS`] of stones.
-pub const PART_OF_STONE: u8 = 20;
-
-/// The row of [`PARTS`] of an axis.
-pub const fn part_of_axis(kind: AxisKind) -> u8 {
-    match kind {
-        AxisKind::Branch => 0,
-        AxisKind::Twig => 1,
-        AxisKind::Stem => 2,
-        AxisKind::Petiole => 3,
-        AxisKind::Stub => 18,
-        _ => 4,
-    }
-}
-
-/// Whether a row of [`PARTS`] is an axis, not an organ.
-pub(crate) const fn part_is_of_axis(part: u8) -> bool {
-    part < 5 || part == part_of_axis(AxisKind::Stub)
-}
-
-/// The row of [`PARTS`] of an organ.
-pub const fn part_of_organ(kind: OrganKind) -> u8 {
-    match kind {
-        OrganKind::Leaf => 5,
-        OrganKind::Petal => 6,
-        OrganKind::Disc => 7,
-        OrganKind::Fruit | OrganKind::Syncarp => 8,
-        OrganKind::Stamen => 9,
-        OrganKind::Pistil => 10,
-        OrganKind::Thorn => 11,
-        OrganKind::Pedicel => 12,
-        OrganKind::Sepal => 13,
-        OrganKind::Anther => 14,
-        OrganKind::Floret => 15,
-        OrganKind::Pot => 17,
-        _ => 16,
-    }
-}
-
-/// No axis, no organ.
-pub const NOTHING: i32 = -1;
-
 /// The columns of a cloud, all of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surveyed {
@@ -136,7 +86,7 @@ pub struct Surveyed {
     pub points: Vec<[f64; 3]>,
     /// Unit vectors of the surface, towards the scanner.
     pub normals: Vec<[f32; 3]>,
-    /// Row of [`PARTS`].
+    /// Row of [`PARTS`](crate::PARTS).
     pub part: Vec<u8>,
     /// Row of the plant's axes: that it lies on or, of an organ, that bears the organ; [`NOTHING`] for none.
     pub axis: Vec<i32>,
@@ -226,7 +176,7 @@ fn row(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
 }
 
-/// What the triangles of each part of a model lie on: rows of [`PARTS`], of the plant's axes and of its organs.
+/// What the triangles of each part of a model lie on: rows of [`PARTS`](crate::PARTS), of the plant's axes and of its organs.
 ///
 /// `layout`: of this model. A triangle of a tube along several axes has the axis that is nearest to its middle.
 pub fn triangle_labels(plant: &Plant, model: &Model, layout: &Layout) -> Vec<Vec<[i32; 3]>> {

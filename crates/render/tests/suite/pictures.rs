@@ -298,7 +298,7 @@ fn a_pinhole_meets_a_plane_where_its_rays_do() {
     for hit in &seen[0] {
         let [x, y] = [f64::from(hit.pixel % 80) + 0.5, f64::from(hit.pixel / 80) + 0.5];
         let wanted = DVec3::new(0.3 + (x - 31.0) / 90.0 * 4.0, 1.1 - (y - 22.5) / 120.0 * 4.0, 0.0);
-        // Corners lie on whole 256ths of a pixel.
+        // Corners are rounded to 1/256 of a pixel.
         assert!(hit.at.distance(wanted) < 4.0 / 90.0 / 128.0, "{}: {} {wanted}", hit.pixel, hit.at);
         assert!((hit.distance_m - wanted.distance(pinhole().eye_m)).abs() < 1e-3);
     }
