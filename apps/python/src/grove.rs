@@ -6,7 +6,7 @@ use burgeon::document::Placement;
 use burgeon::formats::{PngCache, WriteError, gltf_files, write_glb_scene};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
-use burgeon::{PotSpec, Seed, Site, SiteSpec, Stood};
+use burgeon::{PotSpec, SceneSite, SceneSiteSpec, Seed, Stood};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -29,7 +29,7 @@ pub(crate) struct RawGrove {
     /// Rows of the plants, and where each stands.
     stand: Vec<(usize, Placement)>,
     /// What they stand on.
-    site: Option<Arc<Site>>,
+    site: Option<Arc<SceneSite>>,
 }
 
 /// What plants stand on, as Python asks for it.
@@ -51,13 +51,13 @@ pub(crate) struct Ground {
 }
 
 impl Ground {
-    fn site(&self, py: Python<'_>) -> PyResult<Site> {
+    fn site(&self, py: Python<'_>) -> PyResult<SceneSite> {
         let pot = |&(at, radius_m, height_m): &([f64; 3], f64, f64)| PotSpec {
             soil_m: DVec3::from_array(at),
             radius_m,
             height_m,
         };
-        let spec = SiteSpec {
+        let spec = SceneSiteSpec {
             soil_m: self.soil,
             relief_m: self.relief,
             stones: self.stones,

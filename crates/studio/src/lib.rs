@@ -93,7 +93,7 @@ pub use schemas::{flower_schema, leaf_schema, material_schema, sketch_schema, sk
 pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
-pub use site::{PotSpec, Site, SiteSpec, make_site};
+pub use site::{PotSpec, SceneSite, SceneSiteSpec, make_site};
 pub use split::{SplitError, split};
 pub use stands::{
     ForestPlan, ForestTilesError, ForestTilesSpec, LIMITS, Misfits, ModelsOf, Nursery, NurseryError,

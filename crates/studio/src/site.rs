@@ -1,6 +1,6 @@
 //! What plants of a scene stand on: soil with its relief, stones and pots, with the label of each part.
 //!
-//! `SiteSpec, seed -> Site { model, labels }`
+//! `SceneSiteSpec, seed -> SceneSite { model, labels }`
 
 use base::{Draw, Seed, ops};
 use glam::{DVec2, DVec3};
@@ -27,7 +27,7 @@ impl PotSpec {
 
 /// What plants stand on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SiteSpec {
+pub struct SceneSiteSpec {
     /// Sides of the soil along x and z, around the origin at y = 0, metres, each 0.05 to 1000.
     pub soil_m: [f64; 2],
     /// From the deepest hollow to the highest clod, metres, 0 to 0.5.
@@ -40,7 +40,7 @@ pub struct SiteSpec {
     pub pots: Vec<PotSpec>,
 }
 
-impl Default for SiteSpec {
+impl Default for SceneSiteSpec {
     fn default() -> Self {
         Self { soil_m: [4.0, 4.0], relief_m: 0.02, stones: 0, stone_m: 0.03, pots: Vec::new() }
     }
@@ -48,14 +48,14 @@ impl Default for SiteSpec {
 
 /// Meshes of a site, and what each is.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Site {
+pub struct SceneSite {
     /// Soil, stones and pots, each kind in a part of its own.
     pub model: Model,
     /// Of each part of the model its row of [`PARTS`](crate::PARTS).
     pub labels: Vec<u8>,
 }
 
-impl SiteSpec {
+impl SceneSiteSpec {
     fn check(&self) -> Result<(), RangeFault> {
         let own = [
             ("soil[0]", self.soil_m[0], [0.05, 1000.0], "m"),
@@ -93,9 +93,9 @@ const COLOUR_SPREAD: f64 = 0.3;
 ///
 /// # Errors
 /// [`RangeFault`] for a number out of its range.
-pub fn make_site(spec: &SiteSpec, seed: Seed) -> Result<Site, RangeFault> {
+pub fn make_site(spec: &SceneSiteSpec, seed: Seed) -> Result<SceneSite, RangeFault> {
     spec.check()?;
-    let mut site = Site::default();
+    let mut site = SceneSite::default();
     site.model.name = "site".into();
     let relief = Relief::new(seed.child(1), spec.relief_m);
     site.add("soil", LOAM, PART_OF_SOIL, soil(spec.soil_m, &relief));
@@ -109,7 +109,7 @@ pub fn make_site(spec: &SiteSpec, seed: Seed) -> Result<Site, RangeFault> {
     Ok(site)
 }
 
-impl Site {
+impl SceneSite {
     fn add(&mut self, name: &str, color: [f32; 3], label: u8, mut mesh: TriMesh) {
         mesh.compute_normals();
         let material = MaterialId::new(self.model.materials.len());
@@ -225,7 +225,7 @@ impl Rings {
     }
 }
 
-fn stones(spec: &SiteSpec, relief: &Relief, seed: Seed) -> TriMesh {
+fn stones(spec: &SceneSiteSpec, relief: &Relief, seed: Seed) -> TriMesh {
     const AROUND: u32 = 8;
     const RINGS: u32 = 5;
     let mut mesh = TriMesh::default();
@@ -282,13 +282,13 @@ fn pots(pots: &[PotSpec]) -> TriMesh {
 mod tests {
     use super::*;
 
-    fn made(spec: &SiteSpec, seed: u64) -> Site {
+    fn made(spec: &SceneSiteSpec, seed: u64) -> SceneSite {
         make_site(spec, Seed::new(seed)).expect("a site")
     }
 
     #[test]
     fn soil_has_its_sides_and_its_relief_and_faces_upwards() {
-        let spec = SiteSpec { soil_m: [3.0, 1.5], relief_m: 0.1, ..SiteSpec::default() };
+        let spec = SceneSiteSpec { soil_m: [3.0, 1.5], relief_m: 0.1, ..SceneSiteSpec::default() };
         let site = made(&spec, 1);
         let mesh = &site.model.parts[0].mesh;
         let reach = |k: usize| {
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn stones_and_pots_are_closed_to_the_outside() {
         let pot = PotSpec { soil_m: DVec3::new(0.5, 0.18, 0.0), radius_m: 0.1, height_m: 0.2 };
-        let spec = SiteSpec { stones: 3, pots: vec![pot], ..SiteSpec::default() };
+        let spec = SceneSiteSpec { stones: 3, pots: vec![pot], ..SceneSiteSpec::default() };
         let site = made(&spec, 1);
         assert_eq!(site.labels.len(), 3);
         for part in &site.model.parts[1..] {
@@ -327,10 +327,12 @@ mod tests {
 
     #[test]
     fn numbers_out_of_range_are_named() {
-        let told = |spec: SiteSpec| make_site(&spec, Seed::new(1)).expect_err("a fault").to_string();
-        assert!(told(SiteSpec { relief_m: 2.0, ..SiteSpec::default() }).contains("relief"));
-        assert!(told(SiteSpec { soil_m: [f64::NAN, 1.0], ..SiteSpec::default() }).contains("soil[0]"));
+        let told = |spec: SceneSiteSpec| make_site(&spec, Seed::new(1)).expect_err("a fault").to_string();
+        assert!(told(SceneSiteSpec { relief_m: 2.0, ..SceneSiteSpec::default() }).contains("relief"));
+        assert!(
+            told(SceneSiteSpec { soil_m: [f64::NAN, 1.0], ..SceneSiteSpec::default() }).contains("soil[0]")
+        );
         let pot = PotSpec { soil_m: DVec3::ZERO, radius_m: 0.0, height_m: 0.2 };
-        assert!(told(SiteSpec { pots: vec![pot], ..SiteSpec::default() }).contains("pot radius"));
+        assert!(told(SceneSiteSpec { pots: vec![pot], ..SceneSiteSpec::default() }).contains("pot radius"));
     }
 }

@@ -11,7 +11,7 @@ use skin::{Layout, Owner};
 use spec::RangeFault;
 
 use crate::parts::{NOTHING, part_of_axis, part_of_organ};
-use crate::site::Site;
+use crate::site::SceneSite;
 
 /// How a plant is scanned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,7 +238,7 @@ pub struct Stood<'a> {
 /// [`SurveyError`].
 pub fn survey_stand(
     stand: &[Stood<'_>],
-    site: Option<&Site>,
+    site: Option<&SceneSite>,
     spec: &SurveySpec,
     (seed, run): (Seed, &Run<'_>),
 ) -> Result<(Surveyed, Vec<i32>), SurveyError> {
