@@ -310,7 +310,7 @@ fn the_reader_reads_real_plants() {
 #[test]
 fn added_columns_are_read_back_row_by_row() {
     let p = wild(7, 12);
-    let value = |k: usize| (k % 3 != 0).then(|| 0.25 * k as f64 - 1.0);
+    let value = |k: usize| (!k.is_multiple_of(3)).then_some(0.25 * k as f64 - 1.0);
     let column = AddedColumn {
         name: "AbsorbedPAR".into(),
         axes: (0..p.axes.len()).map(value).collect(),
