@@ -329,9 +329,10 @@ fn added_columns_are_read_back_row_by_row() {
         assert_eq!(g.number(v, "AbsorbedPAR"), column.axes[g.index(v) - 1]);
         assert_eq!(g.number(v, "fAPAR"), None);
     }
-    let leaves: Vec<usize> = g.with_symbol("L").collect();
-    assert!(!leaves.is_empty());
-    for v in leaves {
+    let symbols = ["L", "K", "D", "U", "B", "S", "C", "T", "Q", "E", "H", "F"];
+    let organs: Vec<usize> = symbols.into_iter().flat_map(|s| g.with_symbol(s)).collect();
+    assert!(organs.len() == p.organs.len() && !organs.is_empty());
+    for v in organs {
         assert_eq!(g.number(v, "AbsorbedPAR"), column.organs[g.index(v) - 1]);
     }
     let opf = written(StructureFormat::Opf);
