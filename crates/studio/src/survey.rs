@@ -431,7 +431,7 @@ mod tests {
             survey_stand(&stand, None, &spec, (Seed::new(5), &Run::plain())).expect("a cloud");
         assert_eq!((cloud.points.len(), plants.len()), (6000, 6000));
         for (k, p) in cloud.points.iter().enumerate().filter(|(k, _)| cloud.organ[*k] != NOTHING) {
-            let Stood { standing, .. } = stand[plants[k] as usize];
+            let Stood { standing, .. } = stand[usize::try_from(plants[k]).expect("of a plant")];
             let organ = &plant.organs[usize::try_from(cloud.organ[k]).expect("a row")];
             let root = standing.turn * (organ.frame.origin * standing.scale) + standing.position;
             let reach = standing.scale * organ.scale * plant.shapes[organ.shape.index()].reach();
