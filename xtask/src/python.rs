@@ -23,6 +23,7 @@ const TEST: &[&str] = &[
     "ipykernel",
     "laspy[lazrs]",
     "mlcroissant",
+    "pycocotools",
     "mypy",
 ];
 /// What the step of its own imports: large, and not there for every Python.

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from ._burgeon import VERSION as __version__
 from ._burgeon import set_threads
+from ._light import Light
+from .camera import Camera
 from .errors import BudgetError, BurgeonError, SpecError
 from .law import Law
 from .makers import bloom, grow, leaf, open, presets, scan, schema, sketch
@@ -24,19 +26,21 @@ from .model import Cloud, Masks, Model, Part
 from .plant import PARTS, Axes, Nodes, Organs, Plant
 
 if TYPE_CHECKING:
-    from . import dataset, forest
-    from ._grove import Grove, GroveCloud, GroveMasks, grove
+    from . import dataset, forest, labels
+    from ._grove import Grove, GroveCloud, GroveMasks, grove, scene
 
 __all__ = [
     "PARTS",
     "Axes",
     "BudgetError",
     "BurgeonError",
+    "Camera",
     "Cloud",
     "Grove",
     "GroveCloud",
     "GroveMasks",
     "Law",
+    "Light",
     "Masks",
     "Model",
     "Nodes",
@@ -50,10 +54,12 @@ __all__ = [
     "forest",
     "grove",
     "grow",
+    "labels",
     "leaf",
     "open",
     "presets",
     "scan",
+    "scene",
     "schema",
     "set_threads",
     "sketch",
@@ -62,11 +68,11 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # Not before they are used: they import more.
-    if name in ("dataset", "forest"):
+    if name in ("dataset", "forest", "labels"):
         import importlib
 
         return importlib.import_module(f".{name}", __name__)
-    if name in ("Grove", "GroveCloud", "GroveMasks", "grove"):
+    if name in ("Grove", "GroveCloud", "GroveMasks", "grove", "scene"):
         import importlib
 
         found = getattr(importlib.import_module("._grove", __name__), name)

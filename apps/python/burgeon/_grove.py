@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import random
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _burgeon
 from ._files import write_whole
 from ._given import axes as check_axes
 from ._given import beyond, holds, keys, number, table, whole, wrong
+from ._light import Light, lit
 from .makers import SpecText, grow
-from .model import Model, cloud_bytes, look, save_cloud, seen, shown
+from .model import USUAL_SIZE, Model, cloud_bytes, look, save_cloud, seen, shown
 from .plant import Plant
 
 if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Unpack
 
+    from ._light import Lighting
     from .model import View
 
-__all__ = ["Grove", "GroveCloud", "GroveMasks", "grove"]
+__all__ = ["Grove", "GroveCloud", "GroveMasks", "grove", "scene"]
 
 
 class GroveCloud(NamedTuple):
@@ -44,7 +47,9 @@ class GroveCloud(NamedTuple):
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
     tree: "np.ndarray"
-    """(n,) uint32: row of ``grove.places``."""
+    """(n,) int32: row of ``grove.places``; -1 on the ground."""
+    instance: "np.ndarray"
+    """(n,) int32: the axis or organ by its number in the grove (``burgeon.labels``); 0 for none."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes it: see ``Cloud.save``."""
@@ -66,21 +71,38 @@ class GroveMasks(NamedTuple):
     """(height, width) int32: row of the plant's ``organs``; -1 for none."""
     depth: "np.ndarray"
     """(height, width) float32: metres from the eye; infinite for nothing."""
+    normal: "np.ndarray"
+    """(height, width, 3) float32: unit vectors of the surface, towards the eye; 0 for nothing."""
     tree: "np.ndarray"
-    """(height, width) int32: row of ``grove.places``; -1 for nothing."""
+    """(height, width) int32: row of ``grove.places``; -1 for nothing and for the ground."""
+    instance: "np.ndarray"
+    """(height, width) int32: the axis or organ by its number in the grove (``burgeon.labels``); 0 for none."""
 
 
 class Grove:
     """Plants and the places at which copies of them stand. Nothing changes it."""
 
-    __slots__ = ("_known", "_raw", "places", "plants", "seed")
+    __slots__ = ("_known", "_raw", "places", "plants", "seed", "site")
 
     plants: "List[Plant]"
     """The different plants."""
     places: "Dict[str, np.ndarray]"
     """Columns, a row a tree: ``position`` (n, 3) metres, ``yaw_deg``, ``scale``, ``plant`` (row of ``plants``)."""
 
-    def __init__(self, plants: "Sequence[Plant]", places: "Mapping[str, Any]", seed: int = 1) -> None:
+    site: "Optional[Dict[str, Any]]"
+    """What they stand on, as it was asked for; None for nothing."""
+
+    def __init__(
+        self,
+        plants: "Sequence[Plant]",
+        places: "Mapping[str, Any]",
+        seed: int = 1,
+        site: "Optional[Mapping[str, Any]]" = None,
+    ) -> None:
+        """``site``: what the plants stand on: ``soil`` (metres along x and z around the origin), ``relief`` (metres from its
+        deepest hollow, at 0, to its highest clod, 0.02), ``stones`` (how many, 0), ``stone_size`` (radius of the largest,
+        metres, 0.03), ``pots`` (rows of the middle of the soil in it, its radius and its height, metres) and ``seed``.
+        """
         import numpy as np
 
         self.plants = list(plants)
@@ -111,7 +133,8 @@ class Grove:
         self.seed = seed
         rows = zip(*(column.tolist() for column in columns.values()))
         stand = [(plant, at, yaw, scale) for at, yaw, scale, plant in rows]
-        self._raw = _burgeon.RawGrove([plant._raw for plant in self.plants], stand)
+        self.site = None if site is None else _site(site, seed)
+        self._raw = _burgeon.RawGrove([plant._raw for plant in self.plants], stand, self.site)
         self._known: "Dict[str, Any]" = {}
 
     def __len__(self) -> int:
@@ -131,6 +154,8 @@ class Grove:
         digest = hashlib.sha256("".join(plant.digest for plant in self.plants).encode())
         for column in self.places.values():
             digest.update(column.astype(column.dtype.newbyteorder("<")).tobytes())
+        if self.site is not None:
+            digest.update(json.dumps(self.site, sort_keys=True).encode())
         return digest.hexdigest()[:32]
 
     def measures(self) -> "Dict[str, Any]":
@@ -168,27 +193,50 @@ class Grove:
         seed: "int | None" = None,
     ) -> GroveCloud:
         """The grove as a scanner sees it from around it: trees hide one another. See ``Plant.cloud``."""
-        return GroveCloud(**seen(self, points, stations, elevation, noise, seed))
+        columns = seen(self, points, stations, elevation, noise, seed)
+        return GroveCloud(**columns, instance=self._instance(columns["tree"], columns["axis"], columns["organ"]))
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
+    def _instance(self, tree: "np.ndarray", axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
+        """Numbers of instances (``burgeon.labels``) of rows of the tables of each one's own plant."""
+        import numpy as np
+
+        axes = np.array([len(plant.axes) for plant in self.plants])
+        own = axes + [len(plant.organs) for plant in self.plants]
+        row = self.places["plant"]
+        first = np.cumsum([0, *own[row]])[:-1]
+        if first[-1] + own[row[-1]] >= 1 << 31:
+            line = "a grove has at most 2^31 axes and organs: use fewer or simpler plants"
+            raise wrong(line, "places", len(row), "fewer rows")
+        numbers = first[tree] + np.where(organ >= 0, organ + axes[row[tree]], axis) + 1
+        return np.where((tree >= 0) & ((organ >= 0) | (axis >= 0)), numbers, 0).astype(np.int32)
+
+    def light(self, **how: "Unpack[Lighting]") -> Light:
+        """What each axis and organ absorbs: plants shade one another, soil and pots throw no shade. See ``Plant.light``."""
+        return lit(self._raw, **how)
+
+    def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> GroveMasks:
+    def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> GroveMasks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ, depth, and which tree."""
         import numpy as np
 
         of_plants = [plant.labels() for plant in self.plants]
         labels = [rows for own in of_plants for rows in own]
+        ground = zip(self._raw.site_labels(), self._raw.site_triangles())
+        labels += [np.tile(np.array([[part, -1, -1]], np.int32), (count, 1)) for part, count in ground]
         start = np.cumsum([0] + [len(rows) for rows in labels])
         first = np.cumsum([0] + [len(own) for own in of_plants])
         # The model has the parts of each tree, tree by tree.
         plant = self.places["plant"].tolist()
-        parts = np.concatenate([np.arange(first[p], first[p + 1]) for p in plant])
-        tree = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
+        parts = np.concatenate([*(np.arange(first[p], first[p + 1]) for p in plant), np.arange(first[-1], len(labels))])
+        trees = np.repeat(np.arange(len(plant), dtype=np.int32), [len(of_plants[p]) for p in plant])
+        trees = np.concatenate([trees, np.full(len(labels) - first[-1], -1, np.int32)])
         at, *columns = shown(self.model._raw, labels, start[parts], look(size, **how))
-        part, axis, organ, depth = columns
-        return GroveMasks(part, axis, organ, depth, np.where(at < 0, np.int32(-1), tree[np.maximum(at, 0)]))
+        part, axis, organ, depth, normal = columns
+        tree = np.where(at < 0, np.int32(-1), trees[np.maximum(at, 0)])
+        return GroveMasks(part, axis, organ, depth, normal, tree, self._instance(tree, axis, organ))
 
     def _repr_png_(self) -> bytes:
         return self.model._repr_png_()
@@ -287,3 +335,113 @@ def _shares(species: Any) -> "List[Tuple[Species, float]]":
     if not mixed:
         raise wrong("species: give one", "species", species, "one or more")
     return mixed
+
+
+def _site(site: "Mapping[str, Any]", seed: int) -> "Dict[str, Any]":
+    """What plants stand on, as the core takes it."""
+    given = table("site", site)
+    keys("site", given, ("soil", "relief", "stones", "stone_size", "pots", "seed"))
+    if "soil" not in given:
+        raise wrong("site has no 'soil': give its sides in metres along x and z", "site.soil", "none", "two lengths")
+    soil = given["soil"] if isinstance(given["soil"], (tuple, list)) else (given["soil"],) * 2
+    if len(soil) != 2:
+        raise beyond("site.soil", repr(given["soil"]), "metres along x and z")
+    pots = []
+    for k, pot in enumerate(given.get("pots", ())):
+        if not isinstance(pot, (tuple, list)) or len(pot) != 3 or not hasattr(pot[0], "__len__") or len(pot[0]) != 3:
+            raise beyond(f"site.pots[{k}]", repr(pot), "the middle of its soil (x, y, z), its radius and its height")
+        at = [number(f"site.pots[{k}][0]", x, -1e6, 1e6, "m") for x in pot[0]]
+        pots.append(
+            (at, number(f"site.pots[{k}][1]", pot[1], 0.005, 5, "m"), number(f"site.pots[{k}][2]", pot[2], 0.005, 5, "m"))
+        )
+    return {
+        "soil": [number(f"site.soil[{k}]", side, 0.05, 1000, "m") for k, side in enumerate(soil)],
+        "relief": number("site.relief", given.get("relief", 0.02), 0, 0.5, "m"),
+        "stones": whole("site.stones", given.get("stones", 0), 0, 5000),
+        "stone_size": number("site.stone_size", given.get("stone_size", 0.03), 0.001, 1, "m"),
+        "pots": pots,
+        "seed": whole("site.seed", given.get("seed", seed), 0, 2**64 - 1),
+    }
+
+
+LAYOUTS = ("rows", "pots", "plot")
+"""How plants of a scene stand."""
+AROUND = 2.0
+"""How far soil goes beyond the plants, of their spacing."""
+FILLED = 0.9
+"""The share of a pot's height that its soil fills: as the core has it."""
+JITTER = 0.12
+"""How far plants of rows stand from their places at most, of their spacing."""
+
+
+def scene(
+    plants: "Plant | Sequence[Plant]",
+    layout: str = "rows",
+    count: "Tuple[int, int] | int" = (2, 3),
+    spacing: "Tuple[float, float] | float" = (0.75, 0.25),
+    *,
+    seed: int = 1,
+    vary: float = 0.1,
+    jitter: float = JITTER,
+    relief: float = 0.02,
+    stones: int = 0,
+    stone_size: float = 0.02,
+    pot: "Tuple[float, float]" = (0.12, 0.2),
+    weeds: "Sequence[Plant]" = (),
+    weed_count: int = 0,
+) -> Grove:
+    """Plants on soil: in rows of a field or orchard, in pots, or by chance on a plot.
+
+    ``plants``: those to choose from; ``count``: rows and plants of each row, 1 to 200 each (``plot``: their product);
+    ``spacing``: metres between rows and within a row, 0.01 to 100; ``vary``: plants are up to this share smaller or larger, 0 to
+    0.9; ``jitter``: how far they stand from their places at most, of the spacing, 0 to 0.5; ``relief``, ``stones``,
+    ``stone_size``: of the soil, see ``Grove``; ``pot``: radius and height of pots, metres; ``weeds``: plants of which
+    ``weed_count`` stand anywhere. The same seed gives the same scene.
+    """
+    chosen = [plants] if isinstance(plants, Plant) else list(plants)
+    if not chosen:
+        raise wrong("a scene needs a plant", "plants", "none", "one or more")
+    if layout not in LAYOUTS:
+        raise beyond("layout", repr(layout), f"one of {', '.join(LAYOUTS)}")
+    rows, columns = (whole("count", n, 1, 200) for n in (count if isinstance(count, (tuple, list)) else (1, count)))
+    apart = spacing if isinstance(spacing, (tuple, list)) else (spacing, spacing)
+    between, within = (number("spacing", x, 0.01, 100, "m") for x in apart)
+    relief = number("relief", relief, 0, 0.5, "m")
+    seed, weed_count = whole("seed", seed, 0, 2**64 - 1), whole("weed_count", weed_count, 0, 2000)
+    vary, jitter = number("vary", vary, 0, 0.9), number("jitter", jitter, 0, 0.5)
+    if weed_count and not weeds:
+        raise wrong("weed_count needs weeds: give plants for them", "weed_count", weed_count, "0")
+    width, depth = columns * within, rows * between
+    soil = (width + 2 * AROUND * max(within, between), depth + 2 * AROUND * max(within, between))
+    radius, height = (number("pot", x, 0.005, 5, "m") for x in pot)
+    stand: "List[Tuple[Tuple[float, float, float], float, float, int]]" = []
+    for k in range(rows * columns):
+        # Of all that Python draws, only `random()` of a seed in text is the same in every version.
+        chance = random.Random(f"{seed}:plant:{k}")
+        place = ((k % columns + 0.5) * within - 0.5 * width, (k // columns + 0.5) * between - 0.5 * depth)
+        if layout == "plot":
+            place = ((chance.random() - 0.5) * width, (chance.random() - 0.5) * depth)
+        elif layout == "rows":
+            x, z = (p + (2 * chance.random() - 1) * jitter * s for p, s in zip(place, (within, between)))
+            place = (x, z)
+        level = 0.5 * relief + (FILLED * height if layout == "pots" else 0.0)
+        stand.append(_stood(chance, place, level, vary, len(chosen)))
+    pots = [(list(at), radius, height) for at, *_ in stand] if layout == "pots" else []
+    for k in range(weed_count):
+        chance = random.Random(f"{seed}:weed:{k}")
+        place = ((chance.random() - 0.5) * soil[0], (chance.random() - 0.5) * soil[1])
+        at, yaw, scale, row = _stood(chance, place, 0.5 * relief, vary, len(weeds))
+        stand.append((at, yaw, scale, len(chosen) + row))
+    names = ("position", "yaw_deg", "scale", "plant")
+    places = {name: [row[k] for row in stand] for k, name in enumerate(names)}
+    site = {"soil": soil, "relief": relief, "stones": stones, "stone_size": stone_size, "pots": pots}
+    return Grove([*chosen, *weeds], places, seed, site)
+
+
+def _stood(
+    chance: random.Random, place: "Tuple[float, ...]", level: float, vary: float, kinds: int
+) -> "Tuple[Tuple[float, float, float], float, float, int]":
+    """Where a plant of a scene stands, how it is turned and how large it is, and which it is."""
+    row = min(int(chance.random() * kinds), kinds - 1)
+    yaw, scale = 360.0 * chance.random(), 1.0 + vary * (2 * chance.random() - 1)
+    return (place[0], level, place[1]), yaw, scale, row

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 GRID_M = 0.0001
 """Coordinates are multiples of it."""
-LABELS = ("part", "axis", "organ", "order", "distance", "tree")
+LABELS = ("part", "axis", "organ", "order", "distance", "tree", "instance")
 """Columns that become dimensions of their own."""
 
 

@@ -5,7 +5,7 @@
 
 A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` beside
 each, ``manifest.json`` with the SHA-256 of all, ``plants.csv`` with seed and digest of each plant, ``croissant.json`` for
-tools that read data sets. The same recipe gives
+tools that read data sets, ``datasheet.md`` for people. The same recipe gives
 the same bytes wherever it runs. A run that was stopped is taken up again: only shards that are missing are made.
 """
 
@@ -21,22 +21,24 @@ import tarfile
 import time
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
+from ._datasheet import datasheet
 from ._files import inside, write_whole
-from ._given import STRUCTURES, beyond, keys, table, whole, wrong
+from ._given import STRUCTURES, beyond, flag, keys, number, table, whole, word, wrong
 from ._workers import results
 
-__all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
+__all__ = ["FORMATS", "export", "generate", "plant_seed", "read", "verify"]
 
 RECIPE = "burgeon.dataset/1"
-MAKERS = ("grow", "bloom", "leaf", "grove")
-"""What makes the plants; a plant of ``grove`` is a tile of trees."""
-FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture")
+MAKERS = ("grow", "bloom", "leaf", "grove", "scene")
+"""What makes the plants; a plant of ``grove`` is a tile of trees, one of ``scene`` a few plants on soil or in pots."""
+FORMATS = ("glb", *STRUCTURES, "burgeon", "cloud", "laz", "drawing", "picture", "labels")
 """Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``; ``.laz`` with laspy), what a person
-would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``)."""
+would have drawn (``.svg``), picture with masks and depth (``.png``, ``.masks.npz``), pictures by calibrated cameras with all
+labels (``.view0.png``, ``.view0.npz``, ``.view0.json``; docs/datasets.md)."""
 
 
-GROVES = ("glb", "cloud", "laz", "picture")
-"""What is written of tiles of trees; their clouds and masks also say which ``tree``."""
+GROVES = ("glb", "cloud", "laz", "picture", "labels")
+"""What is written of tiles of trees and of scenes; their clouds and masks also say which ``tree``."""
 
 
 def plant_seed(seed: int, index: int) -> int:
@@ -56,6 +58,7 @@ def generate(
     vary: "Optional[Mapping[str, Any]]" = None,
     cloud: "Optional[Mapping[str, Any]]" = None,
     picture: "Optional[Mapping[str, Any]]" = None,
+    views: "Optional[Mapping[str, Any]]" = None,
     shard: int = 100,
     ray: bool = False,
     workers: "Optional[int]" = None,
@@ -66,7 +69,8 @@ def generate(
     ``spec``, ``maker``: what ``burgeon.grow``, ``bloom``, ``leaf`` or ``grove`` take (a preset, a TOML file, a dict);
     ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``);
     ``vary``: arguments that differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a
-    choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``formats``: of ``FORMATS``;
+    choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``views``: how the
+    pictures with labels are taken (``dataset.VIEWS``); ``formats``: of ``FORMATS``;
     ``shard``: plants of each file; ``workers``: processes (1: this one; default as many as the machine has cores);
     ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. All its machines must see
     the folder ``out``.
@@ -74,7 +78,7 @@ def generate(
     A worker that is killed is replaced. Ctrl-C, a full disk or an error leave whole shards only; the same call goes on.
     Raises ValueError for a folder that holds another data set, and what the maker raises.
     """
-    recipe = _recipe(spec, n, maker, seed, formats, fields, vary, cloud, picture, shard)
+    recipe = _recipe(spec, n, maker, seed, formats, fields, vary, cloud, picture, views, shard)
     out = os.path.abspath(os.fspath(out))
     os.makedirs(out, exist_ok=True)
     _claim(out, recipe)
@@ -138,6 +142,7 @@ def _recipe(
     vary: "Optional[Mapping[str, Any]]",
     cloud: "Optional[Mapping[str, Any]]",
     picture: "Optional[Mapping[str, Any]]",
+    views: "Optional[Mapping[str, Any]]",
     shard: int,
 ) -> "Dict[str, Any]":
     """All that decides what the data set holds, checked: it goes into the manifest."""
@@ -154,7 +159,7 @@ def _recipe(
     cloud, picture = table("cloud", cloud), table("picture", picture)
     keys("cloud", cloud, ("points", "stations", "elevation", "noise", "seed"))
     keys("picture", picture, ("size", "view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
-    known = GROVES if maker == "grove" else FORMATS
+    known = GROVES if maker in ("grove", "scene") else FORMATS
     unknown = [f for f in formats if f not in known]
     if unknown or not formats:
         raise wrong(f"formats are {', '.join(known)}, not {unknown or 'none'}", "formats", unknown, ", ".join(known))
@@ -186,6 +191,10 @@ def _recipe(
         "picture": picture,
         "shard": shard,
     }
+    if "labels" in formats:
+        recipe["views"] = _views(views)
+    elif views is not None:
+        raise wrong("views are of the format labels, which is not asked for", "views", "given", "left out")
     # As it comes back from a file: tuples are lists.
     return json.loads(json.dumps(recipe, default=_plain))
 
@@ -297,7 +306,7 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
     seed = plant_seed(recipe["seed"], index)
     drawn = {name: _drawn(range_, seed, name) for name, range_ in sorted(recipe["vary"].items())}
     fields = {**recipe["fields"], **drawn}
-    make: "Callable[..., Any]" = getattr(burgeon, recipe["maker"])
+    make: "Callable[..., Any]" = _scene if recipe["maker"] == "scene" else getattr(burgeon, recipe["maker"])
     plant = make(_spec(recipe["spec"]), seed=seed, **fields)
     about = {"seed": seed, "index": index, "fields": drawn, "digest": plant.digest, "measures": plant.measures()}
     files = [("json", _json(about))]
@@ -308,6 +317,8 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
             files.append((clouds[kind], cloud.to_bytes(clouds[kind].split(".")[-1])))
         elif kind == "drawing":
             files.append(("svg", plant.drawing().to_svg()))
+        elif kind == "labels":
+            files += _labelled(plant, recipe["views"], seed)
         elif kind == "picture":
             from ._npz import npz
 
@@ -319,6 +330,123 @@ def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tupl
         else:
             files.append(("qsm.csv" if kind == "qsm" else kind, plant.to_bytes(kind)))
     return plant.digest, files
+
+
+VIEWS = {
+    "count": 1,
+    "size": [512, 512],
+    "field_of_view": [35.0, 45.0],
+    "elevation": [5.0, 45.0],
+    "vary_light": True,
+    "supersample": 2,
+    "background": "sky",
+    "shadow": True,
+}
+"""How pictures with labels are taken, unless it is said: how many of each plant; pixels; degrees that the shorter side spans and
+degrees above the horizon, each a number or (least, most); whether sun and sky differ from picture to picture; and as of
+``Plant.render``. The azimuth is any."""
+LIGHT = {"azimuth": (0.0, 360.0), "elevation": (15.0, 75.0), "sunshine": (0.3, 1.2), "skylight": (0.7, 1.2)}
+"""Where the sun stands (degrees) and how bright sun and sky are in pictures whose light differs: from overcast to clear."""
+MOST_VIEWS = 64
+"""Pictures of one plant."""
+
+
+def _views(given: "Optional[Mapping[str, Any]]") -> "Dict[str, Any]":
+    """How pictures with labels are taken, checked."""
+    given = table("views", given)
+    keys("views", given, VIEWS)
+    views: "Dict[str, Any]" = {**VIEWS, **given}
+    size = views["size"] if isinstance(views["size"], (tuple, list)) else (views["size"],) * 2
+    if len(size) != 2:
+        raise beyond("views.size", repr(views["size"]), "a whole number of pixels or two")
+    bounds = {"field_of_view": (1.0, 120.0), "elevation": (-89.0, 89.0)}
+    for name, (least, most) in bounds.items():
+        range_ = views[name] if isinstance(views[name], (tuple, list)) else (views[name],) * 2
+        if len(range_) != 2:
+            raise beyond(f"views.{name}", repr(views[name]), "a number or (least, most)")
+        views[name] = [number(f"views.{name}", value, least, most, "deg") for value in range_]
+        if views[name][0] > views[name][1]:
+            raise beyond(f"views.{name}", repr(views[name]), "(least, most)")
+    return {
+        **views,
+        "count": whole("views.count", views["count"], 1, MOST_VIEWS),
+        "size": [whole("views.size", side, 1, 8192) for side in size],
+        "vary_light": flag("views.vary_light", views["vary_light"]),
+        "supersample": whole("views.supersample", views["supersample"], 1, 6),
+        "background": word("views.background", views["background"]),
+        "shadow": flag("views.shadow", views["shadow"]),
+    }
+
+
+def _labelled(plant: Any, views: "Mapping[str, Any]", seed: int) -> "List[Tuple[str, bytes]]":
+    """Pictures of a plant or grove with their labels, as files."""
+    import numpy as np
+
+    from . import _burgeon, labels
+    from ._npz import npz
+    from .camera import Camera
+
+    known = labels.instances(plant)
+    files = []
+    for k in range(views["count"]):
+        azimuth = 360.0 * random.Random(f"{seed}:view:{k}:azimuth").random()
+        elevation, opening = (_between(views[name], f"{seed}:view:{k}:{name}") for name in ("elevation", "field_of_view"))
+        camera = Camera.around(plant, azimuth, elevation, tuple(views["size"]), opening)
+        how = {name: views[name] for name in ("supersample", "background", "shadow")}
+        if views["vary_light"]:
+            light = {name: _between(range_, f"{seed}:light:{k}:{name}") for name, range_ in LIGHT.items()}
+            how.update(sun=(light["azimuth"], light["elevation"]), sunshine=light["sunshine"], skylight=light["skylight"])
+        shot = labels.take(plant, camera, of=known, **how)
+        masks: Any = shot.masks
+        columns = {name: getattr(masks, name) for name in ("part", "axis", "organ", "tree", "instance") if hasattr(masks, name)}
+        columns.update(depth=shot.depth, normal=masks.normal.astype(np.float16))
+        seen = {"instances": shot.instances, "parts": shot.part, "trees": shot.tree, "keypoints": shot.keypoints}
+        about = {"camera": camera.to_dict(), "keypoints": list(labels.KEYPOINTS), "light": how}
+        image = bytes(_burgeon.png(camera.width, camera.height, shot.image.tobytes()))
+        stem = f"view{k}"
+        files += [(f"{stem}.png", image), (f"{stem}.npz", npz({**columns, **seen})), (f"{stem}.json", _json(about))]
+    return files
+
+
+def _between(range_: "Sequence[float]", key: str) -> float:
+    low, high = range_
+    return low + random.Random(key).random() * (high - low)
+
+
+def _scene(spec: Any, seed: int, kinds: int = 2, plant: "Optional[Mapping[str, Any]]" = None, **fields: Any) -> Any:
+    """A scene of a data set: ``kinds`` plants of a species, with fields ``plant`` of ``grow``, placed by ``burgeon.scene``."""
+    import burgeon
+
+    count = whole("kinds", kinds, 1, 100)
+    plants = [burgeon.grow(spec, seed=plant_seed(seed, k), **table("plant", plant)) for k in range(count)]
+    for name, range_ in (("count", fields.get("count")), ("spacing", fields.get("spacing")), ("pot", fields.get("pot"))):
+        if isinstance(range_, list):
+            fields[name] = tuple(range_)
+    weeds = fields.pop("weeds", None)
+    if weeds is not None:
+        fields["weeds"] = [burgeon.grow(weed, seed=plant_seed(seed, count + k)) for k, weed in enumerate(weeds)]
+    return burgeon.scene(plants, seed=seed, **fields)
+
+
+def export(
+    out: "str | os.PathLike[str]",
+    folder: "str | os.PathLike[str]",
+    kinds: "Sequence[str]" = ("coco", "panoptic", "keypoints", "yolo"),
+    *,
+    segments: bool = True,
+    held_out: float = 0.2,
+    least_pixels: int = 16,
+) -> "Dict[str, Any]":
+    """Writes the labels of a data set (format ``labels``) as other programs read them, into a new folder; returns counts.
+
+    ``kinds``: ``coco`` (instances as run lengths), ``panoptic``, ``keypoints``, ``yolo`` (outlines as polygons, or boxes without
+    ``segments``), ``depth``, ``normals``, ``semantic``, ``instance``, ``cloud``; ``held_out``: the share of plants, 0 to 0.9, of
+    which all pictures go to ``val`` and not to ``train``; ``least_pixels``: instances that show less are left out.
+    The folder is there whole or not at all.
+    """
+    from ._export import export as exported
+
+    return exported(out, folder, kinds, segments=segments, held_out=held_out, least_pixels=least_pixels)
 
 
 def _spec(spec: Any) -> Any:
@@ -348,7 +476,9 @@ def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":
     manifest = {"recipe": dict(recipe), "plants": recipe["n"], "digest": whole, "shards": shards}
     rows = _rows(recipe, shards)
     croissant = _json(_croissant(recipe, shards, rows))
-    write_whole(out, [("manifest.json", _json(manifest)), ("croissant.json", croissant), ("plants.csv", rows)])
+    sheet = datasheet(recipe, shards)
+    files = [("manifest.json", _json(manifest)), ("croissant.json", croissant), ("plants.csv", rows), ("datasheet.md", sheet)]
+    write_whole(out, files)
     return manifest
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Literal, TypedDict, Unpack
 
+    from .camera import Camera
+
     class View(TypedDict, total=False):
         """How a picture is taken."""
 
@@ -25,6 +28,10 @@ if TYPE_CHECKING:
         shadow: bool
         supersample: int
         seed: int
+        camera: Camera
+        sun: Tuple[float, float]
+        sunshine: float
+        skylight: float
 
 
 __all__ = ["Cloud", "Masks", "Model", "Part"]
@@ -119,6 +126,10 @@ class Masks(NamedTuple):
     """(height, width) int32: row of ``plant.organs``; -1 for none."""
     depth: "np.ndarray"
     """(height, width) float32: metres from the eye; infinite for nothing."""
+    normal: "np.ndarray"
+    """(height, width, 3) float32: unit vectors of the surface, towards the eye, in the axes of the plant; 0 for nothing."""
+    instance: "np.ndarray"
+    """(height, width) int32: the axis or organ by its number (``burgeon.labels``); 0 for none."""
 
 
 class Cloud(NamedTuple):
@@ -140,6 +151,8 @@ class Cloud(NamedTuple):
     """(n,) uint8: from which place of the scanner it was seen."""
     distance: "np.ndarray"
     """(n,) float32: metres from the scanner, without noise."""
+    instance: "np.ndarray"
+    """(n,) int32: the axis or organ by its number, the same as in pictures (``burgeon.labels``); 0 for none."""
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes all columns to a ``.npz`` file (NumPy), or points and labels to ``.las`` or ``.laz`` (laspy): whole or not
@@ -186,25 +199,39 @@ def seen(of: Any, points: int, stations: int, elevation: float, noise: float, se
 
 
 def shown(raw: Any, labels: "Sequence[np.ndarray]", start: "np.ndarray", how: "Look") -> "Tuple[np.ndarray, ...]":
-    """What each pixel of a picture of a model shows: part of the model, then what ``labels`` say, then the depth.
+    """What each pixel of a picture of a model shows: part of the model, then what ``labels`` say, then depth and normal.
 
     ``labels``: tables (triangles, 3) one after another; ``start``: of each part of the model the row of its first triangle.
     """
     import numpy as np
 
-    parts, triangles, depth = map(array, raw.masks(how))
+    parts, triangles, depth, normal = map(array, raw.masks(how))
     rows = np.concatenate([*labels, np.full((1, 3), -1, np.int32)])
     at = np.where(parts < 0, len(rows) - 1, start[np.maximum(parts, 0)] + triangles)
     part, axis, organ = np.moveaxis(rows[at], -1, 0)
-    return parts, part, axis, organ, depth
+    return parts, part, axis, organ, depth, normal
 
 
 Look = Dict[str, Any]
 
 
-def look(size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Look:
+USUAL_SIZE = (1024, 768)
+"""Pixels across and down where nothing is said."""
+LOOKS = (
+    *("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed", "camera", "sun", "sunshine"),
+    "skylight",
+)
+"""What may be asked of a picture."""
+
+
+def look(size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> Look:
     """How a picture is taken."""
-    keys("a picture", how, ("view", "azimuth", "elevation", "background", "shadow", "supersample", "seed"))
+    keys("a picture", how, LOOKS)
+    if "camera" in how:
+        if size != USUAL_SIZE or "view" in how:
+            line = "a camera has a size and a view of its own: leave these out"
+            raise wrong(line, "camera", "given", "without size and view")
+        size = how["camera"].size
     for angle in ("azimuth", "elevation"):
         if how.get("view") != "orbit" and angle in how:
             raise unused(angle, how[angle], "is of view='orbit', which is not asked for")  # type: ignore[literal-required]
@@ -212,7 +239,7 @@ def look(size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> 
 
 
 def _look(
-    size: "Tuple[int, int] | int" = (1024, 768),
+    size: "Tuple[int, int] | int" = USUAL_SIZE,
     view: str = "three-quarter",
     azimuth: float = 31.5,
     elevation: float = 12.0,
@@ -220,6 +247,10 @@ def _look(
     shadow: bool = True,
     supersample: int = 4,
     seed: int = 1,
+    camera: "Optional[Camera]" = None,
+    sun: "Optional[Tuple[float, float]]" = None,
+    sunshine: float = 1.0,
+    skylight: float = 1.0,
 ) -> Look:
     sides = (size, size) if hasattr(size, "__index__") else size
     if isinstance(sides, (str, bytes)) or not hasattr(sides, "__len__") or len(sides) != 2:
@@ -233,7 +264,21 @@ def _look(
         "shadow": flag("shadow", shadow),
         "supersample": whole("supersample", supersample, 1, 6),
         "seed": whole("seed", seed, 0, 2**64 - 1),
+        "camera": None if camera is None else camera._eye(),
+        "sun": None if sun is None else list(_towards_sun(sun)),
+        "sunshine": number("sunshine", sunshine, 0, 4),
+        "skylight": number("skylight", skylight, 0, 4),
     }
+
+
+def _towards_sun(sun: "Tuple[float, float]") -> "Tuple[float, float, float]":
+    """The unit vector towards a sun of an azimuth (from north, -z, over east, +x) and an elevation, degrees."""
+    if isinstance(sun, (str, bytes)) or not hasattr(sun, "__len__") or len(sun) != 2:
+        raise TypeError(f"sun must be its azimuth and elevation in degrees, not {sun!r}")
+    azimuth = math.radians(number("sun[0]", sun[0], -360, 360, "deg"))
+    elevation = math.radians(number("sun[1]", sun[1], 1, 90, "deg"))
+    level = math.cos(elevation)
+    return level * math.sin(azimuth), math.sin(elevation), -level * math.cos(azimuth)
 
 
 def _remade(recipe: Recipe) -> "Model":
@@ -411,16 +456,18 @@ class Model:
         check_axes(extension, unit, up)
         return bytes(self._raw.files(extension, "model", unit, up)[0][1])
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
         """A picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.
 
         ``view``: ``front``, ``three-quarter``, ``side``, ``top``, ``turntable`` or ``orbit`` (with ``azimuth`` and
         ``elevation``, degrees); ``background``: ``sky``, ``transparent``, ``white`` or ``#rrggbb``; ``shadow``;
-        ``supersample``: 1 to 6. The same pixels as ``burgeon render`` makes.
+        ``supersample``: 1 to 6; ``camera``: a ``burgeon.Camera`` instead of size and view; ``sun``: azimuth from north (-z) over
+        east (+x) and elevation, degrees (it stands beside the viewer); ``sunshine``, ``skylight``: how bright sun and sky are, 0
+        to 4, of the usual 1. The same pixels as ``burgeon render`` makes.
         """
         return array(self._raw.render(look(size, **how)))
 
-    def to_png(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> bytes:
+    def to_png(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> bytes:
         """The same as a PNG file."""
         pixels = self.render(size, **how)
         height, width, _ = pixels.shape

@@ -11,13 +11,15 @@ from ._drawing import Drawing, draw
 from ._files import write_whole
 from ._given import STRUCTURES, asked_of, flag, number, whole, word, wrong
 from ._given import axes as check_axes
+from ._light import Light, lit
 from ._recipe import Recipe, recipe
-from .model import Cloud, Masks, Model, array, look, seen, shown
+from .model import USUAL_SIZE, Cloud, Masks, Model, array, look, seen, shown
 
 if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Unpack
 
+    from ._light import Lighting
     from .model import View
 
 __all__ = ["Axes", "Nodes", "Organs", "Plant"]
@@ -349,7 +351,26 @@ class Plant:
         ``elevation``: how far above the horizon of its middle they stand, degrees, -80 to 80; ``noise``: standard
         deviation of the distance, metres, 0 to 1; ``seed``: of the choice of points and of noise (the plant's).
         """
-        return Cloud(**seen(self, points, stations, elevation, noise, seed))
+        columns = seen(self, points, stations, elevation, noise, seed)
+        return Cloud(**columns, instance=self._instance(columns["axis"], columns["organ"]))
+
+    def _instance(self, axis: "np.ndarray", organ: "np.ndarray") -> "np.ndarray":
+        """Numbers of instances (``burgeon.labels``) of rows of axes and organs."""
+        import numpy as np
+
+        return np.where(organ >= 0, organ + (1 + len(self.axes)), axis + 1).astype(np.int32)
+
+    def light(self, **how: "Unpack[Lighting]") -> Light:
+        """What each of its axes and organs absorbs of photosynthetically active light (``burgeon light``).
+
+        ``sky``: ``overcast``, ``uniform`` or ``clear``; ``diffuse``, ``direct``: PAR of sky and sun on level ground, W/m2, 0 to
+        2000; ``sun``: azimuth from north (-z) over east (+x) and elevation, degrees; or ``place`` (latitude, longitude,
+        metres) with ``date``, ``hour`` (12), ``zone``, ``turbidity`` (1 to 10) or ``daily``, the sum of the day;
+        ``sky_table``: rows of azimuth, elevation and W/m2; ``repeat``: width and depth of a cell that repeats itself without
+        end, metres; ``leaf``: reflectance and transmittance; ``wood``, ``soil``: reflectance; ``bounces``: 0 to 50; ``rays``:
+        lines of light in each direction, 1000 to 4194304. What is not given is as of the command (docs/light.md).
+        """
+        return lit(self._raw, **how)
 
     def drawing(self) -> Drawing:
         """What a person would have drawn of it, seen from the front: stems, outlines of leaves and petals, or the crown.
@@ -358,13 +379,14 @@ class Plant:
         """
         return draw(self._raw)
 
-    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> Masks:
+    def masks(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> Masks:
         """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
         import numpy as np
 
         labels = self.labels()
         start = np.cumsum([0] + [len(rows) for rows in labels])
-        return Masks(*shown(self._raw.model(), labels, start, look(size, **how))[1:])
+        _, part, axis, organ, depth, normal = shown(self._raw.model(), labels, start, look(size, **how))
+        return Masks(part, axis, organ, depth, normal, self._instance(axis, organ))
 
     def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
         """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
@@ -493,7 +515,7 @@ class Plant:
             files = self._raw.files(extension, stem, {"unit": word("unit", unit), "up": word("up", up or "y"), **form})
             write_whole(folder, [(name, files[0][1]), *files[1:]])
 
-    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: "Unpack[View]") -> "np.ndarray":
+    def render(self, size: "Tuple[int, int] | int" = USUAL_SIZE, **how: "Unpack[View]") -> "np.ndarray":
         """A picture: see ``Model.render``."""
         return self.model.render(size, **how)
 

@@ -6,7 +6,7 @@ use burgeon::document::Placement;
 use burgeon::formats::{PngCache, WriteError, gltf_files, write_glb_scene};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Standing;
-use burgeon::{Seed, Stood};
+use burgeon::{PotSpec, SceneSite, SceneSiteSpec, Seed, Stood};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -14,6 +14,7 @@ use crate::column::Column;
 use crate::compute::{aside, compute};
 use crate::fault::{beyond, refused, unusable, wrong};
 use crate::held::Held;
+use crate::light::LightAsked;
 use crate::model::{RawModel, model_format};
 use crate::plant::{RawPlant, Scan, cloud};
 
@@ -27,6 +28,44 @@ pub(crate) struct RawGrove {
     plants: Vec<Arc<Held>>,
     /// Rows of the plants, and where each stands.
     stand: Vec<(usize, Placement)>,
+    /// What they stand on.
+    site: Option<Arc<SceneSite>>,
+}
+
+/// What plants stand on, as Python asks for it.
+#[derive(FromPyObject)]
+pub(crate) struct Ground {
+    #[pyo3(item)]
+    soil: [f64; 2],
+    #[pyo3(item)]
+    relief: f64,
+    #[pyo3(item)]
+    stones: u32,
+    #[pyo3(item)]
+    stone_size: f64,
+    /// Middle of the soil, radius, height.
+    #[pyo3(item)]
+    pots: Vec<([f64; 3], f64, f64)>,
+    #[pyo3(item)]
+    seed: u64,
+}
+
+impl Ground {
+    fn site(&self, py: Python<'_>) -> PyResult<SceneSite> {
+        let pot = |&(at, radius_m, height_m): &([f64; 3], f64, f64)| PotSpec {
+            soil_m: DVec3::from_array(at),
+            radius_m,
+            height_m,
+        };
+        let spec = SceneSiteSpec {
+            soil_m: self.soil,
+            relief_m: self.relief,
+            stones: self.stones,
+            stone_m: self.stone_size,
+            pots: self.pots.iter().map(pot).collect(),
+        };
+        burgeon::make_site(&spec, Seed::new(self.seed)).map_err(|e| refused(py, &e))
+    }
 }
 
 /// Places in a rectangle `width` by `depth` metres around the origin: x, z, yaw in degrees, scale.
@@ -61,11 +100,27 @@ pub(crate) fn places(
 
 impl RawGrove {
     fn standing(&self) -> Vec<Standing<'_>> {
-        let each = self.stand.iter().filter_map(|(row, place)| {
+        let plants = self.plants_standing();
+        let site = self.site.iter().map(|site| Standing::home("site", &site.model));
+        plants.chain(site).collect()
+    }
+
+    fn plants_standing(&self) -> impl Iterator<Item = Standing<'_>> {
+        self.stand.iter().filter_map(|(row, place)| {
             let held = self.plants.get(*row)?;
             Some(burgeon::standing_at(held.name(), held.model(), place))
+        })
+    }
+}
+
+impl RawGrove {
+    /// The plants where they stand.
+    fn stood(&self) -> Vec<Stood<'_>> {
+        let stood = self.plants_standing().zip(&self.stand).filter_map(|(standing, (row, _))| {
+            let held = self.plants.get(*row)?;
+            Some(Stood { standing, plant: held.plant(), layout: held.layout() })
         });
-        each.collect()
+        stood.collect()
     }
 }
 
@@ -73,7 +128,13 @@ impl RawGrove {
 impl RawGrove {
     /// `stand`: row of the plant, x, y, z, yaw in degrees, scale.
     #[new]
-    fn new(plants: Vec<PyRef<'_, RawPlant>>, stand: Vec<(usize, [f64; 3], f64, f64)>) -> PyResult<Self> {
+    #[pyo3(signature = (plants, stand, ground))]
+    fn new(
+        py: Python<'_>,
+        plants: Vec<PyRef<'_, RawPlant>>,
+        stand: Vec<(usize, [f64; 3], f64, f64)>,
+        ground: Option<Ground>,
+    ) -> PyResult<Self> {
         if stand.is_empty() || stand.len() > MOST {
             return Err(beyond("places", format!("{} rows", stand.len()), &format!("1 to {MOST} rows")));
         }
@@ -88,7 +149,28 @@ impl RawGrove {
             Ok((row, Placement { position: DVec3::from_array(at), yaw_deg, scale }))
         };
         let stand = stand.into_iter().enumerate().map(place).collect::<PyResult<_>>()?;
-        Ok(Self { plants, stand })
+        let site = ground.map(|ground| ground.site(py)).transpose()?.map(Arc::new);
+        Ok(Self { plants, stand, site })
+    }
+
+    /// Of each part of the model that is no plant's, which come last, its number in the list of parts.
+    fn site_labels(&self) -> Vec<u8> {
+        self.site.as_ref().map_or_else(Vec::new, |site| site.labels.clone())
+    }
+
+    /// Triangles of each part of the model that is no plant's.
+    fn site_triangles(&self) -> Vec<usize> {
+        let parts = self.site.iter().flat_map(|site| &site.model.parts);
+        parts.map(|part| part.mesh.triangles.len()).collect()
+    }
+
+    /// Light on each axis and organ: columns, and figures as JSON.
+    fn light<'py>(&self, py: Python<'py>, asked: LightAsked) -> PyResult<(Bound<'py, PyDict>, String)> {
+        let made = compute(py, 1.0, |run| {
+            let stood = self.stood();
+            asked.light(&stood, Seed::new(1), run)
+        })?;
+        crate::light::columns(py, made)
     }
 
     /// All of it as one model.
@@ -121,12 +203,7 @@ impl RawGrove {
     fn survey<'py>(&self, py: Python<'py>, scan: Scan) -> PyResult<Bound<'py, PyDict>> {
         let (spec, seed) = scan.spec();
         let made = compute(py, 1.0, |run| {
-            let standing = self.standing();
-            let stood = standing.iter().zip(&self.stand).filter_map(|(standing, (row, _))| {
-                let held = self.plants.get(*row)?;
-                Some(Stood { standing: *standing, plant: held.plant(), layout: held.layout() })
-            });
-            burgeon::survey_stand(&stood.collect::<Vec<_>>(), &spec, seed, run)
+            burgeon::survey_stand(&self.stood(), self.site.as_deref(), &spec, (seed, run))
         })?;
         let (seen, trees) = made.map_err(|e| refused(py, &e))?;
         let dict = cloud(py, seen)?;

@@ -10,6 +10,7 @@
 //! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
 //! | `grove` | plants that stand together |
+//! | `light` | what plants absorb |
 //! | `stand` | stands of many trees, and their tiles |
 //! | `column` | memory of ours that `NumPy` shows without a copy |
 //! | `value` | what people write in Python -> JSON |
@@ -26,6 +27,7 @@ mod days;
 mod fault;
 mod grove;
 mod held;
+mod light;
 mod make;
 mod model;
 mod plant;
@@ -66,5 +68,5 @@ mod _burgeon {
 
     /// What a point or triangle can lie on, by the number that is its label.
     #[pymodule_export]
-    const PARTS: [&str; 19] = burgeon::PARTS;
+    const PARTS: [&str; 21] = burgeon::PARTS;
 }

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use burgeon::formats::{ExportSpec, FormatRow, ModelFormat, PngCache, StructureFormat};
-use burgeon::glam::DVec2;
+use burgeon::glam::{DVec2, DVec3};
 use burgeon::mesh::Model;
-use burgeon::render::{Background, PictureSpec, View};
+use burgeon::render::{Background, PictureSpec, Pinhole, View};
 use burgeon::{Digest, Report, Seed, Unit, UpAxis};
 use pyo3::exceptions::{PyIndexError, PyKeyError};
 use pyo3::prelude::*;
@@ -84,6 +84,46 @@ pub(crate) struct Look {
     supersample: u32,
     #[pyo3(item)]
     seed: u64,
+    #[pyo3(item)]
+    camera: Option<Eye>,
+    /// Towards the sun.
+    #[pyo3(item)]
+    sun: Option<[f64; 3]>,
+    #[pyo3(item)]
+    sunshine: f64,
+    #[pyo3(item)]
+    skylight: f64,
+}
+
+/// A calibrated camera, as Python asks for it.
+#[derive(FromPyObject)]
+pub(crate) struct Eye {
+    #[pyo3(item)]
+    position: [f64; 3],
+    #[pyo3(item)]
+    right: [f64; 3],
+    #[pyo3(item)]
+    down: [f64; 3],
+    #[pyo3(item)]
+    focal: [f64; 2],
+    #[pyo3(item)]
+    principal: [f64; 2],
+}
+
+impl Eye {
+    fn view(&self) -> PyResult<View> {
+        let camera = Pinhole {
+            eye_m: DVec3::from_array(self.position),
+            right: DVec3::from_array(self.right),
+            down: DVec3::from_array(self.down),
+            focal_px: DVec2::from_array(self.focal),
+            principal_px: DVec2::from_array(self.principal),
+        };
+        if !camera.is_sound() {
+            return Err(beyond("camera", "one that is not", "finite, with axes at right angles"));
+        }
+        Ok(View::Pinhole(camera))
+    }
 }
 
 impl Look {
@@ -95,7 +135,7 @@ impl Look {
         if !(1..=6).contains(&self.supersample) {
             return Err(beyond("supersample", self.supersample, "1 to 6"));
         }
-        let view = match self.view.as_str() {
+        let named = match self.view.as_str() {
             "front" => View::Front,
             "three-quarter" => View::ThreeQuarter,
             "side" => View::Side,
@@ -109,6 +149,7 @@ impl Look {
                 return Err(beyond("view", format!("{other:?}"), views));
             }
         };
+        let view = self.camera.as_ref().map_or(Ok(named), Eye::view)?;
         if !self.azimuth.is_finite() || !(-85.0..=85.0).contains(&self.elevation) {
             return Err(beyond("elevation", self.elevation, "-85 to 85 deg"));
         }
@@ -136,6 +177,9 @@ impl Look {
             ground_shadow: self.shadow,
             supersample: self.supersample,
             seed: Seed::new(self.seed),
+            sun: self.sun.map(DVec3::from_array),
+            sunshine: self.sunshine,
+            skylight: self.skylight,
             ..PictureSpec::default()
         })
     }
@@ -242,8 +286,9 @@ impl RawModel {
         Ok(Column::new(picture.pixels).shaped(&shape))
     }
 
-    /// What each pixel of a picture shows: part, triangle (-1 for nothing), distance (infinite for nothing).
-    fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column)> {
+    /// What each pixel of a picture shows: part, triangle (-1 for nothing), distance (infinite for nothing), normal (0 for
+    /// nothing).
+    fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column, Column)> {
         let spec = look.spec()?;
         let seen =
             compute(py, 1.0, |run| burgeon::render::hits(self.get(), std::slice::from_ref(&spec), run))?;
@@ -252,6 +297,7 @@ impl RawModel {
         let count = shape[0] * shape[1];
         let (mut parts, mut triangles) = (vec![-1_i32; count], vec![-1_i32; count]);
         let mut distances = vec![f32::INFINITY; count];
+        let mut normals = vec![[0.0_f32; 3]; count];
         for hit in seen.iter().flatten() {
             let at = hit.pixel as usize;
             parts[at] = i32::try_from(hit.part).unwrap_or(i32::MAX);
@@ -259,9 +305,11 @@ impl RawModel {
             #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
             let distance = hit.distance_m as f32;
             distances[at] = distance;
+            normals[at] = hit.normal.as_vec3().to_array();
         }
         let [parts, triangles] = [parts, triangles].map(|c| Column::new(c).shaped(&shape));
-        Ok((parts, triangles, Column::new(distances).shaped(&shape)))
+        let normals = Column::new(normals).shaped(&[shape[0], shape[1], 3]);
+        Ok((parts, triangles, Column::new(distances).shaped(&shape), normals))
     }
 }
 

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use burgeon::document::{FlowerCommand, Maker, SketchCommand};
 use burgeon::formats::StructureFormat;
+use burgeon::mesh::Standing;
 use burgeon::plant::Organ;
-use burgeon::{DrawnLine, SceneError, Seed, SurveySpec, Surveyed};
+use burgeon::{DrawnLine, SceneError, Seed, Stood, SurveySpec, Surveyed};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -15,6 +16,7 @@ use crate::column::{Column, Owner};
 use crate::compute::{aside, compute};
 use crate::fault::{beyond, misread, refused, unusable};
 use crate::held::Held;
+use crate::light::LightAsked;
 use crate::model::{RawModel, axes, bytes_of};
 use crate::value::json_of;
 use crate::write::Form;
@@ -200,6 +202,17 @@ impl RawPlant {
             burgeon::survey(of, &spec, seed, run)
         })?;
         cloud(py, made.map_err(|e| refused(py, &e))?)
+    }
+
+    /// Light on each axis and organ: columns, and figures as JSON.
+    fn light<'py>(&self, py: Python<'py>, asked: LightAsked) -> PyResult<(Bound<'py, PyDict>, String)> {
+        let held = &self.0;
+        let made = compute(py, held.budget, |run| {
+            let standing = Standing::home(held.name(), held.model());
+            let stood = Stood { standing, plant: held.plant(), layout: held.layout() };
+            asked.light(&[stood], held.seed(), run)
+        })?;
+        crate::light::columns(py, made)
     }
 
     /// The structure as a file, in one of the words of [`StructureFormat`].

@@ -40,8 +40,8 @@ pub use model::{
     write_ply, write_png, write_stl,
 };
 pub use plant::{
-    ReadStructure, StructureError, StructureSpec, StructureTally, read_structure, write_mtg, write_opf,
-    write_qsm, write_structure, write_swc,
+    AddedColumn, ReadStructure, StructureError, StructureSpec, StructureTally, read_structure, write_mtg,
+    write_opf, write_qsm, write_structure, write_structure_with, write_swc,
 };
 pub use robots::{BodyMesh, robot_files};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

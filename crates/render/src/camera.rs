@@ -3,7 +3,7 @@
 use base::ops;
 use glam::{DVec2, DVec3};
 
-use crate::spec::{PictureSpec, THREE_QUARTER, View};
+use crate::spec::{PictureSpec, Pinhole, THREE_QUARTER, View};
 
 /// Half of the vertical opening of the perspective views: 11 degrees, a long lens that keeps stems straight.
 const HALF_FOV: f64 = 0.192;
@@ -26,14 +26,14 @@ pub struct Camera {
     // Distance of the eye from the target; None: orthographic.
     distance: Option<f64>,
     // Pixels per metre (orthographic) or per unit slope (perspective).
-    scale: f64,
+    scale: DVec2,
     centre: DVec2,
 }
 
 impl Camera {
     /// The camera of `spec.view` that shows all of `points` (metres; what is not finite is passed over) with the
     /// margin of `spec`. A turntable's frame holds what the points sweep as they turn around the upright axis
-    /// through the middle of their bounds. No points: the unit cube around the origin.
+    /// through the middle of their bounds; a pinhole stays where it is. No points: the unit cube around the origin.
     pub fn framing(points: &[DVec3], spec: &PictureSpec) -> Self {
         let spec = spec.clamped();
         let (azimuth, elevation, perspective) = match spec.view {
@@ -43,6 +43,7 @@ impl Camera {
             View::ThreeQuarter => (THREE_QUARTER.0, THREE_QUARTER.1, true),
             View::Turntable { .. } => (0.0, THREE_QUARTER.1, true),
             View::Orbit { azimuth, elevation } => (azimuth, elevation, true),
+            View::Pinhole(pinhole) => return Self::of_pinhole(&pinhole),
         };
         let (sa, ca) = exact_sin_cos(azimuth);
         let (se, ce) = exact_sin_cos(elevation);
@@ -51,8 +52,15 @@ impl Camera {
         let up = back.cross(right);
         let size = DVec2::new(f64::from(spec.width), f64::from(spec.height));
         let half = size * 0.5 * (1.0 - 2.0 * spec.margin);
-        let mut camera =
-            Self { right, up, back, target: DVec3::ZERO, distance: None, scale: 1.0, centre: size * 0.5 };
+        let mut camera = Self {
+            right,
+            up,
+            back,
+            target: DVec3::ZERO,
+            distance: None,
+            scale: DVec2::ONE,
+            centre: size * 0.5,
+        };
         let cube = [DVec3::splat(-0.5), DVec3::splat(0.5)];
         let points = if points.iter().any(|p| p.is_finite()) { points } else { &cube };
         if matches!(spec.view, View::Turntable { .. }) {
@@ -66,6 +74,20 @@ impl Camera {
         camera
     }
 
+    fn of_pinhole(pinhole: &Pinhole) -> Self {
+        let back = pinhole.down.cross(pinhole.right);
+        Self {
+            right: pinhole.right,
+            up: -pinhole.down,
+            back,
+            // A metre in front of the eye.
+            target: pinhole.eye_m - back,
+            distance: Some(1.0),
+            scale: pinhole.focal_px,
+            centre: pinhole.principal_px,
+        }
+    }
+
     /// Without perspective, from the direction `back`, of all within `radius` of `centre`, in a square of so many pixels.
     pub(crate) fn of_sphere(back: DVec3, centre: DVec3, radius: f64, pixels: u32) -> Self {
         let back = back.normalize_or(DVec3::Z);
@@ -77,7 +99,7 @@ impl Camera {
             back,
             target: centre,
             distance: None,
-            scale: half / radius.max(f64::MIN_POSITIVE),
+            scale: DVec2::splat(half / radius.max(f64::MIN_POSITIVE)),
             centre: DVec2::splat(half),
         }
     }
@@ -123,12 +145,12 @@ impl Camera {
         let mid = (lo + hi) * 0.5;
         self.target = self.right * mid.x + self.up * mid.y + self.back * mid.z;
         let extent = ((hi - lo) * 0.5).max(DVec3::splat(f64::MIN_POSITIVE));
-        self.scale = (half.x / extent.x).min(half.y / extent.y).min(1e300);
+        self.scale = DVec2::splat((half.x / extent.x).min(half.y / extent.y).min(1e300));
     }
 
     fn fit_perspective(&mut self, points: &[DVec3], half: DVec2, height: f64) {
         let focal = 0.5 * height / ops::tan(HALF_FOV);
-        self.scale = focal;
+        self.scale = DVec2::splat(focal);
         let (lo, hi) = self.box_of(points);
         let mid = (lo + hi) * 0.5;
         self.target = self.right * mid.x + self.up * mid.y + self.back * mid.z;
@@ -163,14 +185,14 @@ impl Camera {
     pub fn project(&self, p: DVec3) -> DVec3 {
         let q = self.local(p);
         match self.distance {
-            None => DVec3::new(self.centre.x + q.x * self.scale, self.centre.y - q.y * self.scale, q.z),
+            None => DVec3::new(self.centre.x + q.x * self.scale.x, self.centre.y - q.y * self.scale.y, q.z),
             Some(distance) => {
                 let w = distance - q.z;
                 if w <= 0.0 || w.is_nan() {
                     return DVec3::NAN;
                 }
                 let s = self.scale / w;
-                DVec3::new(self.centre.x + q.x * s, self.centre.y - q.y * s, 1.0 / w)
+                DVec3::new(self.centre.x + q.x * s.x, self.centre.y - q.y * s.y, 1.0 / w)
             }
         }
     }

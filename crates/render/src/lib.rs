@@ -33,7 +33,7 @@ pub use camera::Camera;
 pub use hits::{Hit, hits};
 pub use impostor::impostor;
 pub use picture::{Picture, contact_sheet};
-pub use spec::{Background, PictureSpec, View};
+pub use spec::{Background, PictureSpec, Pinhole, View};
 
 use base::{Cancelled, Run};
 use mesh::Model;

@@ -27,9 +27,9 @@ const HORIZON: DVec3 = DVec3::new(0.71, 0.71, 0.70);
 const BOUNCE: DVec3 = DVec3::new(0.42, 0.41, 0.37);
 
 /// Light from a direction of the sky (or of the pale ground below the horizon).
-fn radiance(d: DVec3) -> DVec3 {
+fn radiance(d: DVec3, skylight: f64) -> DVec3 {
     let up = HORIZON.lerp(ZENITH, ops::smoothstep(0.0, 0.8, d.y));
-    up.lerp(BOUNCE, ops::smoothstep(0.05, -0.05, d.y).clamp(0.0, 1.0))
+    up.lerp(BOUNCE, ops::smoothstep(0.05, -0.05, d.y).clamp(0.0, 1.0)) * skylight
 }
 
 /// What one distant lamp sees.
@@ -205,6 +205,8 @@ pub(crate) struct Sky {
     ground: Vec<DVec3>,
     /// Light of the free sky on level ground.
     pub(crate) open: DVec3,
+    /// Of the usual brightness.
+    skylight: f64,
     turn: f64,
     map_size: usize,
 }
@@ -217,13 +219,15 @@ impl Sky {
         let directions: Vec<DVec3> = (0..SKY_LAMPS).map(|k| sphere_point(k, SKY_LAMPS, turn)).collect();
         // A lamp stands for 4 pi / n of the sphere; white reflects 1 / pi of it.
         let share = 4.0 / SKY_LAMPS as f64;
-        let open = directions.iter().filter(|d| d.y > 0.0).map(|&d| radiance(d) * d.y * share).sum();
+        let open =
+            directions.iter().filter(|d| d.y > 0.0).map(|&d| radiance(d, spec.skylight) * d.y * share).sum();
         let mut sky = Self {
             vertices: Vec::new(),
             ground_low: DVec2::ZERO,
             ground_cell: DVec2::ONE,
             ground: Vec::new(),
             open,
+            skylight: spec.skylight,
             turn,
             map_size,
         };
@@ -242,7 +246,8 @@ impl Sky {
                     for map in &maps {
                         let c = v.normal.dot(map.toward);
                         let lit = map.lit_surface(v.at, v.normal);
-                        both[usize::from(c < 0.0)] += radiance(map.toward) * (c.abs() * lit * share);
+                        both[usize::from(c < 0.0)] +=
+                            radiance(map.toward, spec.skylight) * (c.abs() * lit * share);
                     }
                     both
                 })
@@ -272,7 +277,10 @@ impl Sky {
                     let p = DVec3::new(at.x, scene.ground, at.y);
                     let above = maps.iter().filter(|m| m.toward.y > 0.0);
                     above
-                        .map(|m| radiance(m.toward) * (m.toward.y * share * m.lit_surface(p, DVec3::Y)))
+                        .map(|m| {
+                            let light = m.toward.y * share * m.lit_surface(p, DVec3::Y);
+                            radiance(m.toward, self.skylight) * light
+                        })
                         .sum::<DVec3>()
                 })
                 .collect::<Vec<DVec3>>()
@@ -285,7 +293,7 @@ impl Sky {
     /// The light of sky and ground on a surface of unit normal `n` with nothing else around, as reflected by pure white. Of a sky
     /// of one brightness above a ground of one that is exact.
     pub(crate) fn free(&self, n: DVec3) -> DVec3 {
-        BOUNCE.lerp(self.open, 0.5 + 0.5 * n.y)
+        (BOUNCE * self.skylight).lerp(self.open, 0.5 + 0.5 * n.y)
     }
 
     /// The sky's light on the ground below `p`.
@@ -306,17 +314,19 @@ impl Sky {
     }
 
     /// The sun's lamps for a viewer whose level directions to the right and towards the eye are given: from the
-    /// upper left, a little in front of the model.
+    /// upper left, a little in front of the model; or those of the sun that was `placed`.
     pub(crate) fn sun(
         &self,
         scene: &Scene,
         (right, toward): (DVec3, DVec3),
+        placed: Option<DVec3>,
         run: &Run<'_>,
     ) -> Result<Vec<DepthMap>, Cancelled> {
         if scene.triangles.is_empty() {
             return Ok(Vec::new());
         }
-        let centre = (right * -0.62 + toward * 0.42 + DVec3::Y * 0.95).normalize();
+        let beside = (right * -0.62 + toward * 0.42 + DVec3::Y * 0.95).normalize();
+        let centre = placed.unwrap_or(beside);
         let u = centre.any_orthonormal_vector();
         let v = centre.cross(u);
         map_until_cancelled(run, SUN_LAMPS, |k| {

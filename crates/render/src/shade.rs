@@ -37,7 +37,7 @@ pub(crate) fn frame(
         sky,
         spec,
         camera,
-        sun: sky.sun(scene, camera.level_frame(), run)?,
+        sun: sky.sun(scene, camera.level_frame(), spec.sun, run)?,
         bins: Bins::new(scene, &camera, spec.width, spec.height),
         pattern: pattern(spec.supersample),
     };
@@ -139,7 +139,7 @@ impl Frame<'_> {
         let mean = self.sun.first().map_or(DVec3::Y, |m| m.toward);
         let cos = normal.dot(mean);
         if cos.abs() > 1e-3 && (cos > 0.0 || t > 0.0) {
-            let lit = sunlit(&self.sun, p, face);
+            let lit = sunlit(&self.sun, p, face) * self.spec.sunshine;
             if cos > 0.0 {
                 on = cos * lit;
                 let half = (mean + view).normalize_or(normal);
@@ -180,7 +180,8 @@ impl Frame<'_> {
         p.y = self.scene.ground;
         let level = self.sun[0].toward.y;
         let lit = sunlit(&self.sun, p, DVec3::Y);
-        let full = SUN * level + self.sky.open;
+        let level = level * self.spec.sunshine;
+        let full = (SUN * level + self.sky.open).max(DVec3::splat(f64::MIN_POSITIVE));
         let here = SUN * (level * lit) + self.sky.on_ground(p);
         DVec3::ONE.lerp((here / full).min(DVec3::ONE), SHADOW_STRENGTH)
     }

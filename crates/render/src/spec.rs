@@ -1,6 +1,7 @@
 //! What is asked of a picture.
 
 use base::Seed;
+use glam::{DVec2, DVec3};
 
 /// Azimuth and elevation of the three-quarter view, radians.
 pub(crate) const THREE_QUARTER: (f64, f64) = (0.55, 0.21);
@@ -8,7 +9,7 @@ pub(crate) const THREE_QUARTER: (f64, f64) = (0.55, 0.21);
 pub(crate) const MAX_FRAMES: u32 = 360;
 const MAX_SIZE: u32 = 8192;
 
-/// Where the picture is taken from. The model always fills the picture but for a margin.
+/// Where the picture is taken from. The model always fills the picture but for a margin, except for [`View::Pinhole`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum View {
@@ -33,6 +34,39 @@ pub enum View {
         /// Number of views, 1 to 360.
         frames: u32,
     },
+    /// Perspective by a camera that is calibrated and stands where it is put.
+    Pinhole(Pinhole),
+}
+
+/// A camera by its place and its intrinsics, as computer vision has them: x right, y down, z along the view.
+///
+/// A point at (x, y, z) metres of the camera is seen at pixel (fx x / z + cx, fy y / z + cy), with (0, 0) the upper left corner of
+/// the picture and (0.5, 0.5) the middle of its first pixel. No distortion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pinhole {
+    /// Where the eye is, metres.
+    pub eye_m: DVec3,
+    /// To the right of the picture, a unit vector.
+    pub right: DVec3,
+    /// Down the picture, a unit vector at a right angle to `right`.
+    pub down: DVec3,
+    /// fx and fy, pixels, above 0.
+    pub focal_px: DVec2,
+    /// cx and cy, pixels.
+    pub principal_px: DVec2,
+}
+
+impl Pinhole {
+    /// How far the axes may be from unit length and from a right angle.
+    const AXES_OFF_MOST: f64 = 1e-6;
+
+    /// Whether all of it is finite, the axes are orthonormal and focal lengths are above 0.
+    pub fn is_sound(&self) -> bool {
+        let unit = |v: DVec3| v.is_finite() && (v.length() - 1.0).abs() <= Self::AXES_OFF_MOST;
+        let places = self.eye_m.is_finite() && self.principal_px.is_finite() && self.focal_px.is_finite();
+        let square = self.right.dot(self.down).abs() <= Self::AXES_OFF_MOST;
+        places && unit(self.right) && unit(self.down) && square && self.focal_px.min_element() > 0.0
+    }
 }
 
 /// What is behind the model.
@@ -73,6 +107,12 @@ pub struct PictureSpec {
     pub exposure: f64,
     /// Turns the pattern of the lights.
     pub seed: Seed,
+    /// Unit vector towards the sun, above the horizon. Default none: it stands beside the viewer, to the upper left.
+    pub sun: Option<DVec3>,
+    /// How bright the sun is, 0 to 4, as a share of the usual, default 1.
+    pub sunshine: f64,
+    /// How bright the sky and what the ground throws back are, 0 to 4, as a share of the usual, default 1.
+    pub skylight: f64,
 }
 
 impl Default for PictureSpec {
@@ -87,12 +127,15 @@ impl Default for PictureSpec {
             margin: 0.06,
             exposure: 1.0,
             seed: Seed::default(),
+            sun: None,
+            sunshine: 1.0,
+            skylight: 1.0,
         }
     }
 }
 
 impl PictureSpec {
-    /// The same with every number inside its range; what is not finite takes its default.
+    /// The same with every number inside its range; what is not finite takes its default, and so does a camera that is not sound.
     #[must_use]
     pub fn clamped(&self) -> Self {
         let finite = |x: f64, default: f64| if x.is_finite() { x } else { default };
@@ -102,6 +145,7 @@ impl PictureSpec {
                 elevation: finite(elevation, THREE_QUARTER.1).clamp(-1.5, 1.5),
             },
             View::Turntable { frames } => View::Turntable { frames: frames.clamp(1, MAX_FRAMES) },
+            View::Pinhole(camera) if !camera.is_sound() => View::default(),
             other => other,
         };
         Self {
@@ -114,6 +158,9 @@ impl PictureSpec {
             margin: finite(self.margin, 0.06).clamp(0.0, 0.45),
             exposure: finite(self.exposure, 1.0).clamp(0.1, 10.0),
             seed: self.seed,
+            sun: self.sun.and_then(DVec3::try_normalize).filter(|s| s.y > 0.0),
+            sunshine: finite(self.sunshine, 1.0).clamp(0.0, 4.0),
+            skylight: finite(self.skylight, 1.0).clamp(0.0, 4.0),
         }
     }
 }

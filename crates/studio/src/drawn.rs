@@ -13,7 +13,8 @@ use plant::{AxisKind, NodeId, OrganKind, Plant};
 use render::{PictureSpec, View};
 use skin::Layout;
 
-use crate::survey::{NOTHING, triangle_labels};
+use crate::parts::NOTHING;
+use crate::survey::triangle_labels;
 
 /// Of a plant that shows more organs, nobody draws each.
 const MOST_ORGANS: usize = 60;

@@ -26,12 +26,14 @@ mod flowers;
 mod leaf_blade;
 mod leaves;
 mod levels;
+mod light_source;
 mod lit;
 mod lod;
 mod made;
 mod make;
 mod motion;
 mod opening;
+mod parts;
 mod refusal;
 mod report;
 mod robot;
@@ -41,6 +43,7 @@ mod schemas;
 mod seedling;
 mod shaping;
 mod shoot;
+mod site;
 mod split;
 mod stands;
 mod structure;
@@ -52,9 +55,9 @@ mod venation;
 pub use balls::{LeafBall, LeafBalls, leaf_balls};
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, LiteMap,
-    NoClock, OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, TimeUnit, Told, Unit, UpAxis,
-    Warning, brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly, quoted,
-    set_of, sort_by_key, srgb_of_linear,
+    NoClock, OverBudget, Report, Run, Seed, Serial, Severity, Slip, Stopped, Stream, TimeUnit, Told, Unit,
+    UpAxis, Warning, brief, byte_of_light, grouped, linear_of_srgb, map_indexed, map_of, meant, plainly,
+    quoted, set_of, sort_by_key, srgb_of_linear,
 };
 pub use checks::{CHECKS, PLAUSIBLE, PlausibilityLimits, check_law, check_read};
 pub use days::ScannedDays;
@@ -64,12 +67,16 @@ pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use levels::{Allowance, AllowanceError, Fitted, LevelSpec, Levels};
+pub use light_source::{
+    LightSourceError, LightSourceSpec, LightSources, PlaceOnDay, SkyShape, SourceFigures,
+};
 pub use lit::{EnergyFigures, LightFigures, LightOptions, LightUnit, LitOrgan, LitStand, light_stand};
 pub use lod::coarser;
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, colour_points, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
+pub use parts::{NOTHING, PART_OF_SOIL, PART_OF_STONE, PARTS, part_of_axis, part_of_organ};
 pub use refusal::Refusal;
 pub use report::{
     CheckReport, Counts, EngineReport, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport,
@@ -86,6 +93,7 @@ pub use schemas::{flower_schema, leaf_schema, material_schema, sketch_schema, sk
 pub use seedling::{OrganFit, SeedlingError, SeedlingOptions, make_seedling, surface_places};
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
+pub use site::{PotSpec, SceneSite, SceneSiteSpec, make_site};
 pub use split::{SplitError, split};
 pub use stands::{
     ForestPlan, ForestTilesError, ForestTilesSpec, LIMITS, Misfits, ModelsOf, Nursery, NurseryError,
@@ -94,11 +102,8 @@ pub use stands::{
     TileWriter, Tiling, TilingError, TilingSpec, Variant, Watch, WholeForest, read_ground, read_masks,
     stand_map,
 };
-pub use structure::write_structure;
-pub use survey::{
-    NOTHING, PARTS, Stood, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey,
-    survey_stand, triangle_labels,
-};
+pub use structure::{write_structure, write_structure_with};
+pub use survey::{Stood, SurveyError, SurveySpec, Surveyed, survey, survey_stand, triangle_labels};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

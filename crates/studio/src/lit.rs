@@ -5,6 +5,7 @@
 use std::io;
 
 use base::{Bound, Budget, Check, Report, Run, Seed, Severity, ops};
+use formats::AddedColumn;
 use glam::DVec3;
 use light::{
     Absorption, Beams, EnergyBalance, LightError, LightSpec, LitScene, Optics, ReceiverLight, absorb,
@@ -12,7 +13,8 @@ use light::{
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Standing};
 use serde::Serialize;
 
-use crate::survey::{NOTHING, PARTS, Stood, part_of_axis, part_of_organ, triangle_labels};
+use crate::parts::{NOTHING, PARTS, part_is_of_axis, part_of_axis, part_of_organ};
+use crate::survey::{Stood, triangle_labels};
 
 /// What light is counted in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -391,6 +393,9 @@ const SCALE: [[f64; 3]; 6] = [
     [0.99, 0.95, 0.60],
 ];
 
+/// Columns of light in files of structure.
+const LIGHT_COLUMNS: [&str; 4] = ["IncidentPAR", "AbsorbedPAR", "fAPAR", "Sunlit"];
+
 /// The share of patches that may be brighter than the scale ends.
 const BRIGHTER: f64 = 0.02;
 
@@ -442,6 +447,34 @@ impl LitStand {
             )?;
         }
         Ok(())
+    }
+
+    /// Light as columns of a plant's axes and organs, for files of its structure: `IncidentPAR` and `AbsorbedPAR` (for each square
+    /// metre of one side, in the unit of the figures), `fAPAR` and `Sunlit`. `number`: of the plant in the stand, from 0.
+    pub fn columns(&self, number: u32, plant: &plant::Plant) -> Vec<AddedColumn> {
+        let empty = |name: &str| AddedColumn {
+            name: name.into(),
+            axes: vec![None; plant.axes.len()],
+            organs: vec![None; plant.organs.len()],
+        };
+        let mut columns: Vec<AddedColumn> = LIGHT_COLUMNS.iter().map(|name| empty(name)).collect();
+        for organ in self.organs.iter().filter(|o| o.plant == number) {
+            let Ok(row) = usize::try_from(organ.row) else { continue };
+            for (column, value) in columns.iter_mut().zip(self.cells(organ)) {
+                let rows = if part_is_of_axis(organ.part) { &mut column.axes } else { &mut column.organs };
+                if let Some(cell) = rows.get_mut(row) {
+                    *cell = value;
+                }
+            }
+        }
+        columns
+    }
+
+    /// What [`LIGHT_COLUMNS`] say of an organ.
+    fn cells(&self, organ: &LitOrgan) -> [Option<f64>; LIGHT_COLUMNS.len()] {
+        let light = &organ.light;
+        let [incident, absorbed] = [light.incident_w, light.absorbed_w].map(|w| w / light.area_m2);
+        [Some(incident), Some(absorbed), Some(absorbed / self.figures.incoming_per_m2), light.sunlit]
     }
 
     /// What the end of the colours' scale stands for, for each square metre: all patches but the brightest 2 %.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use formats::{ExportSpec, Room, StructureFormat, WriteError};
+use formats::{AddedColumn, ExportSpec, Room, StructureFormat, WriteError};
 use plant::Plant;
 use skin::{SkinSpec, shape_meshes};
 
@@ -17,7 +17,21 @@ pub fn write_structure(
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
+    write_structure_with(plant, &[], format, spec, out)
+}
+
+/// As [`write_structure`], with columns of axes and organs beside those of the format: see [`formats::write_structure_with`].
+///
+/// # Errors
+/// [`WriteError::Io`].
+pub fn write_structure_with(
+    plant: &Plant,
+    added: &[AddedColumn],
+    format: StructureFormat,
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
     let has_meshes = format.holds(Room::OrganMeshes);
     let shapes = if has_meshes { shape_meshes(plant, &SkinSpec::default()) } else { Vec::new() };
-    formats::write_structure(plant, &shapes, format, spec, out)
+    formats::write_structure_with(plant, &shapes, added, format, spec, out)
 }

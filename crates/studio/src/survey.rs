@@ -5,10 +5,13 @@
 use base::{Cancelled, Draw, Run, Seed};
 use glam::DVec3;
 use mesh::{Model, Standing};
-use plant::{AxisId, AxisKind, OrganKind, Plant};
+use plant::{AxisId, Plant};
 use render::{Hit, PictureSpec, View};
 use skin::{Layout, Owner};
 use spec::RangeFault;
+
+use crate::parts::{NOTHING, part_of_axis, part_of_organ};
+use crate::site::SceneSite;
 
 /// How a plant is scanned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,46 +79,6 @@ base::coded!(SurveyError {} wraps {
     Self::Cancelled(e) => e, Cancelled;
 });
 
-/// What a point lies on, by the row that is its label.
-pub const PARTS: [&str; 19] = [
-    "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
-    "thorn", "pedicel", "sepal", "anther", "floret", "body", "pot", "stub",
-];
-
-/// The row of [`PARTS`] of an axis.
-pub const fn part_of_axis(kind: AxisKind) -> u8 {
-    match kind {
-        AxisKind::Branch => 0,
-        AxisKind::Twig => 1,
-        AxisKind::Stem => 2,
-        AxisKind::Petiole => 3,
-        AxisKind::Stub => 18,
-        _ => 4,
-    }
-}
-
-/// The row of [`PARTS`] of an organ.
-pub const fn part_of_organ(kind: OrganKind) -> u8 {
-    match kind {
-        OrganKind::Leaf => 5,
-        OrganKind::Petal => 6,
-        OrganKind::Disc => 7,
-        OrganKind::Fruit | OrganKind::Syncarp => 8,
-        OrganKind::Stamen => 9,
-        OrganKind::Pistil => 10,
-        OrganKind::Thorn => 11,
-        OrganKind::Pedicel => 12,
-        OrganKind::Sepal => 13,
-        OrganKind::Anther => 14,
-        OrganKind::Floret => 15,
-        OrganKind::Pot => 17,
-        _ => 16,
-    }
-}
-
-/// No axis, no organ.
-pub const NOTHING: i32 = -1;
-
 /// The columns of a cloud, all of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surveyed {
@@ -123,7 +86,7 @@ pub struct Surveyed {
     pub points: Vec<[f64; 3]>,
     /// Unit vectors of the surface, towards the scanner.
     pub normals: Vec<[f32; 3]>,
-    /// Row of [`PARTS`].
+    /// Row of [`PARTS`](crate::PARTS).
     pub part: Vec<u8>,
     /// Row of the plant's axes: that it lies on or, of an organ, that bears the organ; [`NOTHING`] for none.
     pub axis: Vec<i32>,
@@ -213,7 +176,7 @@ fn row(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
 }
 
-/// What the triangles of each part of a model lie on: rows of [`PARTS`], of the plant's axes and of its organs.
+/// What the triangles of each part of a model lie on: rows of [`PARTS`](crate::PARTS), of the plant's axes and of its organs.
 ///
 /// `layout`: of this model. A triangle of a tube along several axes has the axis that is nearest to its middle.
 pub fn triangle_labels(plant: &Plant, model: &Model, layout: &Layout) -> Vec<Vec<[i32; 3]>> {
@@ -267,19 +230,20 @@ pub struct Stood<'a> {
 }
 
 /// Scans a stand from stations around all of it, as [`survey`] scans a plant: plants hide one another. Labels are rows of
-/// the tables of each point's own plant.
+/// the tables of each point's own plant. `site`: what it stands on, which is seen as well.
 ///
-/// Returns the cloud, and of each point the plant, by its place in the stand.
+/// Returns the cloud, and of each point the plant, by its place in the stand; [`NOTHING`] on the site.
 ///
 /// # Errors
 /// [`SurveyError`].
 pub fn survey_stand(
     stand: &[Stood<'_>],
+    site: Option<&SceneSite>,
     spec: &SurveySpec,
-    seed: Seed,
-    run: &Run<'_>,
-) -> Result<(Surveyed, Vec<u32>), SurveyError> {
-    let standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
+    (seed, run): (Seed, &Run<'_>),
+) -> Result<(Surveyed, Vec<i32>), SurveyError> {
+    let mut standing: Vec<Standing<'_>> = stand.iter().map(|s| s.standing).collect();
+    standing.extend(site.map(|site| Standing::home("site", &site.model)));
     let model = crate::scene_model("stand", &standing);
     let owned: Vec<Owned<'_>> = stand.iter().map(|s| Owned::new(s.plant, s.layout)).collect();
     // The parts of the plants follow one another.
@@ -293,10 +257,14 @@ pub fn survey_stand(
         })
         .collect();
     let label = |hit: &Hit| {
+        if let Some(part) = hit.part.checked_sub(first) {
+            let part = *site?.labels.get(part as usize)?;
+            return Some((Label { part, axis: NOTHING, organ: NOTHING, order: 0 }, NOTHING));
+        }
         let row = firsts.partition_point(|f| *f <= hit.part).checked_sub(1)?;
         let Standing { position, turn, scale, .. } = stand[row].standing;
         let at = turn.inverse() * (hit.at - position) / scale;
-        Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, u32::try_from(row).ok()?))
+        Some((owned[row].label(hit.part - firsts[row], hit.triangle, at)?, i32::try_from(row).ok()?))
     };
     beams(&model, spec, (seed, run), label)
 }
@@ -306,8 +274,8 @@ fn beams(
     model: &Model,
     spec: &SurveySpec,
     (seed, run): (Seed, &Run<'_>),
-    label: impl Fn(&Hit) -> Option<(Label, u32)>,
-) -> Result<(Surveyed, Vec<u32>), SurveyError> {
+    label: impl Fn(&Hit) -> Option<(Label, i32)>,
+) -> Result<(Surveyed, Vec<i32>), SurveyError> {
     spec.check()?;
     let wanted = spec.points as usize;
     // A fifth of the beams meet a plant of a dense crown, fewer a thin one: then the grid becomes finer.
@@ -454,20 +422,22 @@ mod tests {
             Stood { standing, plant, layout }
         };
         let alone = Stood { standing: Standing::home("a tree", model), plant, layout };
-        let (same, plants) = survey_stand(&[alone], &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        let (same, plants) =
+            survey_stand(&[alone], None, &spec, (Seed::new(5), &Run::plain())).expect("a cloud");
         assert_eq!(same, scanned(&tree, &spec));
         assert!(plants.iter().all(|p| *p == 0));
         let stand = [at(-2.0, 1.0), at(0.0, 0.7), at(2.0, 1.2)];
-        let (cloud, plants) = survey_stand(&stand, &spec, Seed::new(5), &Run::plain()).expect("a cloud");
+        let (cloud, plants) =
+            survey_stand(&stand, None, &spec, (Seed::new(5), &Run::plain())).expect("a cloud");
         assert_eq!((cloud.points.len(), plants.len()), (6000, 6000));
         for (k, p) in cloud.points.iter().enumerate().filter(|(k, _)| cloud.organ[*k] != NOTHING) {
-            let Stood { standing, .. } = stand[plants[k] as usize];
+            let Stood { standing, .. } = stand[usize::try_from(plants[k]).expect("of a plant")];
             let organ = &plant.organs[usize::try_from(cloud.organ[k]).expect("a row")];
             let root = standing.turn * (organ.frame.origin * standing.scale) + standing.position;
             let reach = standing.scale * organ.scale * plant.shapes[organ.shape.index()].reach();
             assert!(DVec3::from_array(*p).distance(root) <= 1.5 * reach + 1e-3);
         }
-        let of = |row: u32| plants.iter().filter(|p| **p == row).count();
+        let of = |row: i32| plants.iter().filter(|p| **p == row).count();
         // The small one stands in the middle.
         assert!(of(1) > 0 && of(1) < of(0).min(of(2)), "{} {} {}", of(0), of(1), of(2));
     }

@@ -17,8 +17,8 @@ pub(crate) struct LightArgs {
     /// drawing, or a project (.burgeon), of which all plants that are not hidden stand in the light together.
     #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING")]
     pub(crate) what: PathBuf,
-    /// A table with a row for each axis and organ (.csv; docs/light.md has its columns), or the plant in colours of what it
-    /// absorbs (.glb).
+    /// A table with a row for each axis and organ (.csv; docs/light.md has its columns), the structure of the plant with columns of
+    /// light (.mtg, .opf), or the plant in colours of what it absorbs (.glb).
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Also make a picture in these colours.

@@ -10,10 +10,13 @@ mod stand;
 
 use std::path::Path;
 
-use burgeon::formats::{ModelFormat, PngCache};
+use burgeon::formats::{ExportSpec, ModelFormat, PngCache, StructureFormat};
 use burgeon::light::{LightError, LightSpec, Optics};
 use burgeon::plant::Plant;
-use burgeon::{LightFigures, LightOptions, LitStand, Report, RunReport, Seed, light_stand};
+use burgeon::{
+    LightFigures, LightOptions, LightSources, LitStand, Report, RunReport, Seed, SourceFigures, Stood,
+    UpAxis, light_stand,
+};
 use serde::Serialize;
 
 use crate::args::{AxesArgs, LightArgs, PlantFormat};
@@ -22,7 +25,6 @@ use crate::files::{self, Goal};
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{checks, picture, report, say};
-use source::Sources;
 use stand::Grown;
 
 /// Figures of the plant in light, and where it comes from.
@@ -35,7 +37,7 @@ struct LightTally {
     /// What the end of the colours' scale stands for, for each square metre.
     colours_to_per_m2: f64,
     #[serde(flatten)]
-    sources: Sources,
+    sources: SourceFigures,
 }
 
 #[derive(Debug, Serialize)]
@@ -50,6 +52,7 @@ struct LightRun {
 enum Output {
     Table,
     Model,
+    Structure(StructureFormat),
 }
 
 pub(crate) fn light(args: &LightArgs) -> Outcome {
@@ -66,13 +69,17 @@ pub(crate) fn light(args: &LightArgs) -> Outcome {
         picture::check_name(png)?;
     }
     args.given.check_picture(args.png.is_some(), &args.picture)?;
-    let (beams, unit, sources) = source::beams(&args.source)?;
+    let LightSources { beams, unit, figures: sources } = source::sources(&args.source)?;
     let mut told = Report::default();
     let grown = machine.with_progress("grow", |_| Grown::new(args, &mut told, &machine))?;
     outputs.check()?;
     machine.cancel.check()?;
     let options = LightOptions { unit, ..options_of(args, LightOptions::new(beams)) };
     let stand = grown.stood()?;
+    if let (Some((path, Output::Structure(_))), [_, _, ..]) = (args.output.as_deref().zip(output), &stand[..])
+    {
+        return Err(Failure::at(path, ONE_PLANT));
+    }
     let seed = Seed::new(args.seed.unwrap_or(1));
     let lit = machine
         .with_progress("light", |_| light_stand(&stand, &options, (seed, &machine.run()), &mut told))
@@ -87,6 +94,7 @@ pub(crate) fn light(args: &LightArgs) -> Outcome {
     if let Some((path, output)) = args.output.as_deref().zip(output) {
         match output {
             Output::Table => outputs.write("-o", path, |out| Ok(lit.write_csv(out)?))?,
+            Output::Structure(format) => write_structure(&mut outputs, path, format, &lit, &stand)?,
             Output::Model => {
                 let (model, nothing) = (coloured(), Plant::default());
                 let format = PlantFormat::Model(ModelFormat::Glb);
@@ -133,13 +141,35 @@ pub(crate) fn light(args: &LightArgs) -> Outcome {
     Ok(())
 }
 
+/// A file of structure is one plant.
+const ONE_PLANT: &str = "is the structure of one plant, and several stand in the light: write a table (.csv)";
+
+/// The structure of the only plant, with light in columns of its own.
+fn write_structure(
+    outputs: &mut Outputs,
+    path: &Path,
+    format: StructureFormat,
+    lit: &LitStand,
+    stand: &[Stood<'_>],
+) -> Outcome {
+    let [only] = stand else { return Err(Failure::at(path, ONE_PLANT)) };
+    let columns = lit.columns(0, only.plant);
+    let axes = ExportSpec { up: UpAxis::Z, ..ExportSpec::default() };
+    outputs.write("-o", path, |out| burgeon::write_structure_with(only.plant, &columns, format, &axes, out))
+}
+
 fn output_of(path: &Path) -> Outcome<Output> {
+    let structure = files::extension(path).and_then(StructureFormat::from_extension);
+    if let Some(format @ (StructureFormat::Mtg | StructureFormat::Opf)) = structure {
+        return Ok(Output::Structure(format));
+    }
     match files::extension(path) {
         Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Output::Table),
         Some(e) if e.eq_ignore_ascii_case("glb") => Ok(Output::Model),
         _ => Err(Failure::at(
             path,
-            "light is written as a table (.csv) or on the plant (.glb); end the name with one of them",
+            "light is written as a table (.csv), with the structure of the plant (.mtg, .opf) or on its model (.glb); end the name \
+             with one of them",
         )),
     }
 }

@@ -159,3 +159,39 @@ fn plants_without_leaves_and_odd_skies_are_told_of() {
     let said = bad(&dir, &["light", "small.toml", "-o", "x.obj"]);
     assert!(said.contains(".csv"), "{said}");
 }
+
+#[test]
+fn structure_has_light_in_columns_of_its_own() {
+    let dir = ready("light-structure");
+    report(&dir, &["small.toml", "-o", "x.csv", "--rays", "3000"]);
+    report(&dir, &["small.toml", "-o", "x.mtg", "--rays", "3000"]);
+    report(&dir, &["small.toml", "-o", "x.opf", "--rays", "3000"]);
+    let table = fs::read_to_string(dir.join("x.csv")).unwrap();
+    let mut lines = table.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let at = |name: &str| names.iter().position(|n| *n == name).unwrap();
+    let leaves = lines.map(|l| l.split(',').collect::<Vec<_>>()).filter(|r| r[at("kind")] == "leaf");
+    let leaves: Vec<(usize, f64)> =
+        leaves.map(|r| (r[at("id")].parse().unwrap(), r[at("absorbed_w_m2")].parse().unwrap())).collect();
+    let mtg = fs::read_to_string(dir.join("x.mtg")).unwrap();
+    let head = mtg.lines().find(|l| l.starts_with("ENTITY-CODE")).unwrap();
+    let column = head.split('\t').position(|n| n == "AbsorbedPAR").unwrap();
+    let mut found = 0;
+    for line in mtg.lines() {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let code = cells.iter().find(|c| !c.is_empty()).copied().unwrap_or_default();
+        let Some(number) = code.strip_prefix("+L") else { continue };
+        let row = number.parse::<usize>().unwrap() - 1;
+        let (_, wanted) = leaves.iter().find(|(id, _)| *id == row).unwrap();
+        let there: f64 = cells[column].parse().unwrap();
+        assert!((there - wanted).abs() < 1e-8, "leaf {row}: {there}, not {wanted}");
+        found += 1;
+    }
+    assert!(found == leaves.len() && found > 10, "{found}");
+    let opf = fs::read_to_string(dir.join("x.opf")).unwrap();
+    assert!(opf.matches("<AbsorbedPAR>").count() > found, "leaves and axes");
+    let project = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/projects/version-3.burgeon");
+    fs::copy(project, dir.join("scene.burgeon")).unwrap();
+    let said = bad(&dir, &["light", "scene.burgeon", "-o", "both.mtg", "--rays", "3000"]);
+    assert!(said.contains("one plant") && !dir.join("both.mtg").exists(), "{said}");
+}

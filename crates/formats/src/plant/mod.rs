@@ -46,11 +46,60 @@ pub fn write_structure(
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
+    write_structure_with(plant, shapes, &[], format, spec, out)
+}
+
+/// A column of numbers that were computed of a plant's axes and organs, for files that have room for it.
+///
+/// A row that is missing, or has none, is left empty. Numbers are written as they are, whatever the unit of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AddedColumn {
+    /// Letters and digits, the first a letter.
+    pub name: String,
+    /// Of each axis.
+    pub axes: Vec<Option<f64>>,
+    /// Of each organ.
+    pub organs: Vec<Option<f64>>,
+}
+
+/// As [`write_structure`], with columns of axes and organs beside those that the format has of itself; MTG and OPF have room for
+/// them, other formats leave them out.
+///
+/// # Errors
+/// [`WriteError::Io`].
+pub fn write_structure_with(
+    plant: &Plant,
+    shapes: &[TriMesh],
+    added: &[AddedColumn],
+    format: StructureFormat,
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
     match format {
-        StructureFormat::Mtg => write_mtg(plant, spec, out),
-        StructureFormat::Opf => write_opf(plant, shapes, spec, out),
+        StructureFormat::Mtg => mtg::write_mtg_with(plant, added, spec, out),
+        StructureFormat::Opf => opf::write_opf_with(plant, shapes, added, spec, out),
         StructureFormat::Qsm => write_qsm(plant, spec, out),
         StructureFormat::Swc => write_swc(plant, spec, out),
+    }
+}
+
+/// What a line of a file is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Subject {
+    Axis(usize),
+    Organ(usize),
+}
+
+impl AddedColumn {
+    /// The number as it is written, to nine digits after the point; empty for none.
+    fn cell(&self, subject: Option<Subject>) -> String {
+        let number = match subject {
+            Some(Subject::Axis(row)) => self.axes.get(row),
+            Some(Subject::Organ(row)) => self.organs.get(row),
+            None => None,
+        };
+        let number = number.copied().flatten().filter(|x| x.is_finite());
+        number.map_or_else(String::new, |x| decimal(x, 9))
     }
 }
 

@@ -5,7 +5,7 @@ use std::io::Write;
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Organ, OrganKind, Plant, Shape};
 
-use super::{Borne, decimal, length, micrometres, numbered, place, turn};
+use super::{AddedColumn, Borne, Subject, decimal, length, micrometres, numbered, place, turn};
 use crate::{ExportSpec, WriteError};
 
 /// Symbols of what nodes bear: nodes and the kinds of organs.
@@ -52,11 +52,21 @@ const FEATURES: [(&str, &str); 15] = [
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn write_mtg(plant: &Plant, spec: &ExportSpec, out: impl Write) -> Result<(), WriteError> {
+    write_mtg_with(plant, &[], spec, out)
+}
+
+/// As [`write_mtg`], with more features of axes and organs.
+pub(super) fn write_mtg_with(
+    plant: &Plant,
+    added: &[AddedColumn],
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
     let borne = Borne::of(plant);
     let deepest = plant.axes.iter().map(|a| a.order as usize).max().unwrap_or(0);
     // The plant, an axis of each order, and what the last of them bear.
     let areas = plant.shapes.iter().map(Shape::one_side_m2).collect();
-    let mut writer = Writer { plant, spec, out, columns: deepest + 3, areas };
+    let mut writer = Writer { plant, added, spec, out, columns: deepest + 3, areas };
     writer.head()?;
     writer.line(0, "/P1", &Row::default())?;
     for (id, _) in numbered(plant).filter(|(id, _)| plant.axis(*id).bearer.is_none()) {
@@ -83,6 +93,7 @@ struct Row {
     flower: Option<u32>,
     along: Option<DVec3>,
     normal: Option<DVec3>,
+    subject: Option<Subject>,
 }
 
 impl Row {
@@ -93,6 +104,7 @@ impl Row {
 
 struct Writer<'a, W> {
     plant: &'a Plant,
+    added: &'a [AddedColumn],
     spec: &'a ExportSpec,
     out: W,
     columns: usize,
@@ -133,8 +145,12 @@ impl<W: Write> Writer<'_, W> {
         for (name, kind) in FEATURES {
             writeln!(out, "{name}\t{kind}")?;
         }
+        for column in self.added {
+            writeln!(out, "{}\tREAL", column.name)?;
+        }
         write!(out, "\nMTG:\nENTITY-CODE{}", "\t".repeat(self.columns))?;
-        let names: Vec<&str> = FEATURES.iter().map(|(name, _)| *name).collect();
+        let own = FEATURES.iter().map(|(name, _)| *name);
+        let names: Vec<&str> = own.chain(self.added.iter().map(|c| c.name.as_str())).collect();
         Ok(writeln!(out, "{}", names.join("\t"))?)
     }
 
@@ -154,7 +170,8 @@ impl<W: Write> Writer<'_, W> {
         let mut text = format!("{before}{code}{after}{}", row.kind);
         let numbers =
             at.iter().cloned().chain([long(row.base), long(row.top), long(row.length), area, flower]);
-        for cell in numbers.chain(dir).chain(up) {
+        let added = self.added.iter().map(|column| column.cell(row.subject));
+        for cell in numbers.chain(dir).chain(up).chain(added) {
             text.push('\t');
             text.push_str(&cell);
         }
@@ -221,7 +238,8 @@ impl<W: Write> Writer<'_, W> {
             _ => "axis",
         };
         stack.push(Frame { axis: id, node: usize::from(axis.bearer.is_some()), waiting: Vec::new() });
-        self.line(column, &format!("{edge}A{}", id.index() + 1), &Row::kind(kind))
+        let row = Row { subject: Some(Subject::Axis(id.index())), ..Row::kind(kind) };
+        self.line(column, &format!("{edge}A{}", id.index() + 1), &row)
     }
 
     fn organ(&mut self, column: usize, edge: &str, row: usize, organ: &Organ) -> Result<(), WriteError> {
@@ -249,6 +267,7 @@ impl<W: Write> Writer<'_, W> {
             flower: organ.flower.map(|f| f.raw() + 1),
             along: Some(organ.frame.along),
             normal: Some(organ.frame.normal),
+            subject: Some(Subject::Organ(row)),
             ..Row::default()
         };
         self.line(column, &format!("{edge}{symbol}{}", row + 1), &features)

@@ -7,7 +7,7 @@ use glam::DVec3;
 use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Organ, OrganKind, Plant};
 
-use super::{Borne, decimal, length, micrometres, numbered, place, turn};
+use super::{AddedColumn, Borne, Subject, decimal, length, micrometres, numbered, place, turn};
 use crate::{ExportSpec, WriteError};
 
 /// Sides of the reference mesh of wood.
@@ -48,9 +48,20 @@ pub fn write_opf(
     spec: &ExportSpec,
     out: impl Write,
 ) -> Result<(), WriteError> {
+    write_opf_with(plant, shapes, &[], spec, out)
+}
+
+/// As [`write_opf`], with more attributes of axes and organs.
+pub(super) fn write_opf_with(
+    plant: &Plant,
+    shapes: &[TriMesh],
+    added: &[AddedColumn],
+    spec: &ExportSpec,
+    out: impl Write,
+) -> Result<(), WriteError> {
     let borne = Borne::of(plant);
     let areas = plant.shapes.iter().map(plant::Shape::one_side_m2).collect();
-    let mut writer = Writer { plant, spec, out, areas, looks: Vec::new(), next: 1 };
+    let mut writer = Writer { plant, added, spec, out, areas, looks: Vec::new(), next: 1 };
     writer.head(shapes)?;
     writer.open("topology", "Plant", 1)?;
     let name = base::escaped_xml(&plant.name).trim().to_owned();
@@ -91,6 +102,7 @@ fn organ_class(kind: OrganKind) -> (&'static str, &'static str, [f64; 3]) {
 
 struct Writer<'a, W> {
     plant: &'a Plant,
+    added: &'a [AddedColumn],
     spec: &'a ExportSpec,
     out: W,
     /// Of each shape, one side, at scale 1.
@@ -156,6 +168,9 @@ impl<W: Write> Writer<'_, W> {
         for (name, class) in ATTRIBUTES {
             writeln!(self.out, "<attribute name=\"{name}\" class=\"{class}\"/>")?;
         }
+        for column in self.added {
+            writeln!(self.out, "<attribute name=\"{}\" class=\"Double\"/>", column.name)?;
+        }
         Ok(writeln!(self.out, "</attributeBDD>")?)
     }
 
@@ -213,6 +228,16 @@ impl<W: Write> Writer<'_, W> {
 
     fn say(&mut self, name: &str, value: &str) -> Result<(), WriteError> {
         Ok(writeln!(self.out, "<{name}>{value}</{name}>")?)
+    }
+
+    fn say_added(&mut self, subject: Subject) -> Result<(), WriteError> {
+        for column in self.added {
+            let cell = column.cell(Some(subject));
+            if !cell.is_empty() {
+                self.say(&column.name, &cell)?;
+            }
+        }
+        Ok(())
     }
 
     /// `columns`: where the mesh's axes go, already in the unit and axes of the file, as the origin is.
@@ -290,7 +315,8 @@ impl<W: Write> Writer<'_, W> {
         };
         stack.push(Frame { axis: id, tag, node: 1, waiting: None });
         self.open(tag, "Axis", 2)?;
-        self.say("Name", name)
+        self.say("Name", name)?;
+        self.say_added(Subject::Axis(id.index()))
     }
 
     fn internode(&mut self, tag: &str, from: NodeId, to: NodeId) -> Result<(), WriteError> {
@@ -321,6 +347,7 @@ impl<W: Write> Writer<'_, W> {
         if let Some(flower) = organ.flower {
             self.say("Flower", &(flower.raw() + 1).to_string())?;
         }
+        self.say_added(Subject::Organ(row))?;
         if let Some(look) = self.looks.iter().position(|l| *l == (shape, organ.kind)) {
             let f = &organ.frame;
             let scale = length(spec, organ.scale);

@@ -12,7 +12,9 @@ use std::path::Path;
 
 use base::ops::PI;
 use base::{Draw, Seed, Unit, UpAxis};
-use formats::{ExportSpec, write_mtg, write_qsm, write_swc};
+use formats::{
+    AddedColumn, ExportSpec, StructureFormat, write_mtg, write_qsm, write_structure_with, write_swc,
+};
 use glam::{DVec2, DVec3};
 use mtg_reader::{Edge, Graph, read};
 use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape};
@@ -303,4 +305,38 @@ fn the_reader_reads_real_plants() {
             assert!(placed > 8_200, "{placed}");
         }
     }
+}
+
+#[test]
+fn added_columns_are_read_back_row_by_row() {
+    let p = wild(7, 12);
+    let value = |k: usize| (!k.is_multiple_of(3)).then_some(0.25 * k as f64 - 1.0);
+    let column = AddedColumn {
+        name: "AbsorbedPAR".into(),
+        axes: (0..p.axes.len()).map(value).collect(),
+        organs: (0..p.organs.len()).map(|k| value(k + 1)).collect(),
+    };
+    let short = AddedColumn { name: "fAPAR".into(), axes: Vec::new(), organs: vec![Some(f64::NAN)] };
+    let added = [column.clone(), short];
+    let written = |format| {
+        let mut bytes = Vec::new();
+        write_structure_with(&p, &[], &added, format, &ExportSpec::default(), &mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    let g = read(&written(StructureFormat::Mtg)).unwrap();
+    same(&p, &g, UpAxis::Y, 1.0);
+    for v in g.with_symbol("A").filter(|v| g.word(*v, "Kind") != Some("none")) {
+        assert_eq!(g.number(v, "AbsorbedPAR"), column.axes[g.index(v) - 1]);
+        assert_eq!(g.number(v, "fAPAR"), None);
+    }
+    let symbols = ["L", "K", "D", "U", "B", "S", "C", "T", "Q", "E", "H", "F"];
+    let organs: Vec<usize> = symbols.into_iter().flat_map(|s| g.with_symbol(s)).collect();
+    assert!(organs.len() == p.organs.len() && !organs.is_empty());
+    for v in organs {
+        assert_eq!(g.number(v, "AbsorbedPAR"), column.organs[g.index(v) - 1]);
+    }
+    let opf = written(StructureFormat::Opf);
+    let said = opf.matches("<AbsorbedPAR>").count();
+    assert_eq!(said, column.axes.iter().chain(&column.organs).flatten().count());
+    assert!(opf.contains("<attribute name=\"fAPAR\" class=\"Double\"/>") && !opf.contains("<fAPAR>"));
 }

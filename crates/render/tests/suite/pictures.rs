@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use base::{CancelToken, Cancelled, Executor, Run};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use render::{Background, Camera, Picture, PictureSpec, View, render};
+use render::{Background, Camera, Picture, PictureSpec, Pinhole, View, hits, render};
 
 /// Positions, triangles and colour of a part.
 type Body<'a> = (&'a [[f32; 3]], &'a [[u32; 3]], [f32; 3]);
@@ -262,4 +262,76 @@ fn cancelled_run_gives_no_picture() {
     cancel.cancel();
     let run = Run { cancel: &cancel, ..Run::plain() };
     assert_eq!(render(&steps(), &PictureSpec::default(), &run), Err(Cancelled));
+}
+
+/// Looks along -Z from (0.3, 1.1, 4), with pixels that are not square and a principal point off the middle.
+fn pinhole() -> Pinhole {
+    Pinhole {
+        eye_m: DVec3::new(0.3, 1.1, 4.0),
+        right: DVec3::X,
+        down: DVec3::NEG_Y,
+        focal_px: DVec2::new(90.0, 120.0),
+        principal_px: DVec2::new(31.0, 22.5),
+    }
+}
+
+#[test]
+fn a_pinhole_projects_by_its_intrinsics() {
+    let camera = Camera::framing(&[], &spec(80, 60, View::Pinhole(pinhole()), Background::Sky));
+    for (point, [x, y]) in [
+        (DVec3::new(0.3, 1.1, 0.0), [31.0, 22.5]),
+        (DVec3::new(0.7, 1.1, 2.0), [31.0 + 90.0 * 0.4 / 2.0, 22.5]),
+        (DVec3::new(0.3, 0.1, -4.0), [31.0, 22.5 + 120.0 / 8.0]),
+    ] {
+        let seen = camera.project(point);
+        assert!((seen.x - x).abs() < 1e-12 && (seen.y - y).abs() < 1e-12, "{point}: {seen}");
+    }
+    assert!(camera.project(DVec3::new(0.3, 1.1, 5.0)).x.is_nan(), "behind the eye");
+}
+
+#[test]
+fn a_pinhole_meets_a_plane_where_its_rays_do() {
+    let m = model(&[(&square(1.0, 0.0, 2.0), &QUAD, RED)]);
+    let view = spec(80, 60, View::Pinhole(pinhole()), Background::Sky);
+    let seen = hits(&m, &[view], &Run::plain()).unwrap();
+    assert!(seen[0].len() > 2000, "{}", seen[0].len());
+    for hit in &seen[0] {
+        let [x, y] = [f64::from(hit.pixel % 80) + 0.5, f64::from(hit.pixel / 80) + 0.5];
+        let wanted = DVec3::new(0.3 + (x - 31.0) / 90.0 * 4.0, 1.1 - (y - 22.5) / 120.0 * 4.0, 0.0);
+        // Corners are rounded to 1/256 of a pixel.
+        assert!(hit.at.distance(wanted) < 4.0 / 90.0 / 128.0, "{}: {} {wanted}", hit.pixel, hit.at);
+        assert!((hit.distance_m - wanted.distance(pinhole().eye_m)).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn a_pinhole_that_is_not_sound_is_no_view() {
+    let skewed = Pinhole { down: DVec3::new(0.5, -0.5, 0.0), ..pinhole() };
+    let nowhere = Pinhole { eye_m: DVec3::NAN, ..pinhole() };
+    let flat = Pinhole { focal_px: DVec2::new(0.0, 10.0), ..pinhole() };
+    assert!(pinhole().is_sound());
+    for camera in [skewed, nowhere, flat] {
+        assert!(!camera.is_sound());
+        let view = spec(8, 8, View::Pinhole(camera), Background::Sky).clamped().view;
+        assert_eq!(view, View::default());
+    }
+}
+
+#[test]
+fn a_sun_that_is_placed_lights_the_side_that_faces_it() {
+    // Two walls that face +X and -X, seen from above.
+    let east = [[0.5, 0.0, -1.0], [1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [0.5, 0.0, 1.0]];
+    let west = [[-0.5, 0.0, -1.0], [-0.5, 0.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]];
+    let m = model(&[(&east, &[[0, 2, 1], [0, 3, 2]], [0.5; 3]), (&west, &[[0, 2, 1], [0, 3, 2]], [0.5; 3])]);
+    let lit = |sun: DVec3, sunshine: f64| {
+        let view = spec(80, 80, View::Top, Background::Plain([0; 3]));
+        let p = picture(&m, &PictureSpec { sun: Some(sun), sunshine, ..view });
+        [60, 20].map(|x| brightness(p.pixel(x, 40).unwrap()))
+    };
+    let [right, left] = lit(DVec3::new(0.8, 0.6, 0.0), 1.0);
+    assert!(right > left + 60, "{right} {left}");
+    let [right, left] = lit(DVec3::new(-0.8, 0.6, 0.0), 1.0);
+    assert!(left > right + 60, "{right} {left}");
+    let [right, left] = lit(DVec3::new(-0.8, 0.6, 0.0), 0.0);
+    assert!(right.abs_diff(left) < 20, "{right} {left}");
 }
