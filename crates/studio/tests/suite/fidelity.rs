@@ -37,7 +37,8 @@ impl Mask {
     }
 
     fn polygon(ring: &[DVec2]) -> Self {
-        Self((0..SIDE * SIDE).map(|i| geom::contains(ring, centre(i))).collect())
+        let inside = geom::Inside::of(ring);
+        Self((0..SIDE * SIDE).map(|i| inside.has(centre(i))).collect())
     }
 
     fn add(&mut self, other: &Self) {
