@@ -27,6 +27,8 @@ struct CoherenceLimits {
     fewest_leaves: usize,
     /// and more than this many times all petals that are like them,
     outnumbered: f64,
+    /// or so many times, however the petals stand,
+    far_outnumbered: f64,
     /// unless they stand all round their middle, with no wider angle between two, radians, and nothing like them touches them.
     ring: f64,
     /// Blades touch if their outlines come nearer to one another than this share of their size.
@@ -78,6 +80,7 @@ const LIMITS: CoherenceLimits = CoherenceLimits {
     slenderness: 0.2,
     fewest_leaves: 6,
     outnumbered: 2.0,
+    far_outnumbered: 6.0,
     ring: 1.9,
     touching: 0.1,
     most_blades: 400,
@@ -189,6 +192,9 @@ fn is_known(draft: &Draft<'_>, flower: &FlowerDraft) -> bool {
 
 /// Whether the blades stand round the foot of a stem that leads up from them, where the plant begins.
 fn is_at_foot(draft: &Draft<'_>, flower: &FlowerDraft, usual: f64) -> bool {
+    // Leaves at the foot are larger than florets.
+    let own = base::median(flower.petals.iter().map(|&i| draft.blades[i].size).collect());
+    let usual = usual.max(own.unwrap_or(usual));
     let points = || draft.lines.iter().flat_map(|l| &l.points).map(|p| p.y);
     let (low, high) = points().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     let (Some(sum), count) = (directions(draft, flower).reduce(|a, b| a + b), flower.petals.len()) else {
@@ -262,7 +268,7 @@ fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower:
     let petals = alike.iter().filter(|&&i| is_petal[i]).count();
     let leaves = alike.len() - petals;
     #[expect(clippy::cast_precision_loss, reason = "blades")]
-    let outnumbered = leaves >= LIMITS.fewest_leaves && leaves as f64 > LIMITS.outnumbered * petals as f64;
+    let are_more = |times: f64| leaves >= LIMITS.fewest_leaves && leaves as f64 > times * petals as f64;
     let is_open = || widest_gap(directions(draft, flower)) > LIMITS.ring;
     let is_surrounded = || {
         let touched = |&&i: &&usize| {
@@ -270,7 +276,7 @@ fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower:
         };
         alike.iter().filter(touched).count() >= flower.petals.len()
     };
-    outnumbered && (is_open() || is_surrounded())
+    are_more(LIMITS.outnumbered) && (are_more(LIMITS.far_outnumbered) || is_open() || is_surrounded())
 }
 
 /// Whether there is no stem, and many more blades stand all round: the youngest leaves in the middle are leaves as well.

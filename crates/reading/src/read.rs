@@ -269,6 +269,8 @@ const CLEAR: f64 = 0.55;
 const MUCH_BETTER: f64 = 5.0;
 /// A kind with a larger share than this is likelier than all others together (*geometry*).
 const LIKELY: f64 = 0.5;
+/// A drawing of many strokes is none of those from which kinds were learnt: its kind is likely only above this share.
+const SURELY: f64 = 0.9;
 /// The code of the warning that a drawing shows no plant.
 pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
 /// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
@@ -691,10 +693,13 @@ fn by_structure(
     // A solid with so many strokes inside is a glance at a drawing of many organs.
     let is_solid_of_many =
         is_new && count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit);
-    let margin = if by_user || is_new && count >= structure::LIMITS.no_doodle && !is_solid_of_many {
-        0.0
-    } else if is_solid_of_many {
+    // Of a kind that many strokes show either way, the structure tells more.
+    let is_same_of_many =
+        is_new && count >= structure::LIMITS.no_doodle && Kind::of(&tried).is_like(Kind::of(reading));
+    let margin = if is_solid_of_many {
         -structure::LIMITS.solid_of_many
+    } else if by_user || is_same_of_many {
+        0.0
     } else {
         structure::LIMITS.clearly_better
     };
@@ -711,10 +716,11 @@ fn as_likely(
 ) -> Option<(Reading, Report, Kind)> {
     let structural = &found.reading;
     let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
+    let is_sure = likely == Kind::Palm || share_of(scores, likely) > SURELY;
     // One solid explains little of what lies in it, whatever it scores.
     let is_shown = classes.iter().any(|c| c.shown.is_some());
     if is_shown
-        || ink.strokes.len() >= structure::LIMITS.no_doodle
+        || ink.strokes.len() >= structure::LIMITS.no_doodle && !is_sure
         || likely.is_like(Kind::Fruit)
         || likely.is_like(Kind::of(structural))
         || !asked.is_free(ink, classes)
@@ -725,7 +731,13 @@ fn as_likely(
     let score = |r: &Reading| structure::score(ink, &found.sheet, r, &[]);
     // Crowns that became leaves explain as much, and less well.
     let keeps_crowns = structural.regions.is_empty() || !tried.regions.is_empty();
-    let is_as_good = is_built(likely, &tried) && keeps_crowns && score(&tried) >= score(structural);
+    // The fronds of a palm lie as petals do, and a kind that is surely meant may explain a little less.
+    let slack = match likely {
+        Kind::Palm => structure::LIMITS.palm,
+        _ if is_sure => structure::LIMITS.clearly_better,
+        _ => 0.0,
+    };
+    let is_as_good = is_built(likely, &tried) && keeps_crowns && score(&tried) + slack >= score(structural);
     is_as_good.then_some((tried, said, likely))
 }
 

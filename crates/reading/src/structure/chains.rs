@@ -20,11 +20,14 @@ struct ChainLimits {
     most: usize,
     /// The outline has at least this share of the area of its hull.
     convex: f64,
+    /// At most so many ends of lines outside it lie on it: an axis bears more.
+    borne: usize,
     /// Other lines may end where two meet if more than this share of their points lies in the outline: midribs do.
     inside: f64,
 }
 
-const LIMITS: ChainLimits = ChainLimits { meet: 0.012, length: 0.02, most: 6, convex: 0.6, inside: 0.8 };
+const LIMITS: ChainLimits =
+    ChainLimits { meet: 0.012, length: 0.02, most: 6, convex: 0.6, borne: 10, inside: 0.8 };
 
 /// An outline in several strokes.
 #[derive(Clone, Debug)]
@@ -150,13 +153,21 @@ fn blade_convexity(outline: &[DVec2]) -> Option<f64> {
     (convexity > LIMITS.convex && goes_round(outline, geom::polyline_length(outline))).then_some(convexity)
 }
 
-/// Whether nothing else ends where the lines meet but what lies in the outline.
+/// Whether nothing else ends where the lines meet but what lies in the outline, and it bears little outside.
 fn are_free(ink: &Ink, near: &Near, steps: &[Step], outline: &[DVec2]) -> bool {
     let is_other = |k: usize| {
         let points = &ink.strokes[k].points;
         let inside = points.iter().filter(|p| contains(outline, **p)).count();
         !steps.iter().any(|s| s.row == k) && (inside as f64) <= LIMITS.inside * points.len() as f64
     };
-    let joints = steps.iter().skip(1).filter_map(|&s| followed(ink, s).first().copied());
-    joints.into_iter().all(|p| near.nearest(p, super::LIMITS.junction, is_other).is_none())
+    let mut joints = steps.iter().skip(1).filter_map(|&s| followed(ink, s).first().copied());
+    joints.all(|p| near.nearest(p, super::LIMITS.junction, is_other).is_none())
+        && ends_on(ink, outline, is_other) <= LIMITS.borne
+}
+
+/// How many ends of some strokes lie on an outline.
+fn ends_on(ink: &Ink, outline: &[DVec2], is_other: impl Fn(usize) -> bool) -> usize {
+    let is_on = |p: DVec2| geom::distance_to_polyline(outline, p).is_some_and(|d| d < super::LIMITS.junction);
+    let others = (0..ink.strokes.len()).filter(|&k| is_other(k)).map(|k| &ink.strokes[k].points);
+    others.map(|points| [points[0], points[points.len() - 1]].into_iter().filter(|&p| is_on(p)).count()).sum()
 }

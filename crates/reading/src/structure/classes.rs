@@ -200,7 +200,7 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
         }
     }
     let crowns = alike.iter().filter(|&&j| said(j).class == StrokeClass::Crown).count();
-    if 2 * crowns > alike.len() {
+    if 2 * crowns > alike.len() && !facts.has_midrib {
         return None;
     }
     if alike.len() >= LIMITS.repeated && are_discs(sheet, &alike) {

@@ -79,6 +79,8 @@ pub(crate) struct StructureLimits {
     pub(crate) small_mark: f64,
     /// A midrib is longer than this share of the diagonal of its leaf's box,
     pub(crate) midrib: f64,
+    /// one of a blade that is more slender than this is no crown,
+    pub(crate) slender: f64,
     /// and it and its side veins are so many lines at least.
     pub(crate) veins: usize,
     /// Repeated outlines are fruits or florets, not blades, if they are rounder than this: 4 pi area / perimeter^2, 1 of a circle.
@@ -109,7 +111,9 @@ pub(crate) struct StructureLimits {
     /// A drawing of so many strokes is of many organs. Where it was read as one solid, a structural reading may explain this much less.
     pub(crate) many_strokes: usize,
     pub(crate) solid_of_many: f64,
-    /// A drawing of so many strokes is none of those from which kinds were learnt: what it resembles does not weigh against its
+    /// A reading as a palm, where that is likely, may explain this much less.
+    pub(crate) palm: f64,
+    /// A drawing of so many strokes is none of those from which kinds were learnt: what it resembles weighs less against its
     /// structure.
     pub(crate) no_doodle: usize,
     /// The structural reading replaces another one only if its score is better by more than this.
@@ -138,6 +142,7 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     texture: 6,
     small_mark: 0.35,
     midrib: 0.45,
+    slender: 0.55,
     veins: 4,
     round: 0.85,
     plump: 0.72,
@@ -154,6 +159,7 @@ pub(crate) const LIMITS: StructureLimits = StructureLimits {
     weight_of_kind: 0.02,
     many_strokes: 15,
     solid_of_many: 0.05,
+    palm: 0.05,
     no_doodle: 40,
     clearly_better: 0.02,
     most_strokes: 400,

@@ -95,6 +95,8 @@ pub(crate) struct Facts {
     pub(crate) marks: usize,
     /// Whether these are the venation of a leaf: a midrib with others that begin on it.
     pub(crate) is_veined: bool,
+    /// Whether one of them leads through most of it: a midrib.
+    pub(crate) has_midrib: bool,
     /// Whether these are many and small: scales or seeds.
     pub(crate) is_textured: bool,
 }
@@ -131,6 +133,9 @@ impl Sheet {
         }
         for k in veined(ink, &facts) {
             facts[k].is_veined = true;
+        }
+        for k in with_midrib(ink, &facts) {
+            facts[k].has_midrib = true;
         }
         for k in textured(ink, &facts) {
             facts[k].is_textured = true;
@@ -179,7 +184,16 @@ fn alone(near: &Near, k: usize, stroke: &InkStroke, is_of_many: bool) -> Facts {
     };
     let form = if outline.is_none() { Form::Line } else { form };
     let joined = ends.into_iter().filter(|on| *on).count();
-    Facts { form, outline, holder: None, joined, marks: 0, is_veined: false, is_textured: false }
+    Facts {
+        form,
+        outline,
+        holder: None,
+        joined,
+        marks: 0,
+        is_veined: false,
+        has_midrib: false,
+        is_textured: false,
+    }
 }
 
 /// Whether a line leads out and back again, round something: both sides of a blade, with its tip between them, however its ends
@@ -199,6 +213,18 @@ fn farthest_from_chord(points: &[DVec2]) -> Option<DVec2> {
     let middle = points.first()?.midpoint(*points.last()?);
     let off = |p: &DVec2| p.distance_squared(middle);
     points.iter().max_by(|a, b| off(a).total_cmp(&off(b))).copied()
+}
+
+/// Slender outlines with a line that leads through most of them.
+fn with_midrib(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
+    let has_midrib = |&k: &usize| {
+        let Some(outline) = facts[k].outline.as_ref().filter(|o| o.slenderness < LIMITS.slender) else {
+            return false;
+        };
+        let least = LIMITS.midrib * outline.low.distance(outline.high);
+        (0..facts.len()).any(|j| facts[j].holder == Some(k) && ink.strokes[j].length > least)
+    };
+    (0..facts.len()).filter(has_midrib).collect()
 }
 
 /// Outlines with many marks, most of them small beside the outline.

@@ -18,14 +18,27 @@ struct VesselLimits {
     side: f64,
     /// over at least this share of the pot's height below the rim.
     down: f64,
+    /// A side that is a line of its own has its ends farther apart than this share of its length: fruits that hang are rings.
+    open: f64,
     /// Leaves that hang over the rim reach at most this share of the height down beside the pot.
     hang: f64,
+    /// It is drawn with at most so many strokes: more hang from a twig.
+    most_strokes: usize,
     /// The pot is between these many times as high as wide.
     high: core::ops::Range<f64>,
 }
 
-const LIMITS: VesselLimits =
-    VesselLimits { level: 4.0, rim: 0.08, slack: 0.06, side: 0.2, down: 0.6, hang: 0.6, high: 0.12..1.6 };
+const LIMITS: VesselLimits = VesselLimits {
+    level: 4.0,
+    rim: 0.08,
+    slack: 0.06,
+    side: 0.2,
+    down: 0.6,
+    open: 0.5,
+    hang: 0.45,
+    most_strokes: 14,
+    high: 0.12..1.6,
+};
 
 /// The strokes of a pot at the foot of a drawing, its rim first; none unless something stands above it and nothing reaches
 /// far below its rim beside it. Cost: strokes times rims.
@@ -36,11 +49,16 @@ pub(crate) fn vessel(ink: &Ink) -> Vec<usize> {
         let size = boxes[k].1 - boxes[k].0;
         size.x >= LIMITS.rim && size.x >= LIMITS.level * size.y
     });
-    rims.filter_map(|rim| below(&boxes, rim)).max_by_key(Vec::len).unwrap_or_default()
+    let is_open = |k: usize| {
+        let s = &ink.strokes[k];
+        s.points[0].distance(s.points[s.points.len() - 1]) > LIMITS.open * s.length
+    };
+    let open: Vec<bool> = (0..boxes.len()).map(is_open).collect();
+    rims.filter_map(|rim| below(&boxes, &open, rim)).max_by_key(Vec::len).unwrap_or_default()
 }
 
 /// The strokes below a rim, if they make a pot with it.
-fn below(boxes: &[(DVec2, DVec2)], rim: usize) -> Option<Vec<usize>> {
+fn below(boxes: &[(DVec2, DVec2)], open: &[bool], rim: usize) -> Option<Vec<usize>> {
     let (low, high) = boxes[rim];
     let wide = high.x - low.x;
     let slack = LIMITS.slack * wide;
@@ -57,23 +75,29 @@ fn below(boxes: &[(DVec2, DVec2)], rim: usize) -> Option<Vec<usize>> {
     let is_beside =
         |k: usize| k != rim && !parts.contains(&k) && boxes[k].0.y < low.y - slack.max(LIMITS.hang * tall);
     let grows = (0..boxes.len()).any(|k| k != rim && !parts.contains(&k));
-    if parts.is_empty() || !grows || (0..boxes.len()).any(is_beside) {
+    if parts.is_empty() || parts.len() >= LIMITS.most_strokes || !grows || (0..boxes.len()).any(is_beside) {
         return None;
     }
     if !LIMITS.high.contains(&(tall / wide)) {
         return None;
     }
     let reach = LIMITS.side * wide;
-    let on_left = |k: &usize| boxes[*k].1.x < low.x + 2.0 * reach && boxes[*k].0.x < low.x + reach;
-    let on_right = |k: &usize| boxes[*k].0.x > high.x - 2.0 * reach && boxes[*k].1.x > high.x - reach;
+    let is_steep = |k: &usize| open[*k] && boxes[*k].1.y - boxes[*k].0.y > boxes[*k].1.x - boxes[*k].0.x;
+    let on_left = |k: &usize| is_steep(k) && boxes[*k].0.x < low.x + reach;
+    let on_right = |k: &usize| is_steep(k) && boxes[*k].1.x > high.x - reach;
+    let is_whole = |k: &usize| boxes[*k].0.x < low.x + reach && boxes[*k].1.x > high.x - reach;
     // A side may be interrupted where a broader rim meets the wall.
     let goes_down = |is_side: &dyn Fn(&usize) -> bool| {
-        let side = || parts.iter().filter(|k| is_side(k)).map(|&k| boxes[k]);
-        let top = side().map(|b| b.1.y).fold(f64::NEG_INFINITY, f64::max);
-        let covered: f64 = side().map(|b| b.1.y.min(low.y) - b.0.y).sum();
-        top > low.y - slack && covered > LIMITS.down * tall
+        let mut side: Vec<(f64, f64)> =
+            parts.iter().filter(|k| is_side(k)).map(|&k| (boxes[k].1.y, boxes[k].0.y)).collect();
+        base::sort_by(&mut side, |a, b| b.0.total_cmp(&a.0));
+        let (mut at, mut covered) = (low.y, 0.0);
+        for (top, bottom) in side {
+            covered += (top.min(at) - bottom).max(0.0);
+            at = at.min(bottom);
+        }
+        covered > LIMITS.down * tall
     };
-    let is_whole = |k: &usize| boxes[*k].0.x < low.x + reach && boxes[*k].1.x > high.x - reach;
     let left = goes_down(&|k| on_left(k) || is_whole(k));
     let right = goes_down(&|k| on_right(k) || is_whole(k));
     (left && right).then(|| core::iter::once(rim).chain(parts).collect())
