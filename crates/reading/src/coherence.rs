@@ -69,6 +69,12 @@ struct CoherenceLimits {
     palmate_open: f64,
     /// where its petiole comes from, within this angle (the cosine).
     palmate_way: f64,
+    /// A petiole leads away from its blade by more than this share of the usual blade,
+    petiole: f64,
+    /// ends on it, and begins where the others do, but for this share.
+    petiole_near: f64,
+    /// So many blades at least have one.
+    fewest_petioles: usize,
     /// Blades without a stem are a rosette seen from above where more than this many times as many stand round them.
     rosette: f64,
     /// Points of an outline that are compared with another one.
@@ -101,6 +107,9 @@ const LIMITS: CoherenceLimits = CoherenceLimits {
     palmate_gap: 1.7,
     palmate_open: 2.4,
     palmate_way: 0.7,
+    petiole: 0.15,
+    petiole_near: 0.1,
+    fewest_petioles: 3,
     rosette: 2.0,
     places: 24,
 };
@@ -130,7 +139,11 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
     let is_sure = |f: &FlowerDraft| f.disc.is_some() || !f.stamens.is_empty() || is_known(draft, f);
     let mut are_leaves: Vec<bool> = flowers
         .iter()
-        .map(|f| !is_sure(f) && (is_at_foot(draft, f, usual) || is_palmate(draft, f, usual)))
+        .map(|f| {
+            let are_leaves =
+                is_at_foot(draft, f, usual) || is_palmate(draft, f, usual) || has_petioles(draft, &f.petals);
+            !is_sure(f) && are_leaves
+        })
         .collect();
     let rows = |is_one: &dyn Fn(&FlowerDraft) -> bool| -> Vec<usize> {
         (0..flowers.len()).filter(|&k| !is_sure(&flowers[k]) && is_one(&flowers[k])).collect()
@@ -174,6 +187,36 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
         !are_leaves
     });
     freed
+}
+
+/// Whether most of some blades stand each on a line of its own, and these lines begin in one place: leaves on petioles. Petals have
+/// no stalks.
+pub(crate) fn has_petioles(draft: &Draft<'_>, blades: &[usize]) -> bool {
+    let Some(usual) = base::median(blades.iter().map(|&i| draft.blades[i].size).collect()) else {
+        return false;
+    };
+    let mut feet: Vec<(usize, DVec2)> = Vec::new();
+    for &i in blades {
+        let drawn = &draft.ink.strokes[draft.blades[i].stroke].points;
+        let off = |p: DVec2| distance_to_polyline(drawn, p).unwrap_or(f64::INFINITY);
+        let foot = |(row, line): (usize, &Line)| {
+            let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
+            let (from, to) = if off(a) < off(b) { (b, a) } else { (a, b) };
+            let is_petiole = off(to) < LIMITS.petiole_near * usual && off(from) > LIMITS.petiole * usual;
+            is_petiole.then_some((row, from))
+        };
+        feet.extend(
+            draft
+                .lines
+                .iter()
+                .enumerate()
+                .filter_map(foot)
+                .find(|(row, _)| !feet.iter().any(|f| f.0 == *row)),
+        );
+    }
+    let together = |p: DVec2| feet.iter().filter(|f| f.1.distance(p) < LIMITS.petiole_near * usual).count();
+    let stalked = feet.iter().map(|f| together(f.1)).max().unwrap_or(0);
+    stalked >= LIMITS.fewest_petioles && 2 * stalked > blades.len()
 }
 
 /// Whether lines shorter than a blade begin near the middle: stamens, which leaves have not.

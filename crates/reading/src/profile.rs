@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use crate::blade::Sheetlet;
-use crate::coherence::stands_along;
+use crate::coherence::{has_petioles, stands_along};
 use crate::contour::width_at;
 use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
@@ -109,7 +109,7 @@ pub(crate) fn gather(
     }
     for tip in tips(draft) {
         let petals = petals_at(draft, &tip, taken);
-        if !is_flower(draft, &tip, &petals) {
+        if !is_flower(draft, &tip, &petals) || has_petioles(draft, &petals) {
             continue;
         }
         for &i in &petals {

@@ -91,3 +91,27 @@ fn tubes_that_are_alike_along_a_stem_are_flowers_of_one_petal() {
     assert!(r.flowers.iter().all(|f| f.petals.len() == 1 && f.bearer.is_some()));
     assert_eq!(Kind::of(&r), Kind::Flowers);
 }
+
+/// Blades that fan out from the top of a stem, each on a stalk so long; those behind stop at those in front.
+fn fan_on_stalks(stalk: f64) -> Vec<(StrokeClass, Vec<DVec2>)> {
+    let top = DVec2::new(5.0, 8.0);
+    let mut strokes = vec![(StrokeClass::Axis, line((5.0, 0.0), (5.0, 8.0)))];
+    for k in 0..5 {
+        let (s, c) = ops::sin_cos(0.2 * ops::PI + 0.15 * ops::PI * f64::from(k));
+        let way = DVec2::new(c, s);
+        let (foot, tip) = (top + way * stalk, top + way * (stalk + 3.0));
+        if stalk > 0.0 {
+            strokes.push((StrokeClass::Axis, line((5.0, 8.0), (foot.x, foot.y))));
+        }
+        strokes.push((StrokeClass::Blade, leaf((foot.x, foot.y), (tip.x, tip.y), 1.2)));
+    }
+    strokes
+}
+
+#[test]
+fn blades_on_petioles_round_the_top_of_a_stem_are_leaves_and_without_they_are_petals() {
+    let (r, _) = reading(&fan_on_stalks(0.0));
+    assert_eq!((r.flowers.len(), r.leaves.len()), (1, 0), "{:?}", organs(&r));
+    let (r, _) = reading(&fan_on_stalks(0.9));
+    assert_eq!((r.flowers.len(), r.leaves.len()), (0, 5), "{:?}", organs(&r));
+}
