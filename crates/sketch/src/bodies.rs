@@ -26,6 +26,9 @@ const MANY: usize = 4;
 const TUFT: usize = 3;
 const TUFT_HIGH: f64 = 0.25;
 const TUFT_WIDE: f64 = 1.25;
+/// So many florets or more stand on an involucre, and begin between these shares of its height.
+const FLORETS: usize = 8;
+const FLORETS_FROM: core::ops::Range<f64> = 0.6..1.3;
 /// They begin above this share of its height.
 const TUFT_FROM: f64 = 0.8;
 /// The height of its direction where a body hangs or stands: within 45 degrees.
@@ -72,6 +75,11 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             if form.tall * organ.scale > large {
                 organ.kind = OrganKind::Body;
             }
+            if let Paint::Natural(varied) = organ.paint
+                && is_involucre(reading, organ.source)
+            {
+                organ.paint = tinted(varied, GREEN);
+            }
             continue;
         }
         let many = of_plants.iter().filter(|p| **p == of).count() >= MANY;
@@ -92,9 +100,14 @@ pub(crate) fn name_bodies(plant: &mut Plant, reading: &Reading) {
             word => word.and_then(skin_of).or_else(by_form),
         };
         if let (Paint::Natural(varied), Some(skin)) = (organ.paint, skin) {
-            organ.paint = Paint::Tinted([0, 1, 2].map(|k| varied[k] * skin[k]));
+            organ.paint = tinted(varied, skin);
         }
     }
+}
+
+/// A colour with the variation of an organ.
+fn tinted(varied: [f32; 3], color: [f32; 3]) -> Paint {
+    Paint::Tinted([0, 1, 2].map(|k| varied[k] * color[k]))
 }
 
 /// What the form of a body says about it.
@@ -168,6 +181,22 @@ fn has_tuft(reading: &Reading, source: Option<u32>) -> bool {
     let lines = reading.axes.iter().filter(|a| on_top(&a.points)).count();
     let wide = high.x - low.x;
     wide < TUFT_WIDE * tall && (blades >= TUFT || lines >= TUFT || blades + lines > TUFT)
+}
+
+/// Whether a body is the involucre of a head: many florets begin at its upper end and lead out of it.
+fn is_involucre(reading: &Reading, source: Option<u32>) -> bool {
+    let Some((low, high)) = body(reading, source).and_then(|f| bounds(&f.outline)) else { return false };
+    let tall = high.y - low.y;
+    let is_foot = |p: DVec2| {
+        let level = (p.y - low.y) / tall;
+        p.x > low.x && p.x < high.x && FLORETS_FROM.contains(&level)
+    };
+    let leads_out = |foot: DVec2, tip: DVec2| is_foot(foot) && tip.y > high.y + TUFT_HIGH * tall;
+    let axes = reading.axes.iter().filter_map(|a| a.points.first().zip(a.points.last()));
+    let lines = axes.filter(|&(&a, &b)| leads_out(a, b) || leads_out(b, a)).count();
+    let petals = reading.flowers.iter().flat_map(|f| &f.petals);
+    let blades = reading.leaves.iter().chain(petals).filter(|b| leads_out(b.root, b.tip)).count();
+    lines + blades >= FLORETS
 }
 
 /// Whether a body is drawn whole rather than in slices.

@@ -161,3 +161,21 @@ fn fruits_have_the_skin_of_their_form() {
     assert!(berry[blue] > berry[green] && berry[red] < 0.2, "{berry:?}");
     assert!(pea[green] > 1.5 * pea[red], "{pea:?}");
 }
+
+#[test]
+fn a_body_under_many_florets_is_a_green_involucre_and_under_a_calyx_a_fruit() {
+    let [red, green, blue] = [0, 1, 2];
+    let ball = |t: f64| 0.8 * (0.25 - (t - 0.5) * (t - 0.5)).max(0.0).sqrt();
+    let paint = |florets: u32, tip: f64| {
+        let mut reading = whole(Kind::Stem, ball, None);
+        let floret =
+            |k: u32| blade(v(0.4 + 0.02 * f64::from(k), 0.9), v(0.1 * f64::from(k), tip), 0.03, 1 + k);
+        reading.leaves.extend((0..florets).map(floret));
+        let organs = made(&reading, &SketchSpec::default()).plant.organs;
+        organs.iter().find(|o| matches!(o.kind, OrganKind::Fruit | OrganKind::Body)).map(|o| o.paint)
+    };
+    let is_green = |p: Option<Paint>| matches!(p, Some(Paint::Tinted(c)) if c[green] > 1.5 * c[red] && c[green] > 2.0 * c[blue]);
+    assert!(is_green(paint(10, 1.8)));
+    assert!(!is_green(paint(5, 1.8)), "sepals are few");
+    assert!(!is_green(paint(10, 1.1)), "and short");
+}
