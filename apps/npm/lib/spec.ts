@@ -97,6 +97,8 @@ export const PARTS = [
   'body',
   'pot',
   'stub',
+  'soil',
+  'stone',
 ] as const;
 
 /** Fruits with a parachute each, all round the head: a dandelion's clock. */
