@@ -97,7 +97,7 @@ def test_masks_say_which_tree_each_pixel_shows():
     how = dict(size=(160, 120), view="front", supersample=1)
     grove = bg.grove(["hazel", "birch"], area=9.0, spacing=3.0, kinds=1, seed=4, **SMALL)
     masks = grove.masks(**how)
-    assert all(column.shape == (120, 160) for column in masks)
+    assert all(column.shape == ((120, 160, 3) if name == "normal" else (120, 160)) for name, column in masks._asdict().items())
     trees = np.unique(masks.tree[masks.tree >= 0])
     assert len(trees) >= 3 and trees.max() < len(grove)
     nothing = masks.tree < 0
@@ -132,7 +132,9 @@ def test_tiles_have_pictures_with_a_mask_for_each_tree(tmp_path):
         picture={"size": 96, "supersample": 1}, workers=1, progress=False,
     )  # fmt: skip
     (tile,) = bg.dataset.read(tmp_path / "tiles")
-    assert tile["png"].startswith(b"\x89PNG") and sorted(tile["masks"]) == ["axis", "depth", "organ", "part", "tree"]
+    assert tile["png"].startswith(b"\x89PNG") and sorted(tile["masks"]) == [
+        "axis", "depth", "instance", "normal", "organ", "part", "tree",
+    ]  # fmt: skip
     assert tile["masks"]["tree"].shape == (96, 96) and tile["masks"]["tree"].max() < tile["measures"]["trees"]
 
 
