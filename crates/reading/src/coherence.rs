@@ -4,7 +4,7 @@
 //! begin in one place, and the rosette at the foot of a stem. The rest of the plant tells them apart: leaflets are like all the
 //! others, and a rosette lies where a stem begins.
 
-use base::ops;
+use base::{LiteMap, ops};
 use geom::{closest_on_polyline, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
 
@@ -27,10 +27,10 @@ struct CoherenceLimits {
     fewest_leaves: usize,
     /// and more than this many times all petals that are like them,
     outnumbered: f64,
-    /// or so many times, however the petals stand,
-    far_outnumbered: f64,
     /// unless they stand all round their middle, with no wider angle between two, radians, and nothing like them touches them.
     ring: f64,
+    /// More than this many times as many leaves decide, however the petals stand.
+    far_outnumbered: f64,
     /// Blades touch if their outlines come nearer to one another than this share of their size.
     touching: f64,
     /// More blades are not compared with one another.
@@ -86,8 +86,8 @@ const LIMITS: CoherenceLimits = CoherenceLimits {
     slenderness: 0.2,
     fewest_leaves: 6,
     outnumbered: 2.0,
-    far_outnumbered: 6.0,
     ring: 1.9,
+    far_outnumbered: 6.0,
     touching: 0.1,
     most_blades: 400,
     at_foot: 0.5,
@@ -140,9 +140,10 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
     let mut are_leaves: Vec<bool> = flowers
         .iter()
         .map(|f| {
-            let are_leaves =
-                is_at_foot(draft, f, usual) || is_palmate(draft, f, usual) || has_petioles(draft, &f.petals);
-            !is_sure(f) && are_leaves
+            !is_sure(f)
+                && (is_at_foot(draft, f, usual)
+                    || is_palmate(draft, f, usual)
+                    || has_petioles(draft, &f.petals))
         })
         .collect();
     let rows = |is_one: &dyn Fn(&FlowerDraft) -> bool| -> Vec<usize> {
@@ -195,28 +196,27 @@ pub(crate) fn has_petioles(draft: &Draft<'_>, blades: &[usize]) -> bool {
     let Some(usual) = base::median(blades.iter().map(|&i| draft.blades[i].size).collect()) else {
         return false;
     };
-    let mut feet: Vec<(usize, DVec2)> = Vec::new();
+    // Each line is the petiole of one blade.
+    let mut feet: LiteMap<usize, DVec2> = LiteMap::new();
     for &i in blades {
         let drawn = &draft.ink.strokes[draft.blades[i].stroke].points;
-        let off = |p: DVec2| distance_to_polyline(drawn, p).unwrap_or(f64::INFINITY);
-        let foot = |(row, line): (usize, &Line)| {
-            let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
-            let (from, to) = if off(a) < off(b) { (b, a) } else { (a, b) };
-            let is_petiole = off(to) < LIMITS.petiole_near * usual && off(from) > LIMITS.petiole * usual;
-            is_petiole.then_some((row, from))
-        };
-        feet.extend(
-            draft
-                .lines
-                .iter()
-                .enumerate()
-                .filter_map(foot)
-                .find(|(row, _)| !feet.iter().any(|f| f.0 == *row)),
-        );
+        let mut own = draft.lines.iter().enumerate().filter(|(row, _)| !feet.contains_key(row));
+        let petiole = own.find_map(|(row, line)| Some((row, petiole_foot(line, drawn, usual)?)));
+        feet.extend(petiole);
     }
-    let together = |p: DVec2| feet.iter().filter(|f| f.1.distance(p) < LIMITS.petiole_near * usual).count();
-    let stalked = feet.iter().map(|f| together(f.1)).max().unwrap_or(0);
+    let together =
+        |p: &DVec2| feet.values().filter(|foot| foot.distance(*p) < LIMITS.petiole_near * usual).count();
+    let stalked = feet.values().map(together).max().unwrap_or(0);
     stalked >= LIMITS.fewest_petioles && 2 * stalked > blades.len()
+}
+
+/// Where a line begins that ends on the outline of a blade and leads away from it, if it does. `usual`: the size of blades.
+fn petiole_foot(line: &Line, drawn: &[DVec2], usual: f64) -> Option<DVec2> {
+    let off = |p: DVec2| distance_to_polyline(drawn, p).unwrap_or(f64::INFINITY);
+    let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
+    let (foot, end) = if off(a) < off(b) { (b, a) } else { (a, b) };
+    let is_petiole = off(end) < LIMITS.petiole_near * usual && off(foot) > LIMITS.petiole * usual;
+    is_petiole.then_some(foot)
 }
 
 /// Whether lines shorter than a blade begin near the middle: stamens, which leaves have not.

@@ -1,6 +1,6 @@
 //! The order in which a drawing is understood: `Ink + classes -> Reading`.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use base::{CancelToken, Cancelled, Report, Run};
 use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
@@ -308,8 +308,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     let (mut scores, no_plant) = (shares.kinds, shares.no_plant);
     let built = kind;
     // The model learnt from no drawing that has roots.
-    let rooted = is_rooted(&reading);
-    let free = asked.is_free(ink, classes);
+    let (rooted, free) = (is_rooted(&reading), asked.is_free(ink, classes));
     let other = kind_to_try((ink, classes), (&reading, built), &scores, free);
     if let Some(wanted) = asked.kind {
         kind = wanted;
@@ -336,11 +335,12 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.is_over() {
         return Reading::default();
     }
+    let facts = SheetOnce { ink, sheet: OnceCell::new() };
     let (mut structure, mut is_structural, mut is_cut) = (None, false, false);
     if asked.kind.is_none()
-        && let Some(found) = by_structure(asked, (ink, classes), &reading, |k| share_of(&scores, k))
+        && let Some(found) = by_structure(asked, (&facts, classes), &reading, |k| share_of(&scores, k))
     {
-        if let Some((tried, again, likely)) = as_likely(asked, (ink, classes), &found, &scores) {
+        if let Some((tried, again, likely)) = as_likely(asked, (&facts, classes), &found.reading, &scores) {
             (reading, said, kind, taken) = (tried, again, likely, Some(likely));
         } else {
             kind = Kind::of(&found.reading);
@@ -353,7 +353,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     let (mut sure, mut called) = (None, None);
     if let Some((composed, proposal, score)) = by_readers(asked, (ink, classes), &scores)
-        && (proposal.kind != kind || proposal.word.is_some() || explains_better(ink, &composed, &reading))
+        && (proposal.kind != kind || proposal.word.is_some() || explains_better(&facts, &composed, &reading))
     {
         (reading, said, kind, sure) = (composed, Report::default(), proposal.kind, Some(score));
         called = proposal.word;
@@ -396,7 +396,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         by_arrangement: sure.is_some(),
         is_tangle: tangled_length(&reading) > 0.0,
         is_wood: matches!(kind, Kind::Tree | Kind::Conifer | Kind::Palm | Kind::Bush),
-        explained: explained(ink, &reading),
+        explained: explained(&facts, &reading),
     };
     let readings = readings(kind, &evidence, &scores);
     let word = called.or_else(|| glance::word(kind, &glance.words));
@@ -405,12 +405,22 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
 }
 
 /// How much of a drawing of many organs a reading explains: 0 to 1. Of a drawing of few strokes, or of more than are looked at, 1.
-fn explained(ink: &Ink, reading: &Reading) -> f64 {
+fn explained(facts: &SheetOnce<'_>, reading: &Reading) -> f64 {
     let limits = structure::LIMITS;
-    if !(limits.many_strokes..=limits.most_strokes).contains(&ink.strokes.len()) {
-        return 1.0;
+    let is_of_many = (limits.many_strokes..=limits.most_strokes).contains(&facts.ink.strokes.len());
+    if is_of_many { structure::score(facts.ink, facts.sheet(), reading, &[]) } else { 1.0 }
+}
+
+/// The facts of a drawing's strokes, found when they are first asked for.
+struct SheetOnce<'a> {
+    ink: &'a Ink,
+    sheet: OnceCell<Sheet>,
+}
+
+impl SheetOnce<'_> {
+    fn sheet(&self) -> &Sheet {
+        self.sheet.get_or_init(|| Sheet::new(self.ink))
     }
-    structure::score(ink, &Sheet::new(ink), reading, &[])
 }
 
 /// How likely a kind is, with all that are built alike.
@@ -621,31 +631,30 @@ struct Structural {
     said: Report,
     /// What the structure says of the drawing's own strokes; nothing where some were cut anew.
     says: Option<Structure>,
-    /// The facts of the drawing's strokes.
-    sheet: Sheet,
 }
 
 /// A plant by the structure of its strokes, where that explains the drawing clearly better than another reading does.
 /// `likely`: the share of a kind.
 fn by_structure(
     asked: &Asked<'_>,
-    (ink, classes): (&Ink, &[Classified]),
+    (facts, classes): (&SheetOnce<'_>, &[Classified]),
     reading: &Reading,
     likely: impl Fn(Kind) -> f64,
 ) -> Option<Structural> {
+    let ink = facts.ink;
     let count = ink.strokes.len();
     if !(structure::LIMITS.fewest_strokes..=structure::LIMITS.most_strokes).contains(&count)
         || asked.off.contains(&READ_AS)
     {
         return None;
     }
-    let sheet = Sheet::new(ink);
+    let sheet = facts.sheet();
     if !sheet.is_careful() {
         return None;
     }
     // What a stroke is was said of it: none is taken for the side of something else.
     let by_user = classes.iter().any(|c| c.source == Source::User);
-    let mut tubes = if by_user { Vec::new() } else { structure::tubes(ink, &sheet) };
+    let mut tubes = if by_user { Vec::new() } else { structure::tubes(ink, sheet) };
     let pot = structure::vessel(ink);
     tubes.retain(|t| !pot.iter().any(|&k| t.has(k)));
     // Both sides of a trunk are read as its outline, and its limbs with it.
@@ -663,7 +672,7 @@ fn by_structure(
             && classes.get(k).is_none_or(|c| c.source != Source::User || c.class == StrokeClass::Blade)
     };
     let is_of_many = count >= structure::LIMITS.many_strokes;
-    let chains = if is_of_many { structure::chains(ink, &sheet, may_be_side) } else { Vec::new() };
+    let chains = if is_of_many { structure::chains(ink, sheet, may_be_side) } else { Vec::new() };
     tubes.retain(|t| !chains.iter().flat_map(|c| &c.rows).any(|&k| t.has(k)));
     let joined: Vec<Joined> =
         chains.iter().map(Joined::blade).chain(tubes.iter().map(Joined::axis)).collect();
@@ -675,7 +684,7 @@ fn by_structure(
         let parts = attempt(&own, &proposal, &cut.ink, &cut.classes, &mut report);
         (cut.back(ink, parts), None)
     } else {
-        let says = Structure::new(&sheet, &pot, classes);
+        let says = Structure::new(sheet, &pot, classes);
         if !says.differs(classes) {
             return None;
         }
@@ -685,7 +694,7 @@ fn by_structure(
     // Where the user said what strokes are, kinds learnt from doodles do not weigh against that.
     let weight = if by_user { 0.0 } else { structure::LIMITS.weight_of_kind };
     let score =
-        |r: &Reading, sides: &[usize]| structure::score(ink, &sheet, r, sides) + weight * likely(Kind::of(r));
+        |r: &Reading, sides: &[usize]| structure::score(ink, sheet, r, sides) + weight * likely(Kind::of(r));
     let sides: Vec<usize> = tubes.iter().flat_map(structure::Tube::rows).collect();
     // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
     // What was shown departs for clear evidence only.
@@ -704,17 +713,17 @@ fn by_structure(
         structure::LIMITS.clearly_better
     };
     let is_better = score(&tried, &[]) >= score(reading, &sides) + margin;
-    is_better.then_some(Structural { reading: tried, said: report, says, sheet })
+    is_better.then_some(Structural { reading: tried, said: report, says })
 }
 
 /// The reading as the kind that is likelier than all others together, where that explains as much as one by structure does.
 fn as_likely(
     asked: &Asked<'_>,
-    (ink, classes): (&Ink, &[Classified]),
-    found: &Structural,
+    (facts, classes): (&SheetOnce<'_>, &[Classified]),
+    structural: &Reading,
     scores: &[Scored],
 ) -> Option<(Reading, Report, Kind)> {
-    let structural = &found.reading;
+    let ink = facts.ink;
     let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
     let is_sure = likely == Kind::Palm || share_of(scores, likely) > SURELY;
     // One solid explains little of what lies in it, whatever it scores.
@@ -728,7 +737,7 @@ fn as_likely(
         return None;
     }
     let (tried, said) = taken_for(asked, likely, ink, classes);
-    let score = |r: &Reading| structure::score(ink, &found.sheet, r, &[]);
+    let score = |r: &Reading| structure::score(ink, facts.sheet(), r, &[]);
     // Crowns that became leaves explain as much, and less well.
     let keeps_crowns = structural.regions.is_empty() || !tried.regions.is_empty();
     // The fronds of a palm lie as petals do, and a kind that is surely meant may explain a little less.
@@ -776,9 +785,8 @@ fn by_readers(
 }
 
 /// Whether a reading explains the ink clearly better than another one of the same kind.
-fn explains_better(ink: &Ink, own: &Reading, other: &Reading) -> bool {
-    let sheet = Sheet::new(ink);
-    let score = |r: &Reading| structure::score(ink, &sheet, r, &[]);
+fn explains_better(facts: &SheetOnce<'_>, own: &Reading, other: &Reading) -> bool {
+    let score = |r: &Reading| structure::score(facts.ink, facts.sheet(), r, &[]);
     score(own) > score(other) + structure::LIMITS.clearly_better
 }
 

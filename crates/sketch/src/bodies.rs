@@ -26,11 +26,14 @@ const MANY: usize = 4;
 const TUFT: usize = 3;
 const TUFT_HIGH: f64 = 0.25;
 const TUFT_WIDE: f64 = 1.25;
-/// So many florets or more stand on an involucre, and begin between these shares of its height.
-const FLORETS: usize = 8;
-const FLORETS_FROM: core::ops::Range<f64> = 0.6..1.3;
 /// They begin above this share of its height.
 const TUFT_FROM: f64 = 0.8;
+/// So many florets or more stand on an involucre,
+const FLORETS: usize = 8;
+/// begin between these shares of its height,
+const FLORETS_FROM: core::ops::Range<f64> = 0.6..1.3;
+/// and end above it by more than this share of that.
+const FLORETS_HIGH: f64 = 0.25;
 /// The height of its direction where a body hangs or stands: within 45 degrees.
 const UPRIGHT: f64 = -0.7;
 /// Which parts of the length its ends are.
@@ -191,7 +194,7 @@ fn is_involucre(reading: &Reading, source: Option<u32>) -> bool {
         let level = (p.y - low.y) / tall;
         p.x > low.x && p.x < high.x && FLORETS_FROM.contains(&level)
     };
-    let leads_out = |foot: DVec2, tip: DVec2| is_foot(foot) && tip.y > high.y + TUFT_HIGH * tall;
+    let leads_out = |foot: DVec2, tip: DVec2| is_foot(foot) && tip.y > high.y + FLORETS_HIGH * tall;
     let axes = reading.axes.iter().filter_map(|a| a.points.first().zip(a.points.last()));
     let lines = axes.filter(|&(&a, &b)| leads_out(a, b) || leads_out(b, a)).count();
     let petals = reading.flowers.iter().flat_map(|f| &f.petals);

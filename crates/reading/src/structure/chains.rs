@@ -3,11 +3,11 @@
 //!
 //! `ends of lines -> partners -> chains -> outlines`
 
-use geom::{contains, convex_hull, signed_area};
+use geom::contains;
 use glam::DVec2;
 use ink::{Ink, StrokeMode};
 
-use super::sheet::{Form, Sheet, goes_round};
+use super::sheet::{Form, Sheet, convexity, goes_round};
 use crate::near::Near;
 
 /// When lines that meet are the outline of one blade. Lengths are in ink units (the drawing's diagonal is 1).
@@ -46,8 +46,8 @@ struct Step {
     is_turned: bool,
 }
 
-/// The blades of a drawing whose outlines were drawn in several strokes. `may_be`: rows that may be parts of one. Cost: linear in
-/// points but for the lines that meet at each end.
+/// The blades of a drawing whose outlines were drawn in several strokes. `may_be`: rows that may be parts of one. Cost: pairs of
+/// ends of lines, and the strokes for each chain.
 pub(crate) fn chains(ink: &Ink, sheet: &Sheet, may_be: impl Fn(usize) -> bool) -> Vec<Chain> {
     let is_part = |&k: &usize| {
         let (facts, stroke) = (&sheet.facts[k], &ink.strokes[k]);
@@ -148,9 +148,8 @@ fn followed(ink: &Ink, step: Step) -> Vec<DVec2> {
 
 /// How convex an outline is, if it is that of a blade.
 fn blade_convexity(outline: &[DVec2]) -> Option<f64> {
-    let convexity =
-        signed_area(outline).abs() / signed_area(&convex_hull(outline)).abs().max(f64::MIN_POSITIVE);
-    (convexity > LIMITS.convex && goes_round(outline, geom::polyline_length(outline))).then_some(convexity)
+    let own = convexity(outline);
+    (own > LIMITS.convex && goes_round(outline, geom::polyline_length(outline))).then_some(own)
 }
 
 /// Whether nothing else ends where the lines meet but what lies in the outline, and it bears little outside.

@@ -125,21 +125,15 @@ impl Sheet {
             }
             holders = (0..facts.len()).map(|k| holder(ink, &facts, k)).collect();
         }
+        let mut held: Vec<Vec<usize>> = vec![Vec::new(); facts.len()];
         for (k, holder) in holders.into_iter().enumerate() {
             facts[k].holder = holder;
             if let Some(holder) = holder {
                 facts[holder].marks += 1;
+                held[holder].push(k);
             }
         }
-        for k in veined(ink, &facts) {
-            facts[k].is_veined = true;
-        }
-        for k in with_midrib(ink, &facts) {
-            facts[k].has_midrib = true;
-        }
-        for k in textured(ink, &facts) {
-            facts[k].is_textured = true;
-        }
+        describe_marks(ink, &mut facts, &held);
         let open = facts.iter().filter(|f| f.form != Form::Ring).count();
         let joined: usize = facts.iter().filter(|f| f.form != Form::Ring).map(|f| f.joined).sum();
         let joined = if open > 0 { joined as f64 / (2 * open) as f64 } else { 1.0 };
@@ -205,7 +199,12 @@ pub(crate) fn goes_round(points: &[DVec2], length: f64) -> bool {
     let area = signed_area(points).abs();
     start.distance(end) < LIMITS.hairpin * length
         && area > LIMITS.round_something * triangle
-        && area > LIMITS.round_convex * signed_area(&convex_hull(points)).abs()
+        && convexity(points) > LIMITS.round_convex
+}
+
+/// The area that a line encloses, over that of its hull: 1 of a convex outline.
+pub(crate) fn convexity(points: &[DVec2]) -> f64 {
+    signed_area(points).abs() / signed_area(&convex_hull(points)).abs().max(f64::MIN_POSITIVE)
 }
 
 /// The point of a line that is farthest from the middle between its ends.
@@ -215,56 +214,41 @@ fn farthest_from_chord(points: &[DVec2]) -> Option<DVec2> {
     points.iter().max_by(|a, b| off(a).total_cmp(&off(b))).copied()
 }
 
-/// Slender outlines with a line that leads through most of them.
-fn with_midrib(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
-    let has_midrib = |&k: &usize| {
-        let Some(outline) = facts[k].outline.as_ref().filter(|o| o.slenderness < LIMITS.slender) else {
-            return false;
-        };
-        let least = LIMITS.midrib * outline.low.distance(outline.high);
-        (0..facts.len()).any(|j| facts[j].holder == Some(k) && ink.strokes[j].length > least)
-    };
-    (0..facts.len()).filter(has_midrib).collect()
-}
-
-/// Outlines with many marks, most of them small beside the outline.
-fn textured(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
-    let is_textured = |&k: &usize| {
-        let Some(outline) = facts[k].outline.as_ref().filter(|_| facts[k].marks >= LIMITS.texture) else {
-            return false;
-        };
+/// What the marks in each outline are. `held`: of each outline the rows of the strokes in it.
+fn describe_marks(ink: &Ink, facts: &mut [Facts], held: &[Vec<usize>]) {
+    for (k, held) in held.iter().enumerate() {
+        let Some(outline) = &facts[k].outline else { continue };
         let extent = outline.low.distance(outline.high);
-        let is_small = |j: &usize| {
-            let size = bounds(&ink.strokes[*j].points).map_or(0.0, |(low, high)| low.distance(high));
-            facts[*j].holder == Some(k) && size < LIMITS.small_mark * extent
+        let strokes: Vec<&InkStroke> = held.iter().map(|&j| &ink.strokes[j]).collect();
+        let lines = held.iter().filter(|&&j| facts[j].form == Form::Line).map(|&j| &ink.strokes[j]).collect();
+        let has_midrib =
+            outline.slenderness < LIMITS.slender && strokes.iter().any(|s| s.length > LIMITS.midrib * extent);
+        let is_veined = is_venation(lines, held.len(), extent);
+        let is_small = |s: &&&InkStroke| {
+            bounds(&s.points).map_or(0.0, |(low, high)| low.distance(high)) < LIMITS.small_mark * extent
         };
-        2 * (0..facts.len()).filter(is_small).count() > facts[k].marks && !facts[k].is_veined
-    };
-    (0..facts.len()).filter(is_textured).collect()
+        let is_textured = !is_veined
+            && held.len() >= LIMITS.texture
+            && 2 * strokes.iter().filter(is_small).count() > held.len();
+        facts[k] = Facts { has_midrib, is_veined, is_textured, ..facts[k].clone() };
+    }
 }
 
-/// Outlines with a venation: of the lines in one, the longest leads through most of it, and most others begin on that.
-fn veined(ink: &Ink, facts: &[Facts]) -> Vec<usize> {
-    let is_veined = |&k: &usize| {
-        let Some(outline) = facts[k].outline.as_ref().filter(|_| facts[k].marks >= LIMITS.veins) else {
-            return false;
-        };
-        let is_mark = |j: &usize| facts[*j].holder == Some(k) && facts[*j].form == Form::Line;
-        let marks: Vec<usize> = (0..facts.len()).filter(is_mark).collect();
-        let lines = || marks.iter().map(|&j| &ink.strokes[j]);
-        let Some(midrib) = lines().max_by(|a, b| a.length.total_cmp(&b.length)) else { return false };
-        let begins_on = |s: &&InkStroke| {
-            let ends = [s.points[0], s.points[s.points.len() - 1]];
-            let is_on =
-                |p: DVec2| distance_to_polyline(&midrib.points, p).is_some_and(|d| d < 2.0 * LIMITS.junction);
-            !core::ptr::eq(*s, midrib) && ends.into_iter().any(is_on)
-        };
-        let side_veins = lines().filter(begins_on).count();
-        midrib.length > LIMITS.midrib * outline.low.distance(outline.high)
-            && 2 * side_veins + 1 >= facts[k].marks
-            && side_veins + 1 >= LIMITS.veins
+/// Whether lines in an outline of an extent are the venation of a leaf: the longest leads through most of it, and most of its marks
+/// are lines that begin on that.
+fn is_venation(lines: Vec<&InkStroke>, marks: usize, extent: f64) -> bool {
+    let Some(midrib) = lines.iter().copied().max_by(|a, b| a.length.total_cmp(&b.length)) else {
+        return false;
     };
-    (0..facts.len()).filter(is_veined).collect()
+    let is_on = |p: DVec2| distance_to_polyline(&midrib.points, p).is_some_and(|d| d < 2.0 * LIMITS.junction);
+    let begins_on_midrib = |s: &&InkStroke| {
+        !core::ptr::eq(*s, midrib) && [s.points[0], s.points[s.points.len() - 1]].into_iter().any(is_on)
+    };
+    let side_veins = lines.into_iter().filter(begins_on_midrib).count();
+    marks >= LIMITS.veins
+        && midrib.length > LIMITS.midrib * extent
+        && 2 * side_veins + 1 >= marks
+        && side_veins + 1 >= LIMITS.veins
 }
 
 /// Whether a line leaves its chord to one side, and far.
