@@ -1,7 +1,8 @@
-//! What each rule of reading is worth: `table + labelled drawings -> one row a rule`, with that rule switched off.
+//! The value of each rule of reading: `table + labelled drawings -> one row for each rule`, with that rule switched
+//! off.
 //!
-//! Classes come from classifiers that were trained without the drawing that is read, as in the figures of the classifier:
-//! on drawings that it knows by heart no rule would be needed.
+//! Classes come from classifiers that were trained without the drawing that is read, as in the figures of the
+//! classifier: on drawings that it knows by heart no rule would be needed.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,7 +19,7 @@ use crate::made_strokes::made_sketches;
 use crate::quickdraw::drawings_of;
 use crate::read_drawings::{Chosen, Part};
 
-/// Dealings of the drawings that the strokes read right are summed over.
+/// Number of dealings of the drawings over which the strokes read right are summed.
 const DEALINGS: u64 = 4;
 
 /// A drawing with its classes, and labels by stroke.
@@ -29,7 +30,7 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Nothing was learnt from it, nor was anything chosen by it.
+    /// Whether no model and no choice has used it.
     fn is_of_the_end(&self) -> bool {
         self.rows
             .iter()
@@ -41,12 +42,12 @@ impl Sheet<'_> {
     }
 }
 
-/// How the labelled strokes were read, over all dealings.
+/// Results for the labelled strokes, over all dealings.
 #[derive(Default)]
 struct Score {
-    /// Of the public's drawings: rows are labels, columns what was read.
+    /// Confusion on the public's drawings: rows are labels, columns the classes read.
     confusion: [[u32; StrokeClass::ALL.len()]; StrokeClass::ALL.len()],
-    /// Strokes of the public that the labeller was not sure of, or that are two things at once, read as labelled.
+    /// Strokes of the public about which the labeller was unsure, or that are two things at once, read as labelled.
     doubtful: u32,
     /// Parts labelled by others that were read right.
     parts: u32,
@@ -71,12 +72,12 @@ impl Score {
         (0..StrokeClass::ALL.len()).map(|k| self.confusion[k][k]).sum()
     }
 
-    /// Clear strokes of the public of a class.
+    /// Counts the clear strokes of a class by the public.
     fn labelled(&self, class: usize) -> u32 {
         self.confusion[class].iter().sum()
     }
 
-    /// The classes with enough clear strokes.
+    /// Returns the classes with enough clear strokes.
     fn counted(&self) -> Vec<usize> {
         let enough = |k: &usize| u64::from(self.labelled(*k)) >= FEW_CLEAR as u64 * DEALINGS;
         (0..StrokeClass::ALL.len()).filter(enough).collect()
@@ -95,10 +96,10 @@ impl Score {
     }
 }
 
-/// The table of rules, with what each is worth; the drawings of `sketches` are those that the table was measured from.
+/// Returns the table of rules, with the value of each; the table was measured from the drawings of `sketches`.
 ///
 /// # Errors
-/// A sentence that names the file and what is wrong with it.
+/// A sentence that names the file and its fault.
 pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Result<String, String> {
     let labelled = labelled(rows, sketches)?;
     let fixtures: Vec<Sheet<'_>> = fixtures_of(fixtures)?.into_iter().map(shipped).collect();
@@ -112,12 +113,12 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     }
     let others: Vec<Sheet<'_>> = others.into_iter().chain(made).map(shipped).collect();
 
-    let chosen = Chosen::of(sketches)?;
+    let chosen = Chosen::collect(sketches)?;
     let [right, acceptable] = chosen.judged(&[]);
 
-    let all = Score::of(&labelled, &[]);
+    let all = Score::measure(&labelled, &[]);
     let (end, rest): (Vec<Sheet<'_>>, Vec<Sheet<'_>>) = labelled.into_iter().partition(Sheet::is_of_the_end);
-    let last = Score::of(&end, &[]);
+    let last = Score::measure(&end, &[]);
     let labelled: Vec<Sheet<'_>> = end.into_iter().chain(rest).collect();
     let strokes = labelled.iter().flat_map(|s| &s.rows);
     let count =
@@ -151,7 +152,7 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     let (fixtures_read, others_read) = (with_all(&fixtures), with_all(&others));
     for rule in RULES {
         let off = [rule.name];
-        let score = Score::of(&labelled, &off);
+        let score = Score::measure(&labelled, &off);
         let now = chosen.judged(&off);
         let change = |now: usize, before: usize| now.cast_signed() - before.cast_signed();
         let changed = |sheets: &[Sheet<'_>], before: &[Reading]| {
@@ -176,7 +177,7 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
 }
 
 impl Score {
-    fn of(sheets: &[Sheet<'_>], off: &[&str]) -> Self {
+    fn measure(sheets: &[Sheet<'_>], off: &[&str]) -> Self {
         let mut score = Self::default();
         for sheet in sheets {
             score.add(sheet, &sheet.read(off));
@@ -185,21 +186,21 @@ impl Score {
     }
 }
 
-/// Something else would grow. What decided a class does not matter.
+/// Whether another plant would grow. The source of a class does not matter.
 fn differs(a: &Reading, b: &Reading) -> bool {
     let plain = |r: &Reading| Reading { strokes: Vec::new(), ..r.clone() };
     let same = a.strokes.iter().zip(&b.strokes).all(|(a, b)| (a.class, a.organ) == (b.class, b.organ));
     !same || plain(a) != plain(b)
 }
 
-/// With the classes that programs carry.
+/// Returns a drawing with the classes of the model that programs carry.
 fn shipped<'a>(drawing: Drawing) -> Sheet<'a> {
     let ink = ink::clean(&drawing, &mut Report::default());
     let classes = ink::classify(&ink, &Run::plain());
     Sheet { ink, classes, rows: Vec::new() }
 }
 
-/// The labelled drawings once for each dealing, with classes of a classifier that has not seen them.
+/// Returns the labelled drawings once for each dealing, with classes of a classifier that has not seen them.
 fn labelled<'a>(rows: &'a [StrokeRow], sketches: &Path) -> Result<Vec<Sheet<'a>>, String> {
     let mut drawings = drawings_of(&sketches.join("quickdraw"))?;
     drawings.extend(drawings_of(&sketches.join("spg"))?);
@@ -225,7 +226,7 @@ fn labelled<'a>(rows: &'a [StrokeRow], sketches: &Path) -> Result<Vec<Sheet<'a>>
     Ok(sheets)
 }
 
-/// The repository's own drawings.
+/// Returns the repository's own drawings.
 pub(crate) fn fixtures_of(folder: &Path) -> Result<Vec<Drawing>, String> {
     let mut files = vec![folder.join("sample.svg")];
     for part in ["gallery", "table1"] {

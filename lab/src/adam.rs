@@ -1,10 +1,11 @@
-//! Examples drawn by weight, and steps down a slope (Kingma and Ba 2015), with a pull of every coefficient towards 0 (Loshchilov and Hutter 2019).
+//! Examples drawn by weight, and gradient descent (Kingma and Ba 2015), with a decay of every coefficient towards 0
+//! (Loshchilov and Hutter 2019).
 
 use base::{Stream, ops};
 
-/// Draws examples as often as they count.
+/// Draws examples in proportion to their weights.
 pub(crate) struct ByWeight {
-    /// Of each example and those before it.
+    /// Sum of the weights of each example and those before it.
     sums: Vec<f64>,
 }
 
@@ -17,7 +18,7 @@ impl ByWeight {
         Self { sums: weights.scan(0.0, sum).collect() }
     }
 
-    /// The place of one; none where there are none.
+    /// Draws the index of an example; `None` if there are none.
     pub(crate) fn draw(&self, r: &mut Stream) -> Option<usize> {
         let drawn = r.uniform() * self.sums.last()?;
         Some(self.sums.partition_point(|&s| s < drawn).min(self.sums.len() - 1))
@@ -27,14 +28,14 @@ impl ByWeight {
 /// A coefficient: steps are computed in double precision.
 pub(crate) trait Coefficient: Copy {
     fn wide(self) -> f64;
-    fn of(wide: f64) -> Self;
+    fn from_f64(wide: f64) -> Self;
 }
 
 impl Coefficient for f64 {
     fn wide(self) -> f64 {
         self
     }
-    fn of(wide: f64) -> Self {
+    fn from_f64(wide: f64) -> Self {
         wide
     }
 }
@@ -44,12 +45,12 @@ impl Coefficient for f32 {
         f64::from(self)
     }
     #[expect(clippy::cast_possible_truncation, reason = "a coefficient is small")]
-    fn of(wide: f64) -> Self {
+    fn from_f64(wide: f64) -> Self {
         wide as Self
     }
 }
 
-/// Means of slopes and of their squares.
+/// Means of gradients and of their squares.
 pub(crate) struct Moments {
     slope: Vec<f64>,
     square: Vec<f64>,
@@ -60,7 +61,7 @@ impl Moments {
         Self { slope: vec![0.0; n], square: vec![0.0; n] }
     }
 
-    /// The step of a number, from 1; `pull`: a share of the step.
+    /// Makes a step with its number, from 1; `pull`: the decay, a share of the step.
     pub(crate) fn step<T: Coefficient>(
         &mut self,
         own: &mut [T],
@@ -77,12 +78,14 @@ impl Moments {
             *mean = MEMORY[0] * *mean + (1.0 - MEMORY[0]) * s;
             *square = MEMORY[1] * *square + (1.0 - MEMORY[1]) * s * s;
             let own = c.wide();
-            *c = T::of(own - rate * ((*mean / seen[0]) / ((*square / seen[1]).sqrt() + 1e-8) + pull * own));
+            *c = T::from_f64(
+                own - rate * ((*mean / seen[0]) / ((*square / seen[1]).sqrt() + 1e-8) + pull * own),
+            );
         }
     }
 }
 
-/// The length of a step: half a cosine from `first` down to 0.
+/// Returns the length of a step: half a cosine from `first` down to 0.
 pub(crate) fn rate(first: f64, step: usize, steps: usize) -> f64 {
     first * 0.5 * (1.0 + ops::cos(ops::PI * step as f64 / steps as f64))
 }

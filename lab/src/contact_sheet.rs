@@ -1,4 +1,4 @@
-//! A page of drawings, each beside what was read in it, or beside the picture of its plant.
+//! A page of drawings, each next to its reading, or next to the picture of its plant.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ const COLUMNS: usize = 4;
 /// Width of the coloured frame.
 const EDGE: usize = 3;
 
-/// How well a drawing was read: the colour round it.
+/// Quality of a reading, shown as the colour round the drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Frame {
     Right,
@@ -40,12 +40,12 @@ impl Frame {
 pub(crate) struct Cell<'a> {
     pub(crate) drawing: &'a Drawing,
     pub(crate) reading: &'a Reading,
-    /// Of the plant; what was read is shown where it is not there.
+    /// Picture of the plant; if there is none, the reading is shown.
     pub(crate) picture: Option<PathBuf>,
     pub(crate) frame: Frame,
 }
 
-/// Writes the page. A picture that is not there stays grey.
+/// Writes the page. A missing picture stays grey.
 #[expect(clippy::cast_possible_truncation, reason = "a colour")]
 pub(crate) fn write(cells: &[Cell<'_>], to: &Path) -> Outcome {
     let rows = cells.len().div_ceil(COLUMNS).max(1);
@@ -76,7 +76,7 @@ pub(crate) fn write(cells: &[Cell<'_>], to: &Path) -> Outcome {
     pixels::write_rgb(&page, width, height, to)
 }
 
-/// The lines of a drawing, framed: strokes go from dark blue to orange in the order in which they were drawn.
+/// Draws the lines of a drawing, framed: strokes go from dark blue to orange in the order in which they were drawn.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places on a page, and colours")]
 fn sketch(drawing: &Drawing, frame: Frame) -> Vec<[u8; 3]> {
     let count = drawing.strokes.len().max(2) - 1;
@@ -96,7 +96,7 @@ fn sketch(drawing: &Drawing, frame: Frame) -> Vec<[u8; 3]> {
     page
 }
 
-/// What was read: wood brown, leaves green, crowns light green, petals pink, discs yellow, fruits red, thorns grey.
+/// Draws the reading: wood brown, leaves green, crowns light green, petals pink, discs yellow, fruits red, thorns grey.
 fn read(reading: &Reading) -> Vec<[u8; 3]> {
     let mut lines: Vec<(Vec<DVec2>, [u8; 3], usize)> = Vec::new();
     let shut = |outline: &[DVec2]| -> Vec<DVec2> { outline.iter().chain(outline.first()).copied().collect() };

@@ -1,4 +1,4 @@
-//! `cargo xtask flowers`: makes the pictures of docs/bloom.md and of the venations in docs/leaves.md anew.
+//! `cargo xtask flowers`: remakes the pictures of docs/bloom.md and of the venations in docs/leaves.md.
 
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub(crate) fn run() -> Outcome {
 }
 
 impl Maker<'_> {
-    /// A picture of a flower at a day.
+    /// Makes a picture of a flower at a day.
     fn flower(&self, name: &str, day: f64, more: &[&str]) -> Result<PathBuf, String> {
         let png = self.0.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
         let (day, model) = (day.to_string(), self.0.path("flower.glb"));
@@ -57,7 +57,7 @@ impl Maker<'_> {
         tiled(&rows, &picture("bloom-flowers.png"))
     }
 
-    /// The law of an opening sunflower, fitted to nine shapes of it, sets the pace of a lily.
+    /// Fits the law of an opening sunflower to nine shapes of it, which then sets the pace of a lily.
     fn law(&self) -> Outcome {
         let shapes = self.0.path("sunflower");
         self.0.burgeon(&["bloom", "run", "sunflower", "-o", &shapes, "--frames", "15", "--format", "obj"])?;

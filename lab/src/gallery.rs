@@ -97,7 +97,7 @@ fn write(path: &Path, text: &str) -> Outcome {
     std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Names of the files in a folder of the repository, without what they end in.
+/// Returns the names of the files in a folder of the repository, without their endings.
 fn names_in(folder: &str) -> Outcome<Vec<String>> {
     let folder = repository().join(folder);
     let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -107,12 +107,12 @@ fn names_in(folder: &str) -> Outcome<Vec<String>> {
     Ok(names)
 }
 
-/// Makes one fixture, its picture in docs/pictures, and returns the report's item.
+/// Makes one fixture, with its picture in docs/pictures, and returns the report's item.
 fn make(name: &str) -> Outcome<Value> {
     made(&format!("fixtures/sketches/{name}.svg"), name)
 }
 
-/// As [`make`], of any drawing of the repository; `name`: of its picture.
+/// Makes any drawing of the repository as [`make`] does; `name`: of its picture.
 fn made(drawing: &str, name: &str) -> Outcome<Value> {
     let root = repository();
     let picture = root.join(format!("docs/pictures/{name}.png"));
@@ -143,7 +143,7 @@ fn made(drawing: &str, name: &str) -> Outcome<Value> {
     Ok(json["items"][0].take())
 }
 
-/// One line about a plant: its name, and counts that are not 0.
+/// Returns one line about a plant: its name, and counts that are not 0.
 fn summary(item: &Value) -> String {
     let counts = &item["counts"];
     let words = [

@@ -1,7 +1,8 @@
-//! Drawings by people in all styles there are: doodles, icons, line art, illustrations; of plants and of other things.
+//! Drawings by people in all available styles: doodles, icons, line art, illustrations; of plants and of other things.
 //!
-//! For what must hold across styles. A third of each set is kept for one look at the end: of what is no plant by word, so that no
-//! word of the end is learnt, of icons and line art every third by name, of "Quick, Draw!" and trees by hand as everywhere.
+//! They serve requirements that must hold across styles. A third of each set is held out for one look at the end:
+//! drawings of things by word, so that no word of the end is learnt, icons and line art every third by name, "Quick,
+//! Draw!" and trees by hand as everywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,21 +16,21 @@ use crate::quickdraw::{drawing_of, json_lines, read, text_of};
 use crate::read_drawings::{self, Part};
 use xtask::shell::{Outcome, command, output, prepare, say, target_dir};
 
-/// Where a drawing is from.
+/// Source of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Set {
     /// Doodles of other things ("Quick, Draw!").
     Things,
     /// Icons of other things: Lucide (ISC).
     Lucide,
-    /// Icons of other things: Tabler (MIT). Nothing is learnt from them.
+    /// Icons of other things: Tabler (MIT). No model learns from them.
     Tabler,
     /// Made drawings of other things.
     MadeThings,
-    /// Doodles of plants and of what they bear.
+    /// Doodles of plants and of their parts.
     Public,
     Spg,
-    /// Nothing is learnt from them.
+    /// Trees by hand. No model learns from them.
     TreesByHand,
     Icons,
     LineArt,
@@ -38,7 +39,7 @@ pub(crate) enum Set {
     Programs,
     /// Made drawings of plants.
     MadePlants,
-    /// Several plants, drawn by people and put side by side, or made.
+    /// Several plants, drawn by people and put next to one another, or made.
     Scenes,
 }
 
@@ -95,25 +96,25 @@ impl Set {
 pub(crate) struct Styled {
     pub(crate) set: Set,
     pub(crate) drawing: Drawing,
-    /// What tells it apart from those that nothing may be learnt about it from: its word, or its name.
+    /// Group that is learnt from or held out as a whole: its word, or its name.
     pub(crate) group: String,
-    /// What it shows, where that is known.
+    /// Kind of plant that it shows, where that is known.
     pub(crate) kind: Option<Kind>,
-    /// Whether it is kept for the end.
+    /// Whether it is held out for the end.
     pub(crate) is_kept: bool,
 }
 
-/// One of so many is kept.
+/// One of this many is held out.
 const KEPT: u64 = 3;
-/// Made drawings of each way to draw something.
+/// Number of made drawings of each way to draw something.
 const MADE: u64 = 20;
 
-/// A number by which lots are drawn, the same for the same text (Fowler, Noll and Vo's FNV-1a).
+/// Returns a hash by which lots are drawn, the same for the same text (Fowler, Noll and Vo's FNV-1a).
 pub(crate) fn lot(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// All drawings of a folder of sketches, and icons of other things that npm has.
+/// Collects all drawings of a folder of sketches, and icons of other things from npm.
 pub(crate) fn gathered(folder: &Path) -> Outcome<Vec<Styled>> {
     let mut found = things(folder)?;
     found.extend(other_icons()?);
@@ -142,7 +143,7 @@ fn things(folder: &Path) -> Outcome<Vec<Styled>> {
     Ok(json_lines(&path)?.iter().map(styled).collect())
 }
 
-/// The packages of icons, the folder in each, how many of so many are taken, and the set.
+/// Packages of icons, with version, folder, step between the icons used, and set.
 const PACKAGES: [(&str, &str, &str, u64, Set); 2] = [
     ("lucide-static", "1.62.0", "package/icons", 1, Set::Lucide),
     ("@tabler/icons", "3.52.0", "package/icons/outline", 6, Set::Tabler),
@@ -215,7 +216,7 @@ const OF_PLANTS: [&str; 64] = [
     "brand",
 ];
 
-/// Icons of what is no plant, fetched if they are not there.
+/// Collects icons of things other than plants, fetched if they are missing.
 fn other_icons() -> Outcome<Vec<Styled>> {
     let mut found = Vec::new();
     for (package, version, inner, every, set) in PACKAGES {
@@ -236,7 +237,7 @@ fn other_icons() -> Outcome<Vec<Styled>> {
             if OF_PLANTS.iter().any(|p| name.contains(p)) || !lot(&name).is_multiple_of(every) {
                 continue;
             }
-            // Of what nothing is learnt from half is for the end.
+            // Of sets that no model learns from, half is for the end.
             let is_kept = !set.is_learnt_from() && lot(&name) / every % 2 == 1;
             found.extend(drawings(&file)?.into_iter().map(|drawing| Styled {
                 set,
@@ -250,7 +251,7 @@ fn other_icons() -> Outcome<Vec<Styled>> {
     Ok(found)
 }
 
-/// Doodles of plants, the SPG set, trees by hand.
+/// Collects doodles of plants, the SPG set, and trees by hand.
 fn people(folder: &Path) -> Outcome<Vec<Styled>> {
     let mut found = Vec::new();
     for part in [Part::Train, Part::Choose, Part::Test] {
@@ -268,7 +269,7 @@ fn people(folder: &Path) -> Outcome<Vec<Styled>> {
     Ok(found)
 }
 
-/// How the names of illustrations begin of which one kind is right; a rosette and a plant over its runners are none of them.
+/// Beginnings of the names of illustrations that have one right kind; a rosette and a plant over its runners have none.
 const ILLUSTRATED: [(&str, Kind); 14] = [
     ("01_", Kind::Stem),
     ("03_", Kind::Flower),
@@ -286,7 +287,7 @@ const ILLUSTRATED: [(&str, Kind); 14] = [
     ("31_", Kind::Flower),
 ];
 
-/// Icons of plants, line art, illustrations, and what programs write.
+/// Collects icons of plants, line art, illustrations, and files of drawing programs.
 fn vectors(folder: &Path) -> Outcome<Vec<Styled>> {
     let kinds = folder.join("icons/kinds.csv");
     let kinds = if kinds.is_file() { read(&kinds)? } else { String::new() };
@@ -323,7 +324,8 @@ fn vectors(folder: &Path) -> Outcome<Vec<Styled>> {
     Ok(found)
 }
 
-/// Icons of plants whose kind is known, without those that are kept. The name "plant" does not say whether it stands in a pot.
+/// Collects icons of plants whose kind is known, without those held out. The name "plant" does not say whether it
+/// stands in a pot.
 pub(crate) fn icons_of_kinds(folder: &Path) -> Outcome<Vec<(Kind, Drawing)>> {
     let is_learnt = |s: &Styled| s.set == Set::Icons && !s.is_kept && !s.group.contains("plant");
     let icons = vectors(folder)?.into_iter().filter(is_learnt);
@@ -342,10 +344,10 @@ fn made() -> Vec<Styled> {
     .collect()
 }
 
-/// Salt of made drawings that nothing else has.
+/// Salt that only these made drawings use.
 const MADE_SALT: u64 = 40;
 
-/// Several plants: people's drawings side by side, and made rows.
+/// Collects drawings of several plants: people's drawings put next to one another, and made rows.
 fn scenes(folder: &Path) -> Outcome<Vec<Styled>> {
     let mut found = Vec::new();
     for part in [Part::Train, Part::Choose, Part::Test] {
@@ -360,7 +362,7 @@ fn scenes(folder: &Path) -> Outcome<Vec<Styled>> {
     Ok(found)
 }
 
-/// The pictures of a folder and of those in it, by name.
+/// Returns the pictures of a folder and of those in it, by name.
 fn svgs(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|f| f.path()) {
@@ -374,7 +376,7 @@ fn svgs(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The drawings of a file; nothing of one that holds none.
+/// Returns the drawings of a file; empty for one that holds none.
 fn drawings(file: &Path) -> Outcome<Vec<Drawing>> {
     let bytes = fs::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -1,7 +1,7 @@
-//! Drawings made by us of which we know what they show: rows of plants, trees drawn in every way, small scenes.
+//! Drawings made by us, so that their subjects are known: rows of plants, trees drawn in every way, small scenes.
 //!
-//! `cargo xtask read-drawings` reads them. Others, with another salt, are among those that `cargo xtask train-kinds` learns
-//! from.
+//! `cargo xtask read-drawings` reads them. Others, with another salt, are among those from which `cargo xtask
+//! train-kinds` learns.
 
 mod food;
 pub(crate) mod hands;
@@ -17,14 +17,16 @@ use base::{Draw, Seed, Stream, ops};
 use glam::DVec2;
 use reading::Kind;
 
-/// How many drawings of each set.
+/// Number of drawings of each set of rows.
 const ROWS: u64 = 40;
+/// Number of drawings of beds.
 const BEDS: u64 = 12;
+/// Name of the set of beds of flowers.
 pub(crate) const BEDS_OF_FLOWERS: &str = "beds of flowers";
-/// Trees of each way to draw one.
+/// Number of trees of each way to draw one.
 const TREES: u64 = 12;
 
-/// One made drawing and what it shows.
+/// One made drawing and its subjects.
 #[derive(Clone, Debug)]
 pub(crate) struct Shown {
     /// The set that it belongs to.
@@ -32,7 +34,7 @@ pub(crate) struct Shown {
     pub(crate) lines: Vec<Vec<DVec2>>,
     /// The plants in it, from left to right.
     pub(crate) plants: Vec<Kind>,
-    /// Lines beyond so many are of no plant.
+    /// Number of lines that belong to plants; later lines do not.
     pub(crate) own: usize,
 }
 
@@ -41,7 +43,8 @@ type Lines = Vec<Vec<DVec2>>;
 /// Makes one plant.
 type Making = fn(&mut Stream) -> (Lines, Kind);
 
-/// All of them; the same in every call with the same `salt`: the choose part has one, the test part another.
+/// Makes all of them; the same in every call with the same `salt`: the part for choosing and the part for testing have
+/// different ones.
 pub(crate) fn shown(salt: u64) -> Vec<Shown> {
     let mut all = Vec::new();
     let stream = |set: u64, k: u64| Seed::new(1_000 * salt + set).child(k).stream(Draw::Template);
@@ -51,7 +54,7 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
         all.push(row("lollipop trees side by side", &mut stream(3, k), Kind::Tree, lollipop));
         all.push(row("mixed plants in a row", &mut stream(4, k), Kind::None, |_| (Vec::new(), Kind::None)));
         all.push(scene(&mut stream(5, k)));
-        all.push(beside(&mut stream(6, k)));
+        all.push(with_surroundings(&mut stream(6, k)));
     }
     all.extend((0..BEDS).map(|k| bed(&mut stream(7, k))));
     for (number, (set, trunk, first)) in TREE_WAYS.into_iter().enumerate() {
@@ -69,7 +72,7 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
     all
 }
 
-/// How a trunk is drawn.
+/// Drawing of a trunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trunk {
     TwoLines,
@@ -78,7 +81,7 @@ enum Trunk {
     Line,
 }
 
-/// How a crown is drawn.
+/// Drawing of a crown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Crown {
     Cloud,
@@ -90,7 +93,7 @@ enum Crown {
 const CROWNS: [Crown; 4] = [Crown::Cloud, Crown::Circle, Crown::Scribble, Crown::Lobes];
 const TRUNKS: [Trunk; 4] = [Trunk::TwoLines, Trunk::Closed, Trunk::Open, Trunk::Line];
 
-/// Name of the set, how the trunk is drawn, whether it is drawn first.
+/// Name of the set, drawing of the trunk, whether it is drawn first.
 const TREE_WAYS: [(&str, Trunk, bool); 8] = [
     ("tree: two lines, trunk first", Trunk::TwoLines, true),
     ("tree: two lines, crown first", Trunk::TwoLines, false),
@@ -107,7 +110,7 @@ fn direction(angle: f64) -> DVec2 {
     DVec2::new(c, s)
 }
 
-/// A line of a hand through points.
+/// Returns a hand-drawn line through points.
 fn hand(r: &mut Stream, corners: &[DVec2]) -> Vec<DVec2> {
     let whole: f64 = corners.windows(2).map(|w| w[0].distance(w[1])).sum();
     let mut points = Vec::new();
@@ -125,7 +128,7 @@ fn hand(r: &mut Stream, corners: &[DVec2]) -> Vec<DVec2> {
     points
 }
 
-/// A wobbly ring with half axes `size`; not quite closed.
+/// Returns a wobbly ring with half axes `size`; not quite closed.
 fn ring(r: &mut Stream, centre: DVec2, size: DVec2, bumps: usize, depth: f64) -> Vec<DVec2> {
     let (from, phase) = (r.range(0.0, TAU), r.range(0.0, TAU));
     let way = if r.chance(0.5) { 1.0 } else { -1.0 };
@@ -142,7 +145,7 @@ fn ring(r: &mut Stream, centre: DVec2, size: DVec2, bumps: usize, depth: f64) ->
         .collect()
 }
 
-/// A petal or leaf as a nearly closed outline from `root` along `way`.
+/// Returns a petal or leaf as a nearly closed outline from `root` along `way`.
 fn blade(r: &mut Stream, root: DVec2, way: DVec2, half: f64) -> Vec<DVec2> {
     let (widest, gap, lean) = (r.range(0.8, 1.5), r.range(0.0, 0.03), r.range(-0.2, 0.2));
     let across = way.perp().normalize_or_zero();
@@ -159,7 +162,7 @@ fn blade(r: &mut Stream, root: DVec2, way: DVec2, half: f64) -> Vec<DVec2> {
         .collect()
 }
 
-/// A flower on its stem, about 1 high, its foot at the origin.
+/// Draws a flower on its stem, about 1 high, its foot at the origin.
 fn flower(r: &mut Stream) -> (Lines, Kind) {
     let centre = DVec2::new(r.range(-0.08, 0.08), r.range(0.75, 1.0));
     let disc = r.range(0.05, 0.09);
@@ -211,7 +214,7 @@ fn flower(r: &mut Stream) -> (Lines, Kind) {
     (lines, Kind::Flower)
 }
 
-/// A stem with leaves on both sides.
+/// Draws a stem with leaves on both sides.
 fn leafy(r: &mut Stream) -> (Lines, Kind) {
     let top = DVec2::new(r.range(-0.12, 0.12), r.range(0.8, 1.0));
     let stem = hand(r, &[DVec2::ZERO, top]);
@@ -270,7 +273,7 @@ fn grass(r: &mut Stream) -> (Lines, Kind) {
     (lines, Kind::Grass)
 }
 
-/// One trunk and one crown, 1 high, the foot at the origin.
+/// Draws one trunk and one crown, 1 high, the foot at the origin.
 fn tree(r: &mut Stream, trunk: Trunk, crown: Crown, trunk_first: bool) -> Lines {
     let half = r.range(0.035, 0.075);
     let centre = DVec2::new(r.range(-0.04, 0.04), r.range(0.62, 0.72));
@@ -315,7 +318,7 @@ fn tree(r: &mut Stream, trunk: Trunk, crown: Crown, trunk_first: bool) -> Lines 
     if trunk_first { [wood, green].concat() } else { [green, wood].concat() }
 }
 
-/// A line to and fro and round about all over an ellipse.
+/// Returns a line that runs to and fro all over an ellipse.
 fn scribble(r: &mut Stream, centre: DVec2, size: DVec2) -> Vec<DVec2> {
     let n = 9 + r.below(8);
     let mut corners = vec![centre + direction(r.range(0.0, TAU)) * size];
@@ -347,7 +350,7 @@ fn extent(lines: &Lines) -> (DVec2, DVec2) {
     lines.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)))
 }
 
-/// Drawings side by side on one ground: larger and smaller ones, a little apart.
+/// Puts drawings next to one another on one ground: larger and smaller ones, a little apart.
 pub(crate) fn side_by_side(r: &mut Stream, drawings: Vec<Lines>) -> Lines {
     let mut groups: Vec<Lines> = Vec::new();
     let mut x = 0.0;
@@ -377,7 +380,7 @@ pub(crate) fn side_by_side(r: &mut Stream, drawings: Vec<Lines>) -> Lines {
     all
 }
 
-/// Two to six plants of a kind; of any kind where that is `None`.
+/// Draws two to six plants of a kind; of any kind where that is `None`.
 fn row(set: &'static str, r: &mut Stream, kind: Kind, make: Making) -> Shown {
     let n = 2 + r.below(5);
     let any: [Making; 4] = [flower, leafy, lollipop, bush];
@@ -387,7 +390,7 @@ fn row(set: &'static str, r: &mut Stream, kind: Kind, make: Making) -> Shown {
     Shown { set, lines: side_by_side(r, drawings), plants, own: usize::MAX }
 }
 
-/// Eight to thirty flowers and tulips in one to three rows above one another, which may overlap.
+/// Draws eight to thirty flowers and tulips in one to three rows above one another, which may overlap.
 fn bed(r: &mut Stream) -> Shown {
     let (rows, apart, high) = (1 + r.below(3), r.range(0.6, 0.9), r.range(0.55, 1.4));
     let each = (8 / rows + r.below(23)).min(30 / rows);
@@ -409,12 +412,12 @@ fn bed(r: &mut Stream) -> Shown {
     Shown { set: BEDS_OF_FLOWERS, lines, plants, own: usize::MAX }
 }
 
-/// A tree among bushes and grass.
+/// Draws a tree among bushes and grass.
 fn scene(r: &mut Stream) -> Shown {
     let (mut drawings, mut plants) = (Vec::new(), Vec::new());
     let tall = r.below(3);
     for k in 0..3 {
-        // Two tufts side by side are one.
+        // Two adjacent tufts are one.
         let tuft = plants.last() == Some(&Kind::Grass);
         let (lines, kind) = match (k == tall, tuft || r.chance(0.5)) {
             (true, _) => {
@@ -430,8 +433,8 @@ fn scene(r: &mut Stream) -> Shown {
     Shown { set: "a tree among bushes and grass", lines: side_by_side(r, drawings), plants, own: usize::MAX }
 }
 
-/// A plant with the sun, a cloud, birds, a butterfly or a word beside it.
-fn beside(r: &mut Stream) -> Shown {
+/// Draws a plant with the sun, a cloud, birds, a butterfly or a word next to it.
+fn with_surroundings(r: &mut Stream) -> Shown {
     let any: [Making; 4] = [flower, leafy, lollipop, bush];
     let (mut lines, kind) = any[r.below(4)](r);
     let own = lines.len();

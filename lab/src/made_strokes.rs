@@ -9,7 +9,7 @@ use base::{Draw, Seed, Stream, ops};
 use glam::DVec2;
 use ink::StrokeClass;
 
-/// How many of each kind.
+/// Number of sketches of each kind.
 const EACH: u64 = 8;
 
 /// One made sketch: kind, lines (y up), classes.
@@ -18,7 +18,7 @@ pub(crate) struct Made {
     pub(crate) lines: Vec<(Vec<DVec2>, StrokeClass)>,
 }
 
-/// All of them; the same in every call.
+/// Makes all of them; the same in every call.
 pub(crate) fn made_sketches() -> Vec<Made> {
     let mut all = Vec::new();
     for k in 0..EACH {
@@ -34,7 +34,7 @@ fn direction(angle: f64) -> DVec2 {
     DVec2::new(c, s)
 }
 
-/// A petal or leaf as a nearly closed outline from `root` along `way`.
+/// Returns a petal or leaf as a nearly closed outline from `root` along `way`.
 fn outline(r: &mut Stream, root: DVec2, way: DVec2, half: f64) -> Vec<DVec2> {
     let widest = r.range(0.8, 1.6);
     let gap = r.range(0.0, 0.04);
@@ -52,7 +52,7 @@ fn outline(r: &mut Stream, root: DVec2, way: DVec2, half: f64) -> Vec<DVec2> {
         .collect()
 }
 
-/// A line of a hand from `a` to `b`.
+/// Returns a hand-drawn line from `a` to `b`.
 fn line(r: &mut Stream, a: DVec2, b: DVec2) -> Vec<DVec2> {
     let across = (b - a).perp();
     let (bow, wave, phase) = (r.range(-0.12, 0.12), r.range(0.0, 0.015), r.range(0.0, TAU));

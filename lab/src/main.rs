@@ -1,5 +1,5 @@
-//! The laboratory: what trains the reading of drawings, what measures it, and what makes the pictures of the docs.
-//! `cargo xtask help` says what each command does, and `cargo xtask COMMAND` runs it.
+//! The laboratory: training and measurement of the reading of drawings, and the pictures of the docs. `cargo xtask
+//! help` describes each command, and `cargo xtask COMMAND` runs it.
 
 mod ablation;
 mod adam;

@@ -1,4 +1,4 @@
-//! Pictures that the pages of docs are made of.
+//! Pictures from which the pages of docs are made.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -9,7 +9,7 @@ use xtask::shell::Outcome;
 /// A picture in memory.
 #[derive(Debug)]
 pub(crate) struct Pixels {
-    /// Row by row from the top.
+    /// Pixels, row by row from the top.
     pub(crate) rgba: Vec<[u8; 4]>,
     pub(crate) width: usize,
     pub(crate) height: usize,
@@ -32,12 +32,12 @@ pub(crate) fn rgba(path: &Path) -> Result<Pixels, String> {
     Ok(Pixels { rgba: rgba.to_vec(), width: info.width as usize, height: info.height as usize })
 }
 
-/// A width or height as a PNG's header has it.
+/// Returns a width or height in the form of a PNG's header.
 pub(crate) fn length(pixels: usize) -> u32 {
     u32::try_from(pixels).unwrap_or(u32::MAX)
 }
 
-/// Pictures of one size side by side, rows below one another.
+/// Joins pictures of one size in rows, one row below another.
 pub(crate) fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
     let mut pixels: Vec<u8> = Vec::new();
     let (mut width, mut height) = (0, 0);

@@ -1,4 +1,4 @@
-//! Drawings as "Quick, Draw!" keeps them, and sets in its form: one JSON object a line.
+//! Drawings in the format of "Quick, Draw!", and sets in the same format: one JSON object in each line.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use ink::{Drawing, InkSample, Stroke};
 use serde_json::Value;
 
-/// The drawings of a folder's files, by their keys.
+/// Reads the drawings of a folder's files, by their keys.
 pub(crate) fn drawings_of(folder: &Path) -> Result<BTreeMap<String, Drawing>, String> {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
@@ -26,7 +26,7 @@ pub(crate) fn drawings_of(folder: &Path) -> Result<BTreeMap<String, Drawing>, St
 pub(crate) fn drawing_of(line: &Value) -> Drawing {
     let stroke = |s: &Value| {
         let column = |k: usize| list(s.get(k)).iter().filter_map(Value::as_f64);
-        // Points lie y down in the files.
+        // Points are y down in the files.
         let samples = column(0).zip(column(1)).map(|(x, y)| InkSample::from(DVec2::new(x, -y))).collect();
         Stroke { samples, ..Stroke::default() }
     };

@@ -1,7 +1,7 @@
-//! `cargo xtask read-drawings`: how drawings of people, and made ones, are read: by kind of plant and by number.
+//! `cargo xtask read-drawings`: results of reading drawings by people, and made ones: by kind of plant and by number.
 //!
-//! What is counted is what was built of a drawing ([`Kind::of`]), never what a classifier says of itself. Drawings are
-//! told apart in three parts: one to learn from, one to choose by, and one that is looked at once, at the end.
+//! The plant that was built of a drawing ([`Kind::from_reading`]) counts, never the confidence of a classifier.
+//! Drawings are divided into three parts: one for training, one for choosing, and one that is used once, at the end.
 
 mod changed;
 
@@ -24,9 +24,9 @@ use xtask::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
 
 const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures | --changed | --without RULE | --written [WAY]] [--hundred] [--test]";
 
-/// Sets of real drawings side by side.
+/// Number of sets of real drawings put next to one another.
 const SIDE_BY_SIDE: u64 = 60;
-/// Drawings that are looked at one by one.
+/// Number of drawings that are inspected one by one.
 const HUNDRED: usize = 100;
 
 /// A part of the drawings.
@@ -38,15 +38,15 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// The part of a drawing: by its key, or by the person who drew it.
-    fn of(line: &Value) -> Option<Self> {
+    /// Returns the part of a drawing: by its key, or by the person who drew it.
+    fn from_line(line: &Value) -> Option<Self> {
         if let Some(person) = line.get("person").and_then(Value::as_u64) {
             return Some(if person.is_multiple_of(2) { Self::Choose } else { Self::Test });
         }
         Self::of_key(text_of(line, "key_id"))
     }
 
-    /// The part of a drawing of "Quick, Draw!".
+    /// Returns the part of a drawing of "Quick, Draw!".
     pub(crate) fn of_key(key: &str) -> Option<Self> {
         match key.parse::<u64>().ok()? % 5 {
             2 => Some(Self::Train),
@@ -57,7 +57,7 @@ impl Part {
     }
 }
 
-/// What a category's drawings are rightly read as, and what a person would accept.
+/// Kinds that are right for the drawings of a category, and kinds that a person would accept.
 const CATEGORIES: [(&str, &[Kind], &[Kind]); 30] = {
     use Kind::{
         Bush, Cactus, Conifer, Flower, Flowers, Fruit, Grass, HousePlant, Leaf, Palm, Stem, Tree, Vegetable,
@@ -96,21 +96,21 @@ const CATEGORIES: [(&str, &[Kind], &[Kind]); 30] = {
     ]
 };
 
-/// One drawing and what would be right.
+/// One drawing and its right readings.
 struct Case {
     set: String,
     drawing: Drawing,
     right: Vec<Kind>,
     acceptable: Vec<Kind>,
-    /// Plants in it, where that is known.
+    /// Number of plants in it, where that is known.
     plants: Option<usize>,
-    /// Of a made drawing: the kinds of its plants, from left to right.
+    /// For a made drawing: the kinds of its plants, from left to right.
     kinds: Vec<Kind>,
-    /// Strokes beyond so many are of no plant.
+    /// Number of strokes that belong to plants; later ones do not.
     own: usize,
 }
 
-/// How one drawing was read.
+/// Result for one drawing.
 struct Judged {
     reading: Reading,
     kind: Kind,
@@ -119,10 +119,11 @@ struct Judged {
     number: bool,
 }
 
-/// Reads drawings by kind and number. With `--sheets`, writes contact sheets into `out/read`: each drawing beside what was
-/// read in it; with `--pictures`, beside the plant that the command makes of it. With `--changed`, says instead how many of
-/// people's drawings are read as something else when they are drawn in another way; with `--without`, how many are read rightly
-/// without a rule. With `--hundred`, only of a hundred drawings by people, drawn by lot, the same ones each time.
+/// Reads drawings by kind and number. With `--sheets`, writes contact sheets into `out/read`: each drawing next to its
+/// reading; with `--pictures`, next to the plant that the command makes of it. With `--changed`, reports instead how
+/// many of people's drawings are read as something else when they are drawn differently; with `--without`, how many are
+/// read rightly without a rule. With `--hundred`, uses only a hundred drawings by people, drawn by lot, the same ones
+/// each time.
 ///
 /// # Errors
 /// A sentence: a wrong option, or a file that cannot be read.
@@ -144,7 +145,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
             }
             "--without" => {
                 let name = wanted.next().ok_or_else(|| USAGE.to_owned())?;
-                say(&Chosen::of(&folder)?.told_without(name));
+                say(&Chosen::collect(&folder)?.told_without(name));
                 return Ok(());
             }
             "--pictures" => (sheets, pictures) = (true, true),
@@ -178,7 +179,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         cases.extend(ways(part));
     }
     let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
-    // Called no plant: drawings by people, all others.
+    // Reported as no plant: drawings by people, all others.
     let mut called = [0_usize; 2];
     for case in cases {
         let (reading, unlike) = read(&case.drawing);
@@ -205,7 +206,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
             built_burgeon()?;
         }
         for (set, drawings) in &mut rows {
-            // What went wrong comes first.
+            // Errors come first.
             drawings.sort_by_key(|(_, j)| (j.number, core::cmp::Reverse(j.verdict)));
             sheet(set, drawings, pictures)?;
         }
@@ -214,11 +215,11 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     Ok(())
 }
 
-/// Trees by people that are written in all ways.
+/// Number of trees by people that are written in all ways.
 const TREES_WRITTEN: usize = 24;
 
-/// Our own drawings and trees by people, as programs write them, and how those of `programs` are read. Every third of ours, by
-/// name, is for one look at the end.
+/// Reports the reading of our own drawings and trees by people, as programs write them, and of those of `programs`.
+/// Every third of ours, by name, is held out for one look at the end.
 fn told_written(folder: &Path, part: Part, way: Option<&str>) -> Outcome {
     let mut drawings: Vec<(String, Drawing)> = Vec::new();
     for sub in ["sketches/table1", "sketches/gallery", "illustrations"] {
@@ -244,7 +245,7 @@ fn told_written(folder: &Path, part: Part, way: Option<&str>) -> Outcome {
     Ok(())
 }
 
-/// The pictures of a folder, by name.
+/// Returns the pictures of a folder, by name.
 fn svgs_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
@@ -253,7 +254,7 @@ fn svgs_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Which words are told of drawings by people that show a fruit or a vegetable and are read as that.
+/// Reports the words of drawings by people that show a fruit or a vegetable and are read as that.
 fn words(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
     let (mut all, mut told, mut right) = (0, 0, 0);
     for (set, drawings) in rows {
@@ -271,7 +272,7 @@ fn words(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
     format!("words: of {all} fruits and vegetables {told} are told by a word, {right} of them rightly\n")
 }
 
-/// What the drawings of `fixtures` are read as.
+/// Reports the kinds as which the drawings of `fixtures` are read.
 fn own_drawings() -> Outcome<Vec<String>> {
     let mut found = Vec::new();
     for folder in ["table1", "gallery"] {
@@ -290,19 +291,19 @@ fn own_drawings() -> Outcome<Vec<String>> {
     Ok(found)
 }
 
-/// What was read, and whether it was called no plant.
+/// Returns the reading, and whether the drawing was reported as no plant.
 fn read(drawing: &Drawing) -> (Reading, bool) {
-    read_without(&[], &Seen::of(drawing))
+    read_without(&[], &Seen::from_drawing(drawing))
 }
 
-/// A drawing and what the classifier says of its strokes.
+/// A drawing and the classes of its strokes by the classifier.
 struct Seen {
     ink: Ink,
     classes: Vec<Classified>,
 }
 
 impl Seen {
-    fn of(drawing: &Drawing) -> Self {
+    fn from_drawing(drawing: &Drawing) -> Self {
         let ink = ink::clean(drawing, &mut Report::default());
         let classes = ink::classify(&ink, &Run::plain());
         Self { ink, classes }
@@ -315,10 +316,10 @@ fn read_without(off: &[&str], seen: &Seen) -> (Reading, bool) {
     (reading, report.warnings.iter().any(|w| w.code == reading::UNLIKE_A_PLANT))
 }
 
-/// Salt of made drawings that nothing else has, and no model has learnt from.
+/// Salt that only these made drawings use, and from which no model has learnt.
 const UNSEEN: u64 = 8;
 
-/// Of each way to draw a plant some drawings that no model has learnt from.
+/// Makes drawings of each way to draw a plant from which no model has learnt.
 fn ways(part: Part) -> Vec<Case> {
     let made = made_drawings::kinds::of_kinds(UNSEEN + part as u64, MADE_TO_TEST).into_iter();
     made.filter(|w| w.1 != Kind::None)
@@ -335,31 +336,31 @@ fn ways(part: Part) -> Vec<Case> {
         .collect()
 }
 
-/// The drawings to choose by, to be read again and again with other rules.
+/// Drawings for choosing, to be read repeatedly with different rules.
 pub(crate) struct Chosen(Vec<(Case, Seen)>);
 
 impl Chosen {
-    /// Those of the people of `folder`, and made ones: those that are judged by, and of each way to draw a plant some that
-    /// no model has learnt from.
-    pub(crate) fn of(folder: &Path) -> Outcome<Self> {
+    /// Collects those of the people of `folder`, and made ones: those used for judging, and of each way to draw a plant
+    /// some from which no model has learnt.
+    pub(crate) fn collect(folder: &Path) -> Outcome<Self> {
         Ok(Self(
             cases(folder, Part::Choose)?
                 .into_iter()
                 .chain(ways(Part::Choose))
                 .map(|case| {
-                    let seen = Seen::of(&case.drawing);
+                    let seen = Seen::from_drawing(&case.drawing);
                     (case, seen)
                 })
                 .collect(),
         ))
     }
 
-    /// How many drawings there are.
+    /// Returns the number of drawings.
     pub(crate) const fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// How many are read rightly, and how many so that a person would accept it, with some rules switched off.
+    /// Counts the drawings read rightly, and those that a person would accept, with some rules switched off.
     pub(crate) fn judged(&self, off: &[&str]) -> [usize; 2] {
         let found = self.verdicts(off);
         [Frame::Right, Frame::Acceptable].map(|f| found.iter().filter(|v| **v == f).count())
@@ -369,7 +370,7 @@ impl Chosen {
         self.0.iter().map(|(case, seen)| judge(case, read_without(off, seen).0).verdict).collect()
     }
 
-    /// What a rule changes, drawing by drawing.
+    /// Reports the effects of a rule, drawing by drawing.
     fn told_without(&self, rule: &str) -> String {
         let (with, without) = (self.verdicts(&[]), self.verdicts(&[rule]));
         let mut out = String::new();
@@ -383,7 +384,7 @@ impl Chosen {
     }
 }
 
-/// All drawings of a part.
+/// Collects all drawings of a part.
 fn cases(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
     let mut cases = people(folder, part, OF_SPG)?;
     let together = together(&cases, part, SIDE_BY_SIDE);
@@ -392,7 +393,7 @@ fn cases(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
     Ok(cases)
 }
 
-/// A hundred of them, drawn by lot, each set named after its place among four sheets.
+/// Draws a hundred of them by lot, each set named after its place among four sheets.
 fn by_lot(mut all: Vec<Case>) -> Vec<Case> {
     let r = &mut Seed::new(20).stream(Draw::Test);
     for k in 0..all.len().min(HUNDRED) {
@@ -407,10 +408,10 @@ fn by_lot(mut all: Vec<Case>) -> Vec<Case> {
     all
 }
 
-/// Of so many drawings of the SPG set one is read to judge by: they show three things only.
+/// Of this many drawings of the SPG set one is read for judging: they show only three things.
 const OF_SPG: usize = 4;
 
-/// The drawings of people of one part; of the SPG set one of so many.
+/// Collects the drawings of people of one part; of the SPG set one of `of_spg`.
 fn people(folder: &Path, part: Part, of_spg: usize) -> Outcome<Vec<Case>> {
     let mut cases = Vec::new();
     for (sub, prefix) in
@@ -429,7 +430,7 @@ fn people(folder: &Path, part: Part, of_spg: usize) -> Outcome<Vec<Case>> {
             };
             let every = if sub == "spg" { of_spg } else { 1 };
             let lines = json_lines(&file)?;
-            let own = lines.iter().filter(|l| Part::of(l) == Some(part)).step_by(every);
+            let own = lines.iter().filter(|l| Part::from_line(l) == Some(part)).step_by(every);
             cases.extend(own.map(|line| Case {
                 set: set.clone(),
                 drawing: drawing_of(line),
@@ -444,7 +445,7 @@ fn people(folder: &Path, part: Part, of_spg: usize) -> Outcome<Vec<Case>> {
     Ok(cases)
 }
 
-/// The folder of drawings that is named, or the usual one; where there is none, says so.
+/// Returns the given folder of drawings, or the default one; reports a missing one.
 pub(crate) fn sketches(args: &[String]) -> Option<PathBuf> {
     let folder = args.iter().find(|a| !a.starts_with('-'));
     let folder = folder.map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
@@ -458,21 +459,21 @@ pub(crate) fn sketches(args: &[String]) -> Option<PathBuf> {
 /// A drawing whose plants are known.
 pub(crate) struct Labelled {
     pub(crate) drawing: Drawing,
-    /// From left to right.
+    /// Kinds of its plants, from left to right.
     pub(crate) kinds: Vec<Kind>,
     pub(crate) origin: Origin,
 }
 
-/// Where a labelled drawing comes from.
+/// Origin of a labelled drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// "Quick, Draw!".
     Public,
-    /// The SPG set: three categories, of which there are many drawings.
+    /// The SPG set: three categories, each with many drawings.
     Spg,
     /// Rows of plants and trees of one trunk and one crown.
     Rows,
-    /// Drawings by people, put side by side; what their plants are is learnt elsewhere.
+    /// Drawings by people, put next to one another; the kinds of their plants are learnt elsewhere.
     Together,
     /// One plant of any kind, or none.
     Kinds,
@@ -480,7 +481,7 @@ pub(crate) enum Origin {
     Icons,
 }
 
-/// Drawings of a part whose plants are known. Trees by hand are not among them: nothing is learnt from those.
+/// Collects drawings of a part whose plants are known. Trees by hand are excluded: no model learns from those.
 pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
     let people = people(folder, part, 1)?;
     let sets = if part == Part::Train { 4 * SIDE_BY_SIDE } else { SIDE_BY_SIDE };
@@ -496,7 +497,7 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
         kinds: c.right.into_iter().take(1).collect(),
         drawing: c.drawing,
     });
-    // Of thirty flowers alike little more is learnt than of one.
+    // Thirty similar flowers teach little more than one.
     let rows =
         made(part).into_iter().filter(|c| c.own == usize::MAX && c.set != made_drawings::BEDS_OF_FLOWERS);
     let rows = rows.map(|c| Labelled { drawing: c.drawing, kinds: c.kinds, origin: Origin::Rows });
@@ -510,38 +511,39 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
     Ok(known.chain(together).chain(rows).chain(kinds).collect())
 }
 
-/// All drawings of a part by people: what they were asked for, the kind that this is, if it is one, and the drawing.
+/// Collects all drawings of a part by people: the requested word, its kind, if it is one, and the drawing.
 pub(crate) fn by_people(folder: &Path, part: Part) -> Outcome<Vec<(String, Option<Kind>, Drawing)>> {
     let one = |right: &[Kind]| right.first().copied().filter(|k| right.iter().all(|r| r.is_like(*k)));
     Ok(people(folder, part, 1)?.into_iter().map(|c| (c.set, one(&c.right), c.drawing)).collect())
 }
 
-/// Drawings of several plants of a part: drawings by people put side by side, and made ones.
+/// Collects drawings of several plants of a part: drawings by people put next to one another, and made ones.
 pub(crate) fn of_several(folder: &Path, part: Part) -> Outcome<Vec<Drawing>> {
     let together = together(&people(folder, part, OF_SPG)?, part, SIDE_BY_SIDE);
     let all = together.into_iter().chain(made(part)).filter(|c| c.kinds.len() != 1 && c.own == usize::MAX);
     Ok(all.map(|c| c.drawing).collect())
 }
 
-/// Drawings of a part by people who were asked for a word, with the word.
+/// Collects drawings of a part by people who were asked for a word, with the word.
 pub(crate) fn asked_for(folder: &Path, part: Part) -> Outcome<Vec<(String, Drawing)>> {
     let people =
         people(folder, part, 1)?.into_iter().filter(|c| !c.set.contains("spg") && !c.set.contains("by hand"));
     Ok(people.map(|c| (c.set, c.drawing)).collect())
 }
 
-/// Made drawings of each way to draw a kind.
+/// Number of made drawings for training, of each way to draw a kind.
 const MADE_TO_LEARN: u64 = 120;
+/// Number of made drawings for testing, of each way to draw a kind.
 const MADE_TO_TEST: u64 = 12;
 
-/// Categories of which a drawing may show several plants.
+/// Categories in which a drawing may show several plants.
 const MANY: [&str; 7] = ["garden", "asparagus", "blackberry", "blueberry", "string bean", "mushroom", "peas"];
-/// Categories that stand on a ground, one plant a drawing.
+/// Categories that stand on a ground, one plant in each drawing.
 const STANDING: [&str; 7] = ["tree", "palm tree", "cactus", "flower", "bush", "house plant", "by hand tree"];
 /// Others that may lie or stand among them.
 const AMONG: [&str; 3] = ["apple", "carrot", "peas"];
 
-/// Drawings of people side by side: two to six plants, now and then with something else among them.
+/// Puts drawings of people next to one another: two to six plants, now and then with something else among them.
 fn together(cases: &[Case], part: Part, sets: u64) -> Vec<Case> {
     let of = |sets: &[&str]| -> Vec<&Case> {
         cases.iter().filter(|c| sets.contains(&&*c.set) && c.drawing.strokes.len() < 40).collect()
@@ -573,7 +575,7 @@ fn together(cases: &[Case], part: Part, sets: u64) -> Vec<Case> {
     found
 }
 
-/// The lines of a drawing, 1 high.
+/// Returns the lines of a drawing, scaled to height 1.
 fn unit(drawing: &Drawing) -> Vec<Vec<DVec2>> {
     let lines: Vec<Vec<DVec2>> =
         drawing.strokes.iter().map(|s| s.samples.iter().map(|p| p.at).collect()).collect();
@@ -603,7 +605,7 @@ fn judge(case: &Case, reading: Reading) -> Judged {
     let number = case.plants.is_none_or(|n| n == plants && built(case, &reading));
     let kind = match &reading.plants[..] {
         [one] => one.kind,
-        _ => Kind::of(&reading),
+        _ => Kind::from_reading(&reading),
     };
     let verdict = if !case.kinds.is_empty() && case.kinds.len() > 1 {
         let found: Vec<Kind> = reading.plants.iter().map(|p| p.kind).collect();
@@ -632,7 +634,7 @@ fn same(found: Kind, meant: Kind) -> bool {
     group(found) == group(meant)
 }
 
-/// What was built has that many plants, too: flowers, crowns or stems, by what was drawn.
+/// Whether the plant has as many plants as were drawn: flowers, crowns or stems.
 fn built(case: &Case, reading: &Reading) -> bool {
     let meant = |k: Kind| case.kinds.iter().filter(|&&m| m == k).count();
     if case.kinds.iter().any(|k| ![Kind::Flower, Kind::Tree, Kind::Stem, Kind::Bush].contains(k)) {
@@ -650,7 +652,7 @@ fn built(case: &Case, reading: &Reading) -> bool {
     }
 }
 
-/// Of a made drawing: no line was taken for something else.
+/// Whether no line of a made drawing was taken for something else.
 fn whole(case: &Case, reading: &Reading) -> bool {
     if case.own == usize::MAX {
         return case.kinds.is_empty() || whole_tree(reading);
@@ -661,7 +663,7 @@ fn whole(case: &Case, reading: &Reading) -> bool {
     })
 }
 
-/// Nothing of a tree of one trunk and one crown was taken for something else.
+/// Whether nothing of a tree of one trunk and one crown was taken for something else.
 fn whole_tree(reading: &Reading) -> bool {
     use OrganWord::{Branch, LeafContour, Trunk};
     let parts = reading.strokes.iter().all(|s| [Branch, LeafContour, Trunk].contains(&s.organ));
@@ -726,7 +728,7 @@ fn table(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
     out
 }
 
-/// A page of the drawings of a set.
+/// Writes a page of the drawings of a set.
 fn sheet(set: &str, drawings: &[(Case, Judged)], pictures: bool) -> Outcome {
     const MOST: usize = 48;
     let name: String = set.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
@@ -765,7 +767,7 @@ fn sheet(set: &str, drawings: &[(Case, Judged)], pictures: bool) -> Outcome {
     contact_sheet::write(&cells, &folder.join(format!("{name}.png")))
 }
 
-/// Makes the plants of drawings with the command, as anybody would; the folder of their pictures.
+/// Makes the plants of drawings with the command, as any user would; returns the folder of their pictures.
 fn made_pictures(folder: &Path, drawings: &[(Case, Judged)]) -> Outcome<PathBuf> {
     let fault = |p: &Path, e: &dyn std::fmt::Display| format!("{}: {e}", p.display());
     if folder.exists() {

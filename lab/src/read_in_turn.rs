@@ -1,9 +1,9 @@
-//! How steady the reading of a drawing is while it is drawn: `drawings, orders -> changes of classes, right ones at the
+//! Stability of the reading of a drawing while it is drawn: `drawings, orders -> changes of classes, right ones at the
 //! end`.
 //!
-//! Every drawing is drawn stroke by stroke, as it was drawn and in shuffled orders, and read after each stroke, once
-//! afresh and once with what was shown before. Counted is how often a stroke that was there becomes something else. Then
-//! each whole drawing gets one straight line more, across it, and counted is how often that makes another kind of it.
+//! Every drawing is drawn stroke by stroke, in its own order and in shuffled orders, and read after each stroke, once
+//! afresh and once with the classes shown before. The changes of existing strokes are counted. Then each whole drawing
+//! gets one more straight line, across it, and the changes of its kind are counted.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,11 +18,11 @@ use crate::ablation::fixtures_of;
 use crate::quickdraw::{drawings_of, json_lines, list, text_of};
 use xtask::shell::{Outcome, repository, say};
 
-/// Orders in which each drawing is drawn: as it was, and shuffled.
+/// Number of orders in which each drawing is drawn: its own, and shuffled ones.
 const ORDERS: u64 = 4;
-/// Drawings of more strokes are left out: each is read once for every stroke.
+/// Most strokes of a drawing that is used: each is read once for every stroke.
 const MOST: usize = 60;
-/// The Studio shows what is less sure as doubtful, and keeps nothing of it.
+/// Confidence below which the Studio shows a class as doubtful, and does not keep it.
 const DOUBTFUL: f64 = 0.3;
 
 #[derive(Default)]
@@ -32,9 +32,9 @@ struct Tally {
     organs: u32,
     labelled: u32,
     right: u32,
-    /// Changes of strokes away from what they are when the whole is read afresh.
+    /// Changes of strokes away from their class when the whole is read afresh.
     away: u32,
-    /// Strokes that end as another class than when the whole is read afresh.
+    /// Strokes whose final class differs from that when the whole is read afresh.
     other: u32,
 }
 
@@ -91,7 +91,8 @@ fn draw(
     }
 }
 
-/// Lines across a drawing: from the middles of the sides of its box, from its corners, and shorter ones near its middle.
+/// Lines across a drawing: from the middles of the sides of its box, from its corners, and shorter ones near its
+/// middle.
 const ACROSS: [[f64; 4]; 8] = [
     [0.0, 0.5, 1.0, 0.5],
     [0.5, 0.0, 0.5, 1.0],
@@ -103,7 +104,8 @@ const ACROSS: [[f64; 4]; 8] = [
     [0.35, 0.6, 0.65, 0.75],
 ];
 
-/// How often one line more makes another kind of a drawing: afresh, and with what was shown. `of` that many lines.
+/// Number of times that one more line changes the kind of a drawing: afresh, and with the classes shown. `of` that many
+/// lines.
 #[derive(Default)]
 struct Lines {
     of: u32,
@@ -123,7 +125,7 @@ fn one_line_more(tally: &mut Lines, drawing: &Drawing) {
         let line = (0..=20).map(|k| at(x0, y0).lerp(at(x1, y1), f64::from(k) / 20.0)).collect();
         let mut more = drawing.clone();
         more.strokes.extend(Drawing::from_polylines("line", &[line]).strokes);
-        let other = |shown| Kind::of(&read(&more, shown)) != Kind::of(&whole);
+        let other = |shown| Kind::from_reading(&read(&more, shown)) != Kind::from_reading(&whole);
         tally.of += 1;
         tally.afresh += u32::from(other(&nothing));
         tally.shown += u32::from(other(&shown));
@@ -131,7 +133,7 @@ fn one_line_more(tally: &mut Lines, drawing: &Drawing) {
 }
 
 /// # Errors
-/// A sentence that names the file and what is wrong with it.
+/// A sentence that names the file and its fault.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let folder =
         args.first().map_or_else(|| repository().join("../shared/data/sketches"), |f| Path::new(f).into());

@@ -1,4 +1,4 @@
-//! The pictures of docs/trees.md and docs/shaping.md that are not of a species alone: part of `cargo xtask species`.
+//! The pictures of docs/trees.md and docs/shaping.md that do not show a species alone: part of `cargo xtask species`.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub(crate) fn make() -> Outcome {
 }
 
 impl Scenes<'_> {
-    /// Runs `burgeon ARGS --png` and tells where the picture is.
+    /// Runs `burgeon ARGS --png` and returns the path of the picture.
     fn drawn(&self, name: &str, size: &str, args: &[&str]) -> Result<PathBuf, String> {
         let png = self.0.folder.join(format!("{name}.png"));
         self.0.burgeon(&[args, &["--png", &png.display().to_string(), "--size", size]].concat())?;
@@ -48,7 +48,7 @@ impl Scenes<'_> {
         tiled(&[vec![own]], &picture("trees/own-leaf.png"))
     }
 
-    /// Envelopes, obstacles, neighbours.
+    /// Draws envelopes, obstacles, neighbours.
     fn room(&self) -> Outcome {
         self.0.file("ring.obj", &ring())?;
         let spec = self.0.file("ring.toml", &format!("{CLIPPED}{RING}"))?;
@@ -66,7 +66,7 @@ impl Scenes<'_> {
         tiled(&[vec![self.drawn("topiary", "300x460", &["grow", &spec])?]], &picture("trees/topiary.png"))
     }
 
-    /// An oak before and after each edit of docs/shaping.md.
+    /// Draws an oak before and after each edit of docs/shaping.md.
     fn edits(&self) -> Outcome {
         let heart: Vec<String> = (0..40)
             .map(|k| {
@@ -104,7 +104,7 @@ impl Scenes<'_> {
     }
 }
 
-/// How a tree fills the form that it is clipped to: the start of its spec.
+/// Start of the spec of a tree that fills a clipped form.
 const CLIPPED: &str = r##"[look]
 bark = "smooth"
 leaf_color = "#4c7840"
@@ -144,7 +144,7 @@ const HOUSE: &str = "v -5.2 0 -3\nv -1.4 0 -3\nv -1.4 0 3\nv -5.2 0 3\nv -5.2 3.
 v -5.2 3.2 3\nv -3.3 5.2 -3\nv -3.3 5.2 3\nf 1 2 3 4\nf 1 5 9\nf 1 9 6\nf 1 6 2\nf 4 3 7\nf 4 7 10\nf 4 10 8\nf 2 6 7 3\n\
 f 1 4 8 5\nf 6 9 10 7\nf 5 8 10 9\n";
 
-/// An upright torus that stands on the ground.
+/// Writes an upright torus that stands on the ground.
 fn ring() -> String {
     let (around, across) = (48_u32, 16_u32);
     let mut obj = String::new();
@@ -166,7 +166,7 @@ fn ring() -> String {
     obj
 }
 
-/// Three balls on one another, as a scanner sees a clipped tree: points on a lattice within them.
+/// Writes three balls on one another, as a scanner sees a clipped tree: points on a lattice within them.
 fn topiary() -> String {
     let balls = [(1.35, 0.8), (2.55, 0.62), (3.45, 0.46)];
     let mut points = String::new();

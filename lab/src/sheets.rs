@@ -1,4 +1,4 @@
-//! `cargo xtask sheets`: a page for each species, to look at: nine seeds, four ages, three levels of detail.
+//! `cargo xtask sheets`: a page for each species, for inspection: nine seeds, four ages, three levels of detail.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,15 +10,17 @@ use xtask::shell::{Outcome, built_burgeon, command, output, prepare, repository,
 
 /// Side of a picture, pixels.
 const SIDE: usize = 240;
-/// Pictures in a row.
+/// Number of pictures in a row.
 const COLUMNS: usize = 4;
+/// Number of seeds.
 const SEEDS: u32 = 9;
+/// Number of levels of detail.
 const LEVELS: u32 = 3;
 /// Ages of the first seed, as shares of the years of its species.
 const SHARES: [f64; 4] = [0.12, 0.25, 0.5, 0.75];
-/// Behind plants, and where there is none.
+/// Grey of the background.
 const PAPER: u8 = 232;
-/// Pixels of a dot of a letter.
+/// Side of a dot of a letter, pixels.
 const DOT: usize = 2;
 
 /// Letters of three by five dots, row by row from the top, the leftmost dot first; four bits unused.
@@ -62,7 +64,7 @@ const LETTERS: [(char, u16); 37] = [
     ('-', 0o00700),
 ];
 
-/// Makes the pages of the species that are named, or of all.
+/// Makes the pages of the given species, or of all.
 pub(crate) fn run(only: &[String]) -> Outcome {
     let burgeon = built_burgeon()?;
     let list = output(prepare(&burgeon, &["presets", "--json"]))?;
@@ -76,7 +78,7 @@ pub(crate) fn run(only: &[String]) -> Outcome {
         keys.into_iter().filter(|k| only.is_empty() || only.iter().any(|o| o == k)).collect();
     let to = repository().join("out/sheets");
     std::fs::create_dir_all(&to).map_err(|e| format!("cannot make {}: {e}", to.display()))?;
-    // Species beside one another, each on one thread: much of a small picture is work for one.
+    // Several species at a time, each on one thread: much of the work of a small picture cannot be divided.
     let next = AtomicUsize::new(0);
     let work = || -> Outcome {
         while let Some(key) = keys.get(next.fetch_add(1, Ordering::Relaxed)) {
@@ -106,7 +108,7 @@ fn page(burgeon: &Path, key: &str, to: &Path) -> Outcome {
     made
 }
 
-/// The pictures of a species, each with what it is written on it.
+/// Makes the pictures of a species, each with its label.
 fn pictures(burgeon: &Path, key: &str, folder: &Path) -> Outcome<Vec<PathBuf>> {
     let place = |name: String| folder.join(name).display().to_string();
     let size = format!("{SIDE}x{SIDE}");
@@ -145,14 +147,14 @@ fn pictures(burgeon: &Path, key: &str, folder: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(made)
 }
 
-/// How old a species is as it comes.
+/// Returns the default age of a species.
 fn years(burgeon: &Path, key: &str) -> Outcome<f64> {
     let text = output(prepare(burgeon, &["presets", "--show", key]))?;
     let line = text.lines().find_map(|l| l.strip_prefix("years = "));
     line.and_then(|l| l.split_whitespace().next()?.parse().ok()).ok_or_else(|| format!("{key} has no years"))
 }
 
-/// A picture over paper, with a word in its corner.
+/// Puts a picture over the background, with a word in its corner.
 fn labelled(picture: &Pixels, label: &str) -> Vec<[u8; 3]> {
     let over = |c: u8, a: u8| {
         let mixed = u16::from(c) * u16::from(a) + u16::from(PAPER) * (255 - u16::from(a));

@@ -1,6 +1,6 @@
 //! `cargo xtask species`: grows every preset and writes the table of docs/trees.md, the pictures of that page and of
-//! docs/shaping.md, and the small ones that the Studio shows. `cargo xtask species pine fig` does so for the rows and pictures of
-//! two.
+//! docs/shaping.md, and the small ones that the Studio shows. `cargo xtask species pine fig` does so for the rows and
+//! pictures of two.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,7 +13,7 @@ use xtask::shell::{Outcome, built_burgeon, command, repository, say};
 
 const FROM: &str = "<!-- species: written by cargo xtask species -->\n";
 const TO: &str = "<!-- end of species -->\n";
-/// Colours of a small picture, one of them transparent: 4 bits a pixel, so that each stays below 15 kB.
+/// Colours of a small picture, one of them transparent: 4 bits for each pixel, so that each stays below 15 kB.
 const FEW: usize = 16;
 /// Colours of a picture of the page: enough for a sky.
 const MANY: usize = 96;
@@ -89,7 +89,7 @@ pub(crate) fn run(only: &[String]) -> Outcome {
     Ok(())
 }
 
-/// Grows a preset and draws it; its entry of the report.
+/// Grows a preset and draws it; returns its entry of the report.
 fn grown(burgeon: &Path, key: &str, picture: &Path, more: &[&str]) -> Result<Value, String> {
     let report = std::env::temp_dir().join(format!("burgeon-species-{}.json", std::process::id()));
     let (png, json) = (picture.display().to_string(), report.display().to_string());
@@ -113,7 +113,7 @@ fn grouped(n: u64) -> String {
     out
 }
 
-/// Writes a picture again with 16 colours, 4 bits a pixel, or up to 256, 8 bits; one of them is transparent.
+/// Rewrites a picture with 16 colours, 4 bits for each pixel, or up to 256, 8 bits; one of them is transparent.
 fn shrink(path: &Path, colours: usize) -> Outcome {
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let Pixels { rgba: pixels, width, height } = rgba(path)?;
@@ -145,8 +145,9 @@ fn shrink(path: &Path, colours: usize) -> Outcome {
     writer.finish().map_err(|e| fault(&e))
 }
 
-/// Colours that stand for all of `seen`: a box of colours is halved at its median until there are `count` boxes (Heckbert 1982);
-/// each gives its mean. The next one is that with the most pixels times its longest side squared, so that a wide sky has many.
+/// Returns colours that represent all of `seen`: a box of colours is halved at its median until there are `count` boxes
+/// (Heckbert 1982); each gives its mean. The next box is the one with the largest product of its pixels and its longest
+/// side squared, so that a wide sky has many.
 fn median_cut(seen: Vec<[u8; 3]>, count: usize) -> Vec<[u8; 3]> {
     let mut boxes = vec![seen];
     let side = |colours: &[[u8; 3]], i: usize| {

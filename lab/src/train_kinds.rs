@@ -1,4 +1,4 @@
-//! `cargo xtask train-kinds`: drawings of the part to learn from -> the coefficients of the model of kinds.
+//! `cargo xtask train-kinds`: drawings of the part for training -> the coefficients of the model of kinds.
 //!
 //! A small network ([`network`]) over the numbers of the whole drawing. The same drawings give the same coefficients.
 
@@ -18,22 +18,30 @@ use crate::made_drawings::varied;
 use crate::read_drawings::{Labelled, Origin, Part, labelled, sketches};
 use xtask::shell::{Outcome, repository, say};
 
-/// Variations of each drawing by people that are learnt from beside it, of the SPG set, of made ones; how much one counts.
+/// Number of variations of each drawing by people that are learnt in addition to it.
 const VARIATIONS: u64 = 14;
+/// Number of variations of each drawing of the SPG set.
 const VARIATIONS_SPG: u64 = 3;
+/// Number of variations of each icon.
 const VARIATIONS_ICONS: u64 = 14;
+/// Number of variations of each made drawing.
 const VARIATIONS_MADE: u64 = 1;
+/// Weight of a variation, relative to its drawing.
 const VARIED: f64 = 0.6;
-/// How much a drawing counts: made ones are many and alike, and the SPG set shows three things only.
+/// Weight of a made drawing of a row: made ones are many and alike.
 const MADE_ROW: f64 = 0.2;
+/// Weight of a made drawing of a kind.
 const MADE_KIND: f64 = 0.1;
+/// Weight of drawings put next to one another.
 const TOGETHER: f64 = 0.3;
+/// Weight of a drawing of the SPG set, which shows only three things.
 const SPG: f64 = 0.3;
-/// Icons at 0.2 are known as well as at 2, and cost no doodles: of 642 held out 583 are known, 584 without icons, 572 at 2.
+/// Weight of an icon: at 0.2 icons are recognised as well as at 2, and cost no doodles: of 642 held out 583 are
+/// recognised, 584 without icons, 572 at 2.
 const ICON: f64 = 0.2;
-/// Trees count so many times as much: they are what people draw most, and few drawings to learn from show one.
+/// Weight of trees: they are what people draw most, and few drawings for training show one.
 const TREES: f64 = 3.0;
-/// Kinds that the model tells apart; the last is no plant.
+/// Kinds that the model distinguishes; the last is no plant.
 const KINDS: [Kind; 12] = [
     Kind::Flower,
     Kind::Stem,
@@ -49,7 +57,7 @@ const KINDS: [Kind; 12] = [
     Kind::None,
 ];
 
-/// What the model tells apart: the kinds, and several plants.
+/// Number of outcomes that the model distinguishes: the kinds, and several plants.
 const COLUMNS: usize = KINDS.len() + 1;
 
 fn word(column: usize) -> &'static str {
@@ -60,7 +68,7 @@ fn is_tree(column: usize) -> bool {
     KINDS.get(column) == Some(&Kind::Tree)
 }
 
-/// One plant: its numbers, the place of its kind in [`KINDS`], how much it counts.
+/// One plant: its numbers, the index of its kind in [`KINDS`], its weight.
 #[derive(Clone)]
 struct Row {
     features: Vec<f64>,
@@ -69,16 +77,17 @@ struct Row {
     origin: Origin,
 }
 
-/// Mean and spread of each number.
+/// Mean and standard deviation of each number.
 struct Scale(Vec<(f64, f64)>);
 
-/// Learns the model of kinds and writes `crates/reading/data/kinds.csv`.
+/// Trains the model of kinds and writes `crates/reading/data/kinds.csv`.
 ///
-/// First from the part to learn from and icons, and says how good that is on the part to choose by: all choices are made with
-/// this one, and `--half` writes it. Then from both: drawings are what the model lacks, and the end is in neither.
+/// First from the part for training and icons, and reports the quality on the part for choosing: all choices are made
+/// with this model, and `--half` writes it. Then from both: drawings are scarce, and neither contains the part for the
+/// end.
 ///
 /// # Errors
-/// A sentence: a file that cannot be read or written.
+/// A sentence: a file cannot be read or written.
 pub(crate) fn run(args: &[String]) -> Outcome {
     let half = args.iter().any(|a| a == "--half");
     let Some(folder) = sketches(args) else { return Ok(()) };
@@ -92,29 +101,29 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     if half {
         return write(first);
     }
-    // Made drawings are as many as one likes, and enough already.
+    // Made drawings are available in any number, and there are enough already.
     let people = choose.into_iter().filter(|d| matches!(d.origin, Origin::Public | Origin::Spg));
     learnt.extend(rows(&people.collect::<Vec<_>>(), true));
     write(model(learnt, Vec::new()))
 }
 
-/// Icons of plants whose kind is known, without those that are kept for the end.
+/// Returns icons of plants whose kind is known, without those held out for the end.
 fn icons(folder: &Path) -> Outcome<Vec<Labelled>> {
     let icons = in_all_styles::icons_of_kinds(folder)?.into_iter();
     Ok(icons.map(|(kind, drawing)| Labelled { drawing, kinds: vec![kind], origin: Origin::Icons }).collect())
 }
 
-/// Learns a model and says how good it is; the file of it.
+/// Trains a model and reports its quality; returns its file.
 fn model(mut learnt: Vec<Row>, mut held_out: Vec<Row>) -> String {
     weigh(&mut learnt);
-    let scale = Scale::of(&learnt);
+    let scale = Scale::fit(&learnt);
     learnt.iter_mut().chain(&mut held_out).for_each(|r| scale.apply(&mut r.features));
     let examples: Vec<network::Example<'_>> =
         learnt.iter().map(|r| (&*r.features, r.kind, r.weight)).collect();
     let net = Network::learn(&examples, COLUMNS);
-    say(&format!("learnt from: {}", told(&learnt, &net)));
+    say(&format!("learnt from: {}", report(&learnt, &net)));
     if !held_out.is_empty() {
-        say(&format!("held out: {}", told(&held_out, &net)));
+        say(&format!("held out: {}", report(&held_out, &net)));
     }
     let mut text = String::from(
         "# Written by cargo xtask train-kinds from drawings of \"Quick, Draw!\" (Google, CC BY 4.0), SPG, icons and made ones.\n\
@@ -138,7 +147,7 @@ fn model(mut learnt: Vec<Row>, mut held_out: Vec<Row>) -> String {
     text
 }
 
-/// As [`rows_of`], by several at once.
+/// Computes [`rows_of`] on several threads.
 fn rows(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
     const HANDS: usize = 3;
     let part = drawings.len().div_ceil(8 * HANDS).max(1);
@@ -156,7 +165,7 @@ fn rows(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
     found.into_iter().flatten().collect()
 }
 
-/// Every plant of drawings whose plants are known, measured; of people's drawings also some variations.
+/// Measures every plant of drawings whose plants are known; of people's drawings also some variations.
 fn rows_of(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for Labelled { drawing, kinds, origin } in drawings {
@@ -187,7 +196,7 @@ fn rows_of(drawings: &[Labelled], varied_too: bool) -> Vec<Row> {
     rows
 }
 
-/// A kind of which there are many drawings counts more than one with few, but not as much more.
+/// Weights the rows: a kind with many drawings counts more than one with few, but less than in proportion.
 fn weigh(rows: &mut [Row]) {
     let mut count = [0.0_f64; COLUMNS];
     rows.iter().for_each(|r| count[r.kind] += r.weight / if is_tree(r.kind) { TREES } else { 1.0 });
@@ -198,7 +207,8 @@ fn weigh(rows: &mut [Row]) {
     rows.iter_mut().for_each(|r| r.weight /= total);
 }
 
-/// The numbers and the kind of each plant of a drawing, unless it is not taken apart into as many; and of several together.
+/// Returns the numbers and the kind of each plant of a drawing, unless it is not split into as many; and of several
+/// together.
 fn measured(drawing: &ink::Drawing, kinds: &[Kind]) -> Vec<(Vec<f64>, usize)> {
     let ink = ink::clean(drawing, &mut Report::default());
     let mut found = Vec::new();
@@ -225,15 +235,15 @@ fn measured(drawing: &ink::Drawing, kinds: &[Kind]) -> Vec<(Vec<f64>, usize)> {
 }
 
 impl Scale {
-    /// As they are written: rounded.
-    fn of(rows: &[Row]) -> Self {
+    /// Computes the scale as it is written: rounded.
+    fn fit(rows: &[Row]) -> Self {
         let n = rows.len().max(1) as f64;
         let round = |x: f64| (x * 1000.0).round() / 1000.0;
         let of = |i: usize| {
             let mean = rows.iter().map(|r| r.features[i]).sum::<f64>() / n;
             let off = |r: &Row| r.features[i] - mean;
             let spread = (rows.iter().map(|r| off(r) * off(r)).sum::<f64>() / n).sqrt();
-            // What never changes is the constant.
+            // A number that never changes is the constant.
             if spread < 0.002 { (0.0, 1.0) } else { (round(mean), round(spread)) }
         };
         Self((0..reading::kind_feature_names().len()).map(of).collect())
@@ -246,7 +256,7 @@ impl Scale {
     }
 }
 
-/// A coefficient in few bytes.
+/// Formats a coefficient in few bytes.
 pub(crate) fn short(c: f64, decimals: usize) -> String {
     let text = format!("{c:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -254,10 +264,10 @@ pub(crate) fn short(c: f64, decimals: usize) -> String {
     if short.is_empty() || short == "-" || short == "-." { "0".to_owned() } else { short }
 }
 
-/// How many are right, and for each kind what it was taken for.
-fn told(rows: &[Row], net: &Network) -> String {
+/// Reports how many are right, and for each kind the kinds that it was taken for.
+fn report(rows: &[Row], net: &Network) -> String {
     let best = |row: &Row| {
-        let p = net.told(&row.features);
+        let p = net.evaluate(&row.features);
         (0..p.len()).max_by(|&a, &b| p[a].total_cmp(&p[b])).unwrap_or(0)
     };
     let mut confused: BTreeMap<(usize, usize), usize> = BTreeMap::new();

@@ -1,8 +1,9 @@
-//! `cargo xtask train-no-plants`: drawings in all styles -> the coefficients of what is no plant.
+//! `cargo xtask train-no-plants`: drawings in all styles -> the coefficients of the model that recognises other things
+//! than plants.
 //!
-//! A logistic regression with noise and dropout (Srivastava et al. 2014). First by folds, so that each drawing is judged by what
-//! did not learn from its word or name: these figures choose the limit. Then from all that is not kept for the end. The same
-//! drawings give the same coefficients.
+//! A logistic regression with noise and dropout (Srivastava et al. 2014). First by folds, so that each drawing is
+//! judged by a model that did not learn from its word or name: these figures choose the limit. Then from all that are
+//! not held out for the end. The same drawings give the same coefficients.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,24 +18,28 @@ use crate::read_drawings::sketches;
 use crate::train_kinds::short;
 use xtask::shell::{Outcome, repository, say};
 
-/// Each drawing is judged by what did not learn from its fold.
+/// Number of folds; each drawing is judged by a model that did not learn from its fold.
 const FOLDS: u64 = 5;
-/// Steps, drawings of each, the length of the first, the pull towards 0.
+/// Number of steps.
 const STEPS: usize = 3000;
+/// Number of drawings in each step.
 const BATCH: usize = 256;
+/// Length of the first step.
 const RATE: f64 = 2e-3;
+/// Decay of coefficients towards 0.
 const PULL: f64 = 0.01;
-/// Noise on numbers whose spread is 1, and the share of numbers that is left out of each look.
+/// Noise on numbers whose standard deviation is 1.
 const NOISE: f64 = 0.4;
+/// Share of numbers that is dropped in each look.
 const DROP: f64 = 0.2;
-/// How much a variation of a drawing counts.
+/// Weight of a variation of a drawing.
 const VARIED: f64 = 0.6;
-/// False alarms that are asked for, a share of the plants.
+/// Share of the plants that may be false alarms.
 const ALARMS: f64 = 0.02;
-/// Drawings of the SPG set show three things only: in the share of false alarms one counts so much.
+/// Weight of a drawing of the SPG set in the share of false alarms: the set shows only three things.
 const SPG: f64 = 0.25;
 
-/// How much all drawings of a set count, and how many variations of each are learnt from.
+/// Returns the weight of all drawings of a set, and the number of variations of each for training.
 const fn weight(set: Set) -> (f64, u64) {
     match set {
         Set::Things => (3.0, 4),
@@ -58,8 +63,9 @@ struct Row {
     numbers: Vec<f64>,
 }
 
-/// Learns what is no plant and writes `crates/reading/data/no_plants.csv`. With `--end`, writes nothing, and says instead of
-/// which drawings that are kept the committed coefficients warn, or with `--read` of which others by people.
+/// Trains the model and writes `crates/reading/data/no_plants.csv`. With `--end`, writes nothing, and reports instead
+/// for which of the drawings held out the committed coefficients give a warning, or with `--read` for which others by
+/// people.
 ///
 /// # Errors
 /// A sentence: npm is missing, or a file cannot be read or written.
@@ -80,12 +86,12 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         let own = rows.iter().filter(|r| r.fold == fold && !r.is_varied);
         judged.extend(own.map(|r| (r.set, model.chance(&r.numbers))));
     }
-    say(&told(&judged));
+    say(&report(&judged));
     let path = repository().join("crates/reading/data/no_plants.csv");
     fs::write(&path, Model::learn(&rows, |_| true).text()).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Of which drawings `read` warns: of those that are kept for the end, or of all others by people.
+/// Reads the drawings held out for the end, or all others by people, and returns whether reading warns of each.
 fn read(all: &[Styled], is_kept: bool) -> Vec<(Set, f64)> {
     let own = all.iter().filter(|s| s.is_kept == is_kept && (is_kept || s.set.is_by_people()));
     let judge = |s: &Styled| {
@@ -99,7 +105,7 @@ fn read(all: &[Styled], is_kept: bool) -> Vec<(Set, f64)> {
     own.map(judge).collect()
 }
 
-/// Every drawing, and variations of those that are learnt from; by two hands.
+/// Measures every drawing, and variations of those for training, on two threads.
 fn measured(all: &[Styled]) -> Vec<Row> {
     const HANDS: usize = 2;
     let part = all.len().div_ceil(16 * HANDS).max(1);
@@ -137,12 +143,12 @@ fn rows_of(part: &[Styled]) -> Vec<Row> {
     rows
 }
 
-/// Drawings of more strokes are not judged by the model of kinds.
+/// Most strokes of a drawing that the model of kinds judges.
 const MOST_STROKES: usize = 1000;
 
 struct Model {
     constant: f64,
-    /// Mean and spread of each number.
+    /// Mean and standard deviation of each number.
     scale: Vec<(f64, f64)>,
     coefficients: Vec<f64>,
 }
@@ -228,8 +234,9 @@ fn logistic(sum: f64) -> f64 {
     1.0 / (1.0 + ops::exp(-sum))
 }
 
-/// What is told by folds, with the limit that programs have and with the one that gives as many false alarms as are asked for.
-fn told(judged: &[(Set, f64)]) -> String {
+/// Reports the results by folds, with the limit that programs have and with the one that gives the allowed share of
+/// false alarms.
+fn report(judged: &[(Set, f64)]) -> String {
     let limit = limit(judged);
     let mut out = String::new();
     for most in [NO_PLANT_LIMITS.chance_most, limit] {
@@ -238,7 +245,7 @@ fn told(judged: &[(Set, f64)]) -> String {
     out
 }
 
-/// The limit above which as many plants by people are as are asked for.
+/// Returns the limit above which the allowed share of plants by people lies.
 fn limit(judged: &[(Set, f64)]) -> f64 {
     let plants = judged.iter().filter(|(set, _)| set.shows_a_plant() && set.is_by_people());
     let mut plants: Vec<(f64, f64)> =

@@ -13,9 +13,10 @@ use crate::made_strokes::made_sketches;
 use crate::quickdraw::{drawing_of, drawings_of, json_lines, list, read, text_of};
 use xtask::shell::repository;
 
-/// Fold seeds that the figures are averaged over.
+/// Number of fold seeds over which the figures are averaged.
 const SEEDS: u64 = 8;
-/// Of SPG's drawings every so many are measured: enough to learn from, too few to drown the others.
+/// Categories of SPG, the step between the drawings measured, and their classes: enough for training, too few to
+/// dominate.
 const SPG: [(&str, usize, [StrokeClass; 4]); 2] = [
     ("apple", 8, [StrokeClass::Axis, StrokeClass::Blade, StrokeClass::Fruit, StrokeClass::Other]),
     (
@@ -24,15 +25,15 @@ const SPG: [(&str, usize, [StrokeClass; 4]); 2] = [
         [StrokeClass::TrunkOutline, StrokeClass::TrunkOutline, StrokeClass::Axis, StrokeClass::Pot],
     ),
 ];
-/// At most so many strokes of one part of one SPG drawing: thorns come by the dozen.
+/// Most strokes of one part of one SPG drawing: thorns come by the dozen.
 const PER_PART: usize = 3;
 
-/// Trains the models from the table, prints how good they are, and writes models and figures into the repository.
+/// Trains the models from the table, prints their quality, and writes models and figures into the repository.
 ///
-/// `--measure <folder>` first measures the drawings of a folder like `shared/data/sketches` anew.
+/// `--measure <folder>` first remeasures the drawings of a folder like `shared/data/sketches`.
 ///
 /// # Errors
-/// A sentence that names the file and what is wrong with it.
+/// A sentence that names the file and its fault.
 #[expect(clippy::print_stdout, reason = "the figures are what the command is for")]
 pub(crate) fn run(args: &[String]) -> Result<(), String> {
     let root = repository();
@@ -71,7 +72,7 @@ pub(crate) fn run(args: &[String]) -> Result<(), String> {
     update_docs(&docs, "rules", &rules)
 }
 
-/// The block of `docs/strokes.md` that this command owns.
+/// Returns the block of `docs/strokes.md` that this command owns.
 fn figures_block(rows: &[StrokeRow], all: &[StrokeFigures]) -> String {
     let mut out = String::new();
     let count = all.len().max(1) as f64;
@@ -119,7 +120,7 @@ fn figures_block(rows: &[StrokeRow], all: &[StrokeFigures]) -> String {
     out
 }
 
-/// How SPG's parts were found, over all dealings.
+/// Reports how SPG's parts were classified, over all dealings.
 fn parts_block(out: &mut String, all: &[StrokeFigures]) {
     let mut parts: BTreeMap<(&str, StrokeClass), BTreeMap<StrokeClass, usize>> = BTreeMap::new();
     for (kind, label, found) in all.iter().flat_map(|f| &f.parts) {

@@ -1,4 +1,4 @@
-//! A folder for the files that pictures of the docs are made from, and the program that draws them.
+//! A folder for the files from which pictures of the docs are made, and the program that draws them.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ pub(crate) struct Workshop {
 }
 
 impl Workshop {
-    /// Lets `work` have one for as long as it lasts.
+    /// Makes one for the duration of `work`.
     pub(crate) fn with(work: impl FnOnce(&Self) -> Outcome) -> Outcome {
         let burgeon = built_burgeon()?;
         let folder = std::env::temp_dir().join(format!("burgeon-pictures-{}", std::process::id()));
@@ -21,12 +21,12 @@ impl Workshop {
         made
     }
 
-    /// Where a file of this name lies.
+    /// Returns the path of a file of this name.
     pub(crate) fn path(&self, name: &str) -> String {
         self.folder.join(name).display().to_string()
     }
 
-    /// Writes a file and tells where it lies.
+    /// Writes a file and returns its path.
     pub(crate) fn file(&self, name: &str, text: &str) -> Result<String, String> {
         let path = self.path(name);
         std::fs::write(Path::new(&path), text).map_err(|e| format!("cannot write {path}: {e}"))?;
@@ -38,7 +38,7 @@ impl Workshop {
     }
 }
 
-/// A picture of the docs.
+/// Returns the path of a picture of the docs.
 pub(crate) fn picture(name: &str) -> PathBuf {
     repository().join("docs/pictures").join(name)
 }

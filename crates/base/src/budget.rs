@@ -1,8 +1,8 @@
-//! How much a computation may make: counted before the work, refused in one line.
+//! Limits on the amount that a computation may make: checked before the work starts, refused in one line.
 
 use core::fmt;
 
-/// What is counted.
+/// Quantity that a budget limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Counted {
@@ -12,9 +12,9 @@ pub enum Counted {
     Points,
     /// Joints of skeletons: internodes, metamers, modules of a string.
     Joints,
-    /// Steps, and places for leaves, along one shoot.
+    /// Points that buds query, counted once for each query: the measure of time for growth by markers.
     Course,
-    /// Points that buds ask for, each time that one does: what growth by markers takes time for.
+    /// Joints times the years that they live through: the measure of time for self-organising growth.
     MarkerQueries,
     /// Joints times the years that they live through: what self-organising growth takes time for.
     JointYears,
@@ -24,29 +24,29 @@ pub enum Counted {
     Triangles,
     /// Triangles of all obstacles and envelopes.
     Obstacles,
-    /// Boxes of triangles at a place of an obstacle's surface, in the mean: what it takes to find the nearest of them. Two or
-    /// three in a mesh of even triangles, many in a fan of slivers.
+    /// Mean number of bounding boxes of triangles that overlap at a place on an obstacle's surface, which sets the time
+    /// to find the nearest one. Two or three in a mesh of even triangles, many in a fan of slivers.
     Slivers,
     /// Strokes of a drawing.
     Strokes,
     /// Edits by hand of one plant.
     Edits,
-    /// Nodes, leaves and flowers of a plant that holds copies of its own branches: each copy may double them.
+    /// Nodes, leaves and flowers, counted once for each edit that visits them: the measure of time for edits.
     Pieces,
-    /// Nodes, leaves and flowers, each time that an edit goes through them: what edits take time for.
+    /// Measured sizes, counted once for each comparison with a growth law: the measure of time for laws.
     EditedPieces,
     /// Measured sizes, each time that a growth law is compared with them: what laws take time for.
     Comparisons,
     /// Trees of a stand: rows of an inventory, trees that grow.
     Trees,
-    /// Cells of a height map or a mask.
+    /// Neighbours that the trees of a stand check in one step of growth: the measure of time for competition.
     Cells,
     /// Neighbours that trees of a stand look at in one step of growth: what competition takes time for.
     Looks,
 }
 
 impl Counted {
-    /// All of them, in the order of `docs/limits.md`.
+    /// All quantities, in the order of `docs/limits.md`.
     pub const ALL: [Self; 18] = [
         Self::Roots,
         Self::Points,
@@ -68,7 +68,7 @@ impl Counted {
         Self::Looks,
     ];
 
-    /// In messages.
+    /// Returns the name of the quantity in messages.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Roots => "roots",
@@ -92,8 +92,8 @@ impl Counted {
         }
     }
 
-    /// The usual limit. Each is well above what plants that are looked at need, and such that a computation that
-    /// stays within all of them stays within [`Budget::bytes`].
+    /// Returns the usual limit. Each is well above what practical plants need; a computation that stays within all of
+    /// them stays within [`Budget::bytes`].
     pub const fn limit(self) -> u64 {
         match self {
             Self::Roots | Self::Slivers => 1_000,
@@ -120,8 +120,8 @@ impl Counted {
     }
 }
 
-/// How many times the usual limits a computation may take. Plain data; it never changes a result: what is too much is
-/// an error, not another plant.
+/// Limits of a computation, as a factor on the usual ones. Plain data; it never changes a result: exceeding a limit is
+/// an error and does not yield another plant.
 ///
 /// ```
 /// use base::{Budget, Counted};
@@ -136,9 +136,9 @@ impl Counted {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Factor on the usual limits, above 0; 1 unless somebody asks for more. Infinity: no limits, only on purpose.
+    /// Factor on the usual limits, above 0; 1 by default. Infinity switches the limits off; use it only deliberately.
     pub times: f64,
-    /// The option that raises it, for messages; none where there is none.
+    /// The option that raises the factor, for messages; `None` if there is no such option.
     pub raise: Option<&'static str>,
 }
 
@@ -150,16 +150,17 @@ impl Default for Budget {
 
 /// Live memory at the usual limits, bytes: 4 GiB.
 const BYTES: u64 = 4 << 30;
-/// The most that a factor may be.
+/// Largest factor that a message suggests.
 const MOST: f64 = 1000.0;
 
 impl Budget {
-    /// The limit of what is counted.
+    /// Returns the limit of a quantity.
     pub fn limit(&self, what: Counted) -> u64 {
         self.scaled(what.limit())
     }
 
-    /// Memory in use at one time, bytes. The owner of the memory keeps to it: the core cannot.
+    /// Returns the memory that may be in use at one time, bytes. The allocator of the shell enforces it: the core
+    /// cannot.
     pub fn bytes(&self) -> u64 {
         self.scaled(BYTES)
     }
@@ -175,7 +176,7 @@ impl Budget {
         limit
     }
 
-    /// Fails if `number` is above the limit. `remedy` tells which field or option to change, such as `lower points`.
+    /// Fails if `number` is above the limit. `remedy` names the field or option to change, such as `lower points`.
     ///
     /// # Errors
     /// [`OverBudget`].
@@ -191,7 +192,8 @@ impl Budget {
         Err(OverBudget { what, number, limit, remedy, raise })
     }
 
-    /// [`check`](Self::check) of a number that was computed from lengths: what is not finite is too many.
+    /// As [`check`](Self::check), for a number that was computed from lengths: a number that is not finite exceeds
+    /// every limit.
     ///
     /// # Errors
     /// [`OverBudget`].
@@ -205,18 +207,18 @@ impl Budget {
     }
 }
 
-/// More than the budget allows; nothing was made.
+/// A limit of the budget was exceeded; nothing was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OverBudget {
-    /// What was counted.
+    /// The quantity.
     pub what: Counted,
-    /// How many there would be, at least.
+    /// Lower bound of the number that would have been made.
     pub number: u64,
-    /// How many there may be.
+    /// The limit.
     pub limit: u64,
-    /// What to change.
+    /// The field or option to change.
     pub remedy: &'static str,
-    /// The option that allows more, and what it must be.
+    /// The option that raises the limit, and the value that it needs.
     pub raise: Option<(&'static str, u32)>,
 }
 
@@ -231,7 +233,7 @@ impl fmt::Display for OverBudget {
     }
 }
 
-/// A number with its digits in groups of three: `10,000,000`.
+/// Writes a number with its digits in groups of three: `10,000,000`.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut out = String::with_capacity(digits.len() + digits.len() / 3);

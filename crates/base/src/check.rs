@@ -1,4 +1,4 @@
-//! Whether a person would accept a result: measured values against bounds.
+//! Plausibility checks of a result: measured values against bounds.
 
 /// Which side of a number is plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,14 +10,14 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// The number itself.
+    /// Returns the number itself.
     pub const fn number(self) -> f64 {
         match self {
             Self::AtLeast(x) | Self::AtMost(x) => x,
         }
     }
 
-    /// Whether a value is on the plausible side; never for what is no number.
+    /// Whether a value is on the plausible side; NaN never is.
     pub fn holds(self, value: f64) -> bool {
         match self {
             Self::AtLeast(x) => value >= x,
@@ -26,10 +26,10 @@ impl Bound {
     }
 }
 
-/// What a check that fails means.
+/// Consequence of a failed check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// The result may be wrong: it is told with a way out.
+    /// The result may be wrong: a warning says so and gives a remedy.
     Warning,
     /// Nobody would accept the result.
     Error,
@@ -56,17 +56,17 @@ pub enum Severity {
 pub struct Check {
     /// A stable word for programs, which is the code of the warning.
     pub name: &'static str,
-    /// What was measured.
+    /// The measured value.
     pub value: f64,
-    /// What is plausible.
+    /// The bound of plausible values.
     pub bound: Bound,
     /// Value and bound as people read them, with their units.
     pub shown: [String; 2],
-    /// What it means if it fails.
+    /// Consequence of a failure.
     pub severity: Severity,
-    /// A sentence without a full stop: what was measured.
+    /// The finding, as a sentence without a full stop.
     pub message: String,
-    /// What to do if it fails.
+    /// The remedy if the check fails.
     pub advice: &'static str,
 }
 
@@ -76,7 +76,7 @@ impl Check {
         self.bound.holds(self.value)
     }
 
-    /// What was measured, and what is plausible.
+    /// Returns the measured value and the plausible range in words.
     pub fn said(&self) -> String {
         let side = match self.bound {
             Bound::AtLeast(_) => "at least",

@@ -3,19 +3,19 @@
 use core::fmt::Display;
 use std::collections::BTreeMap;
 
-/// What an error is, and what its sentence is filled with.
+/// Code of an error, with the fields of its sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
     /// A word in kebab-case that never changes its meaning.
     pub code: &'static str,
     /// Names and values, as people read them.
     pub fields: BTreeMap<&'static str, String>,
-    /// Those of the fields that are errors themselves.
+    /// The fields that are errors themselves.
     pub causes: BTreeMap<&'static str, Self>,
 }
 
 impl Told {
-    /// For [`crate::coded!`]. Here and not in the macro, so that there is one copy of it and not one for each error.
+    /// Serves [`crate::coded!`]. It is a function and not part of the macro, so that one copy serves all errors.
     #[doc(hidden)]
     pub fn new(code: &'static str, fields: &[(&'static str, &dyn Display)]) -> Self {
         let mut told = Self { code, fields: BTreeMap::new(), causes: BTreeMap::new() };
@@ -23,7 +23,7 @@ impl Told {
         told
     }
 
-    /// With one more of the fields that are errors themselves, if it is one.
+    /// Adds `cause` to the fields that are errors themselves, if there is one.
     #[doc(hidden)]
     #[inline]
     #[must_use]
@@ -45,11 +45,11 @@ pub type Code = (&'static str, &'static [&'static str]);
 
 /// An error that has a code for each of its variants. Made by [`crate::coded!`].
 pub trait Coded {
-    /// Every code that [`Coded::told`] may give.
+    /// Appends every code that [`Coded::details`] may return.
     fn codes(all: &mut Vec<Code>);
 
-    /// The code of this error, with its fields.
-    fn told(&self) -> Told;
+    /// Returns the code of this error, with its fields.
+    fn details(&self) -> Told;
 }
 
 /// Gives each variant of an error its code and its fields; those that wrap another error have the other's.
@@ -76,7 +76,7 @@ pub trait Coded {
 /// base::coded!(HouseError {
 ///     Self(door) => "house" { why = door => DoorError },
 /// });
-/// let told = HouseError(DoorError::Locked("brass".into())).told();
+/// let told = HouseError(DoorError::Locked("brass".into())).details();
 /// assert_eq!((told.code, told.fields["why"].as_str()), ("house", "it does not open"));
 /// let why = &told.causes["why"];
 /// assert_eq!((why.code, why.fields["key"].as_str()), ("door-locked", "brass"));
@@ -89,7 +89,7 @@ macro_rules! coded {
     (@cause $field:ident [$($value:expr)?]) => { None };
     (@cause $field:ident [] $cause:ty) => { $crate::coded!(@cause $field [$field] $cause) };
     (@cause $field:ident [$value:expr] $cause:ty) => {
-        Some((stringify!($field), <$cause as $crate::Coded>::told($value)))
+        Some((stringify!($field), <$cause as $crate::Coded>::details($value)))
     };
     ($type:ty {
         $($pattern:pat => $code:literal { $($field:ident $(= $value:expr)? $(=> $cause:ty)?),* }),* $(,)?
@@ -106,13 +106,13 @@ macro_rules! coded {
                 $($(<$kind as $crate::Coded>::codes(all);)*)?
             }
 
-            fn told(&self) -> $crate::Told {
+            fn details(&self) -> $crate::Told {
                 match self {
                     $($pattern => $crate::Told::new(
                         $code,
                         &[$((stringify!($field), &$crate::coded!(@value $field $($value)?))),*],
                     )$(.with($crate::coded!(@cause $field [$($value)?] $($cause)?)))*,)*
-                    $($($wrap => $crate::Coded::told($inner),)*)?
+                    $($($wrap => $crate::Coded::details($inner),)*)?
                 }
             }
         }

@@ -23,24 +23,24 @@ impl fmt::Debug for Digest {
 }
 
 impl Digest {
-    /// An empty digest.
+    /// Creates an empty digest.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes in anything digestible.
+    /// Adds anything digestible to the digest.
     pub fn add<T: Digestible + ?Sized>(&mut self, value: &T) -> &mut Self {
         value.digest(self);
         self
     }
 
-    /// Takes in raw bytes, without their length.
+    /// Adds raw bytes to the digest, without their length.
     pub fn bytes(&mut self, bytes: &[u8]) -> &mut Self {
         self.0.update(bytes);
         self
     }
 
-    /// The first 16 bytes as 32 hexadecimal digits.
+    /// Returns the first 16 bytes as 32 hexadecimal digits.
     pub fn hex(self) -> String {
         use core::fmt::Write as _;
         self.0.finalize()[..16].iter().fold(String::with_capacity(32), |mut s, b| {

@@ -5,10 +5,10 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 /// ln 2 in two parts; the first has 32 bits, so that its product with an exponent is exact (Cody and Waite 1980).
 const LN2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 
-/// `exp(rate * x)` of each `x`: within 2 units in the last place, the same bits everywhere.
+/// Computes `exp(rate * x)` for each `x`: within 2 units in the last place, the same bits everywhere.
 ///
-/// Below -708 the result is that of -708 (3e-308), above 709 infinite, of NaN NaN. A quarter of the time of one call
-/// each.
+/// Below -708 the result is that of -708 (3e-308), above 709 it is infinite, and NaN stays NaN. Takes a quarter of the
+/// time of separate calls.
 ///
 /// ```
 /// let mut out = [0.0; 2];

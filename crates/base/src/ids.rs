@@ -16,7 +16,7 @@ macro_rules! define_id {
         $vis struct $name(u32);
 
         impl $name {
-            /// The handle of row `index`.
+            /// Creates the handle of row `index`.
             ///
             /// # Panics
             /// If `index` does not fit in `u32`: four billion rows are a bug, not data.
@@ -27,13 +27,13 @@ macro_rules! define_id {
                 Self(index as u32)
             }
 
-            /// The row that this handle names.
+            /// Returns the row that this handle names.
             #[inline]
             pub const fn index(self) -> usize {
                 self.0 as usize
             }
 
-            /// The handle as it is written to files.
+            /// Returns the handle as it is written to files.
             #[inline]
             pub const fn raw(self) -> u32 {
                 self.0

@@ -7,18 +7,18 @@
 //! | [`ops`] | transcendental functions with the same bits on every platform |
 //! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
-//! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
+//! | `budget` | [`Budget`], [`OverBudget`]: limits on the amount that a computation makes |
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
-//! | `slip` | [`Slip`]: what readers say of a text, as codes; [`plainly`] for people |
-//! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
+//! | `slip` | [`Slip`]: messages of readers about a text, as codes; [`plainly`] for people |
+//! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: the means of a computation, never its subject |
 //! | `nearest` | [`nearest()`], [`meant`]: which of the known words was meant |
-//! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats; [`escaped_xml`] |
+//! | `quote` | [`brief`], [`quoted`]: quoted text cut to a length that fits messages; [`escaped_xml`] |
 //! | `check` | [`Check`]: a value of a result against the bound of what is plausible |
-//! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
+//! | `report` | [`Report`], [`Warning`]: messages of a computation to its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
 //! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`], [`light_of_byte`], [`byte_of_light`] |
-//! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
+//! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at input and output |
 //! | `words` | [`words!`], [`either`]: choices by the words that people write |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 

@@ -1,7 +1,7 @@
-//! Of a word that is not known, which of those that are known is meant.
+//! Finds the known word that an unknown word was meant to be.
 
-/// The choice that a slip of the hand turns into `word`: letters that are wrong, missing, too many or swapped, up to a
-/// third of the longer word (Damerau 1964). The first of several that are as near; none if all are farther.
+/// Returns the choice that a typing error turns into `word`: letters that are wrong, missing, extra or swapped, up to a
+/// third of the longer word (Damerau 1964). Of equally near choices it returns the first; `None` if all are farther.
 /// Cost: the product of both lengths for each choice.
 ///
 /// ```
@@ -23,8 +23,8 @@ pub fn nearest<'a>(word: &str, choices: impl IntoIterator<Item = &'a str>) -> Op
     best.map(|(_, choice)| choice)
 }
 
-/// How a message that ends with the words that are known goes on: which of them is meant, in backticks; empty if none is
-/// near.
+/// Returns the end of a message that lists the known words: the one that was probably meant, in backticks; empty if
+/// none is near.
 ///
 /// ```
 /// assert_eq!(base::meant("oka", ["ash", "oak"]), "; is `oak` meant?");
@@ -34,7 +34,7 @@ pub fn meant<'a>(word: &str, choices: impl IntoIterator<Item = &'a str>) -> Stri
     nearest(word, choices).map(|near| format!("; is `{near}` meant?")).unwrap_or_default()
 }
 
-/// A message without what [`meant`] put to its end.
+/// Removes the hint that [`meant`] appended to a message.
 pub(crate) fn without_hint(message: &str) -> &str {
     let before = message.strip_suffix("` meant?").and_then(|rest| rest.rsplit_once("; is `"));
     before.map_or(message, |(before, _)| before)
@@ -49,7 +49,7 @@ mod tests {
         let trees = ["apple", "ash", "beech", "birch", "oak"];
         assert_eq!(nearest("birhc", trees), Some("birch"));
         assert_eq!(nearest("ok", trees), Some("oak"));
-        // One letter is a slip of anything.
+        // A word of one letter could be a typing error of any word.
         for far in ["", "o", "k", "palm", "\u{1f339}"] {
             assert_eq!(nearest(far, trees), None, "{far}");
         }

@@ -50,19 +50,19 @@ forward! {
     hypot(x, y) = libm::hypot;
 }
 
-/// Sine and cosine of an angle in radians.
+/// Returns the sine and cosine of an angle in radians.
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// Inverse cosine of `x` clamped to \[-1, 1\]: the angle of two unit vectors from their dot product.
+/// Returns the inverse cosine of `x` clamped to \[-1, 1\]: the angle of two unit vectors from their dot product.
 #[inline]
 pub fn acos_clamped(x: f64) -> f64 {
     libm::acos(x.clamp(-1.0, 1.0))
 }
 
-/// A float that is known to be a small count, rounded down; what is below 0 is 0.
+/// Rounds down a float that is known to be a small count; values below 0 become 0.
 #[inline]
 pub fn whole(x: f64) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to u32's range")]
@@ -70,13 +70,13 @@ pub fn whole(x: f64) -> u32 {
     n
 }
 
-/// Linear interpolation: `a` at `t = 0`, `b` at `t = 1`.
+/// Interpolates linearly: `a` at `t = 0`, `b` at `t = 1`.
 #[inline]
 pub fn lerp(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Hermite step: 0 up to `lo`, 1 from `hi`, smooth between. `lo < hi`.
+/// Computes a Hermite step: 0 up to `lo`, 1 from `hi`, smooth between. `lo < hi`.
 #[inline]
 pub fn smoothstep(lo: f64, hi: f64, x: f64) -> f64 {
     let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);

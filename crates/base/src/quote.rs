@@ -1,10 +1,11 @@
-//! What messages say of other people's words: never more than a line's worth.
+//! Quotes the user's words in messages, at most one line of them.
 
-/// Most characters of a quoted value, and of a whole message.
+/// Most characters of a quoted value.
 const QUOTED: usize = 80;
+/// Most characters of a whole message.
 const WHOLE: usize = 1500;
 
-/// A value as messages quote it: at most 80 characters, and its end cut off with `...` where it is longer.
+/// Returns a value as messages quote it: at most 80 characters; a longer value ends with `...`.
 ///
 /// ```
 /// assert_eq!(base::quoted("oak"), "oak");
@@ -14,7 +15,8 @@ pub fn quoted(text: &str) -> String {
     cut(text, QUOTED)
 }
 
-/// Somebody's words as text or as an attribute of XML. What XML cannot hold becomes a space, or is left out.
+/// Escapes text for use as the content or an attribute of XML. Characters that XML cannot hold become a space or are
+/// left out.
 ///
 /// ```
 /// assert_eq!(base::escaped_xml("a < \"b\"\u{1}& c"), "a &lt; &quot;b&quot; &amp; c");
@@ -35,8 +37,8 @@ pub fn escaped_xml(text: &str) -> String {
     out
 }
 
-/// A message, which may be somebody else's, with everything that it quotes in backticks or double quotes cut as
-/// [`quoted`] does, and itself at most 1,500 characters long. Cost: linear.
+/// Shortens a message, which may come from another library: everything that it quotes in backticks or double quotes is
+/// cut as by [`quoted`], and the message itself to at most 1,500 characters. Cost: linear.
 ///
 /// ```
 /// let long = format!("unknown field `{}`, expected `age`", "x".repeat(1000));

@@ -1,15 +1,15 @@
-//! What a computation wants to tell its user beside its result.
+//! Messages of a computation to its user, in addition to its result.
 
 use core::fmt::{self, Display};
 
 use crate::{Check, Clock};
 
-/// One thing that was not as the user might expect, and what was done about it.
+/// An unexpected condition, and how the computation handled it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// A stable word for programs, such as `stroke-skipped`.
     pub code: &'static str,
-    /// A sentence for people: what, where, what was done.
+    /// A sentence for people: the condition, its place and the action taken.
     pub message: String,
     /// Numbers and names in that sentence, for other languages; see [`crate::warn!`].
     pub fields: Vec<(&'static str, String)>,
@@ -21,25 +21,25 @@ impl Display for Warning {
     }
 }
 
-/// So many warnings that differ in numbers and names alone are told one by one; more become one with a count.
+/// Most warnings that differ in numbers and names alone and are still listed one by one; more become one with a count.
 const MOST_ALIKE: usize = 4;
 
-/// The field that says for how many others a warning stands.
+/// Name of the field that holds how many others a warning stands for.
 const MORE: &str = "more";
 
 impl Warning {
-    /// How many warnings it stands for.
+    /// Returns how many warnings this one stands for.
     fn count(&self) -> usize {
         let more = self.fields.iter().find(|(name, _)| *name == MORE);
         1 + more.and_then(|(_, count)| count.parse().ok()).unwrap_or(0)
     }
 
-    /// Whether both say the same of other numbers and names.
+    /// Whether both warnings differ in numbers and names alone.
     fn is_like(&self, other: &Self) -> bool {
         self.code == other.code && frame(self.own_message()) == frame(other.own_message())
     }
 
-    /// The message without the others.
+    /// Returns the message without the count of others.
     fn own_message(&self) -> &str {
         if self.count() == 1 {
             return &self.message;
@@ -47,7 +47,7 @@ impl Warning {
         self.message.rsplit_once(" (and ").map_or(&*self.message, |(own, _)| own)
     }
 
-    /// Makes it stand for `count` warnings.
+    /// Sets how many warnings this one stands for.
     fn stand_for(&mut self, count: usize) {
         let more = count - 1;
         self.message = format!("{} (and {more} more like it)", self.own_message());
@@ -56,13 +56,13 @@ impl Warning {
     }
 }
 
-/// A message without its numbers and what it quotes.
+/// Returns a message without its numbers and its quoted words.
 fn frame(message: &str) -> String {
     let unquoted = message.split(['`', '"']).step_by(2).collect::<Vec<_>>().join("\"");
     unquoted.chars().filter(|c| !c.is_ascii_digit() && *c != '.').collect()
 }
 
-/// The warnings, of which those that differ in numbers and names alone are one with a count if they are more than four.
+/// Merges warnings that differ in numbers and names alone into one with a count if there are more than four of them.
 ///
 /// ```
 /// let strokes = (1..=20).map(|k| format!("stroke {k} has one point and was left out"));
@@ -78,7 +78,7 @@ pub fn gathered(warnings: impl IntoIterator<Item = Warning>) -> Vec<Warning> {
     all
 }
 
-/// Adds a warning, or counts it at one that is like it.
+/// Adds a warning, or counts it at an equivalent one.
 fn gather(all: &mut Vec<Warning>, new: Warning) {
     let alike: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_like(&new)).collect();
     let count = alike.iter().map(|&i| all[i].count()).sum::<usize>() + new.count();
@@ -91,7 +91,7 @@ fn gather(all: &mut Vec<Warning>, new: Warning) {
     }
 }
 
-/// The time one stage took.
+/// Time that one stage took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
     /// `read`, `preprocess`, `classify`, `structure`, `depth`, `mesh` or `write`.
@@ -110,11 +110,11 @@ pub struct Stage {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Everything to be told.
+    /// All warnings.
     pub warnings: Vec<Warning>,
     /// Stage times; a stage that ran twice is listed once with the sum.
     pub stages: Vec<Stage>,
-    /// What was checked of the result, whether it held or not.
+    /// All checks of the result, failed or not.
     pub checks: Vec<Check>,
 }
 
@@ -156,7 +156,7 @@ impl Report {
         gather(&mut self.warnings, Warning { code, message: crate::brief(&message.into()), fields });
     }
 
-    /// Adds a check; one that fails also warns, by its name and with its way out.
+    /// Adds a check; a failed one also adds a warning under its name, with its remedy.
     pub fn check(&mut self, check: Check) {
         if !check.holds() {
             let [value, bound] = &check.shown;

@@ -5,20 +5,20 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::ops;
 
-/// What a stream of random numbers is drawn for. The numbers are part of the file format: never reuse or renumber.
+/// Purpose of a stream of random numbers. The numbers are part of the file format: never reuse or renumber.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u64)]
 #[non_exhaustive]
 pub enum Draw {
     /// Rotation of a branch out of the drawing plane.
     BranchDepth = 1,
-    /// The disturbance of a leaf's azimuth and inclination.
+    /// Deviation of a leaf's azimuth and inclination.
     LeafAngle = 2,
     /// Bending of a blade.
     Curl = 3,
-    /// Where a twig starts along its bearer.
+    /// Position of a twig along its bearer.
     TwigPlace = 4,
-    /// Which template a filled leaf copies.
+    /// Template that a filled leaf copies.
     Template = 5,
     /// Size variation.
     Size = 6,
@@ -40,13 +40,13 @@ pub enum Draw {
     Test = 14,
     /// Phase of a branch or organ in the wind.
     Wind = 15,
-    /// Where copies of a plant stand, how they are turned and how large they are.
+    /// Position, rotation and size of copies of a plant.
     Scatter = 16,
-    /// In what a tree differs from others of its kind.
+    /// Difference of a tree from others of its kind.
     Habit = 17,
-    /// When a leaf turns and falls in autumn.
+    /// Time at which a leaf turns and falls in autumn.
     Season = 18,
-    /// Where the trees of a stand and their seedlings come up, how vigorous they are and which die.
+    /// Positions of the trees of a stand and of their seedlings, their vigour and their mortality.
     Stand = 19,
 }
 
@@ -66,23 +66,23 @@ pub enum Draw {
 pub struct Seed(u64);
 
 impl Seed {
-    /// A seed from the number that the user gave.
+    /// Makes a seed of the number that the user gave.
     pub const fn new(number: u64) -> Self {
         Self(number)
     }
 
-    /// The number as it is saved.
+    /// Returns the number as it is saved.
     pub const fn number(self) -> u64 {
         self.0
     }
 
-    /// The seed of a part, named by a key that is stable under edits (bearer's key, birth rank).
+    /// Returns the seed of a part, named by a key that is stable under edits (bearer's key, birth rank).
     #[must_use]
     pub const fn child(self, key: u64) -> Self {
         Self(mix(self.0 ^ mix(key.wrapping_add(0x9e37_79b9_7f4a_7c15))))
     }
 
-    /// A fresh stream for one purpose.
+    /// Starts a fresh stream for one purpose.
     pub fn stream(self, draw: Draw) -> Stream {
         Stream { rng: Pcg64Mcg::seed_from_u64(self.child(draw as u64).0) }
     }
@@ -101,40 +101,40 @@ const fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A short stream of random numbers with our own distributions: they are part of the file format.
+/// A short stream of random numbers. The distributions are our own: they are part of the file format.
 #[derive(Clone, Debug)]
 pub struct Stream {
     rng: Pcg64Mcg,
 }
 
 impl Stream {
-    /// Uniform in \[0, 1), 53 bits.
+    /// Draws uniformly from \[0, 1), with 53 bits.
     pub fn uniform(&mut self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
         let x = (self.rng.next_u64() >> 11) as f64;
         x * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform in \[lo, hi).
+    /// Draws uniformly from \[lo, hi).
     pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
         lo + (hi - lo) * self.uniform()
     }
 
-    /// Uniform among `0..n`; 0 for `n = 0`.
+    /// Draws uniformly from `0..n`; 0 for `n = 0`.
     pub fn below(&mut self, n: usize) -> usize {
         #[expect(clippy::cast_possible_truncation, reason = "the product's high half is below n")]
         let x = ((u128::from(self.rng.next_u64()) * n as u128) >> 64) as usize;
         x
     }
 
-    /// Normal with mean 0 and deviation 1 (Box and Muller, one of the pair).
+    /// Draws from the normal distribution with mean 0 and standard deviation 1 (Box and Muller, one of the pair).
     pub fn normal(&mut self) -> f64 {
         let u = 1.0 - self.uniform();
         let v = self.uniform();
         (-2.0 * ops::ln(u)).sqrt() * ops::cos(ops::TAU * v)
     }
 
-    /// Two that know nothing of each other, as [`normal`](Self::normal): for little more than one.
+    /// Draws two independent values as [`normal`](Self::normal) does, in little more than the time of one.
     pub fn normals(&mut self) -> [f64; 2] {
         let u = 1.0 - self.uniform();
         let (sin, cos) = ops::sin_cos(ops::TAU * self.uniform());
@@ -142,7 +142,7 @@ impl Stream {
         [far * cos, far * sin]
     }
 
-    /// True with probability `p`.
+    /// Returns true with probability `p`.
     pub fn chance(&mut self, p: f64) -> bool {
         self.uniform() < p
     }

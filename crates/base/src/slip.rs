@@ -1,34 +1,34 @@
-//! What serde's readers say of a text, as codes with fields: `message -> Slip`.
+//! Messages of serde's readers about a text, as codes with fields: `message -> Slip`.
 
 use core::fmt;
 
 use crate::{Coded, Told};
 
-/// A slip in a text that somebody wrote, in the words of the reader that found it.
+/// An error in a text that a user wrote, in the words of the reader that found it.
 ///
-/// The common slips have codes of their own, so that every language has its own words for them; the others keep the
-/// words of the reader.
+/// Common errors have codes of their own, so that every language has its own words for them; the others keep the words
+/// of the reader.
 ///
 /// ```
 /// use base::{Coded, Slip};
-/// let told = Slip::of("unknown field `depth`, expected `width` at line 3 column 7").told();
+/// let told = Slip::from_message("unknown field `depth`, expected `width` at line 3 column 7").details();
 /// assert_eq!((told.code, told.fields["line"].as_str()), ("slip-at", "3"));
 /// let what = &told.causes["what"];
 /// assert_eq!((what.code, what.fields["name"].as_str()), ("spec-unknown", "depth"));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slip {
-    /// Names and rows that lead to it; empty where they are not known.
+    /// Names and rows on the way to the error; empty if they are not known.
     path: String,
     /// Line and column from 1.
     place: Option<(usize, Option<usize>)>,
-    /// What is wrong, in the reader's words, without the place.
+    /// The error in the reader's words, without the place.
     why: String,
 }
 
 impl Slip {
-    /// Of a message of `serde_json`, with or without the place at its end and names of fields before it.
-    pub fn of(message: &str) -> Self {
+    /// Reads a message of `serde_json`, with or without a place at its end and field names at its start.
+    pub fn from_message(message: &str) -> Self {
         let placed = message.rsplit_once(" at line ").and_then(|(why, place)| {
             let (line, column) = place.split_once(" column ")?;
             Some((why, (line.parse().ok()?, column.parse().ok())))
@@ -42,15 +42,16 @@ impl Slip {
         Self { path: path.to_owned(), place, why: crate::brief(why_of(why)) }
     }
 
-    /// Of a message about what names and rows lead to, in a text of which the line (from 1) may be known.
+    /// Makes a slip from the names and rows on the way to a value, the line of the text (from 1) if known, and a
+    /// message about the value.
     pub fn in_field(path: &str, line: Option<usize>, why: &str) -> Self {
         Self { path: path.to_owned(), place: line.map(|line| (line, None)), why: crate::brief(why_of(why)) }
     }
 
-    /// Of a field or a word that is not known, which of those that are known is meant; empty if none is near.
+    /// Returns the known name that an unknown field or word was meant to be; empty if none is near.
     ///
     /// ```
-    /// let slip = base::Slip::of("unknown field `depht`, expected `width` or `depth`");
+    /// let slip = base::Slip::from_message("unknown field `depht`, expected `width` or `depth`");
     /// assert_eq!(slip.hint(), "; is `depth` meant?");
     /// ```
     pub fn hint(&self) -> String {
@@ -59,7 +60,7 @@ impl Slip {
         quoted.next().filter(|_| unknown).map(|word| crate::meant(word, quoted)).unwrap_or_default()
     }
 
-    /// What is wrong, without a word of the language that this is written in.
+    /// Returns the error without words of any natural language.
     fn plain(&self) -> Option<String> {
         for start in ["invalid type: ", "invalid value: "] {
             if let Some((found, wanted)) =
@@ -104,7 +105,7 @@ impl Slip {
     }
 }
 
-/// A message of a reader of JSON or TOML for people: kinds of values by their words, not by the names of types. Other
+/// Rewrites a message of a JSON or TOML reader for people: kinds of values in words instead of names of types. Other
 /// messages stay as they are.
 ///
 /// ```
@@ -114,7 +115,7 @@ impl Slip {
 /// assert_eq!(base::plainly("a law needs a day"), "a law needs a day");
 /// ```
 pub fn plainly(message: &str) -> String {
-    let slip = Slip::of(message);
+    let slip = Slip::from_message(message);
     let Some(plain) = slip.plain() else { return why_of(message).to_owned() };
     let lead = if slip.path.is_empty() { String::new() } else { format!("{}: ", slip.path) };
     let place = match slip.place {
@@ -124,7 +125,7 @@ pub fn plainly(message: &str) -> String {
     format!("{lead}{plain}{place}")
 }
 
-/// What a reader says, but for the names of types that fit no field of ours.
+/// Returns a reader's message, replaced if it names an untagged enum and not a field.
 fn why_of(why: &str) -> &str {
     if why.starts_with("data did not match any variant of untagged enum") {
         return "it has none of the forms that are known";
@@ -132,7 +133,7 @@ fn why_of(why: &str) -> &str {
     why
 }
 
-/// What serde found, in words.
+/// Describes in words what serde found.
 fn found_words(found: &str) -> String {
     match found_kind(found) {
         ("a text", text) => format!("the text \"{text}\""),
@@ -141,7 +142,7 @@ fn found_words(found: &str) -> String {
     }
 }
 
-/// What serde wanted, in words. Words of our own readers stay as they are.
+/// Describes in words what serde expected. Words of our own readers stay as they are.
 fn wanted_words(wanted: &str) -> String {
     let count = wanted.split(' ').find_map(|word| word.parse::<u32>().ok());
     match (wanted_kind(wanted), wanted, count) {
@@ -155,7 +156,7 @@ fn wanted_words(wanted: &str) -> String {
     }
 }
 
-/// Whether `serde_json` says so of a text that is no JSON.
+/// Whether this message of `serde_json` means that the text is not JSON.
 fn is_json_syntax(why: &str) -> bool {
     const STARTS: [&str; 11] = [
         "expected ",
@@ -173,7 +174,7 @@ fn is_json_syntax(why: &str) -> bool {
     STARTS.iter().any(|start| why.starts_with(start))
 }
 
-/// What serde found, as a kind of value and the value itself; the value is empty where it is not told.
+/// Returns the kind and the value that serde found; the value is empty if the message omits it.
 fn found_kind(found: &str) -> (&'static str, &str) {
     let value = found.split_once(['`', '"']).and_then(|(_, rest)| rest.rsplit_once(['`', '"']));
     let kind = match found.split(' ').next().unwrap_or_default() {
@@ -189,7 +190,7 @@ fn found_kind(found: &str) -> (&'static str, &str) {
     (kind, value.map_or("", |(value, _)| value))
 }
 
-/// What serde wanted, as a kind of value.
+/// Returns the kind of value that serde expected.
 fn wanted_kind(wanted: &str) -> &'static str {
     match wanted {
         "a boolean" => "true or false",
@@ -216,7 +217,7 @@ impl fmt::Display for Slip {
     }
 }
 
-/// What is wrong, without the place.
+/// The error without its place.
 enum Said<'a> {
     Unknown { path: &'a str, name: &'a str },
     Missing { path: &'a str, name: &'a str },
@@ -251,18 +252,18 @@ impl Coded for Slip {
         }
     }
 
-    fn told(&self) -> Told {
+    fn details(&self) -> Told {
         let said = self.said();
         match (self.place, &said) {
             (Some((line, Some(column))), _) => {
                 Told::new("slip-at", &[("line", &line), ("column", &column), ("what", self)])
-                    .with(Some(("what", said.told())))
+                    .with(Some(("what", said.details())))
             }
-            // Of the text as a whole, and in nobody's field: it is no TOML.
+            // The error concerns the text as a whole and no field: it is not TOML.
             (Some((line, None)), Said::Other { .. } | Said::Json) if !self.why.starts_with("invalid") => {
                 Told::new("spec-syntax", &[("line", &line), ("why", self)])
             }
-            _ => said.told(),
+            _ => said.details(),
         }
     }
 }
@@ -328,10 +329,10 @@ mod tests {
             ("EOF while parsing an object", "json-ends", vec![]),
             ("a law needs a day", "slip", vec![("why", "a law needs a day")]),
         ] {
-            let plain = Slip::of(message);
-            assert_eq!((plain.told().code, fields(&plain.told())), (code, want.clone()), "{message}");
-            let placed = Slip::of(&format!("{message} at line 12 column 5"));
-            let told = placed.told();
+            let plain = Slip::from_message(message);
+            assert_eq!((plain.details().code, fields(&plain.details())), (code, want.clone()), "{message}");
+            let placed = Slip::from_message(&format!("{message} at line 12 column 5"));
+            let told = placed.details();
             let why = placed.to_string();
             assert_eq!(why, plainly(message).trim_start_matches("edits[2].turn: "));
             assert!(
@@ -348,9 +349,12 @@ mod tests {
     #[test]
     fn a_hint_is_no_choice() {
         let plain = "unknown variant `laom`, expected `sand` or `loam`";
-        let slip = Slip::of(&format!("soil: {plain}{} at line 1 column 2", Slip::of(plain).hint()));
+        let slip = Slip::from_message(&format!(
+            "soil: {plain}{} at line 1 column 2",
+            Slip::from_message(plain).hint()
+        ));
         assert_eq!((slip.hint().as_str(), slip.to_string().as_str()), ("; is `loam` meant?", plain));
-        assert_eq!(slip.told().causes["what"].fields["choices"], "sand, loam");
+        assert_eq!(slip.details().causes["what"].fields["choices"], "sand, loam");
     }
 
     #[test]
@@ -360,8 +364,12 @@ mod tests {
         let once = codes.clone();
         Slip::codes(&mut codes);
         assert_eq!(codes, once);
-        for slip in [Slip::of("x"), Slip::of("x at line 1 column 2"), Slip::in_field("", Some(3), "x")] {
-            let told = slip.told();
+        for slip in [
+            Slip::from_message("x"),
+            Slip::from_message("x at line 1 column 2"),
+            Slip::in_field("", Some(3), "x"),
+        ] {
+            let told = slip.details();
             assert!(codes.iter().any(|(code, names)| *code == told.code && names.len() == told.fields.len()));
         }
     }

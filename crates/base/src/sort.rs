@@ -1,20 +1,19 @@
-//! Sorting that is compiled once.
+//! Sorting routines that are compiled only once.
 //!
-//! The standard library's sorts are made anew for each comparison, some 8 KB of machine code each: sixty of them were
-//! a tenth of what a browser downloads. Here only the comparison itself is new at each call.
+//! The standard library's sorts are compiled anew for each comparison, at some 8 KB of machine code each: sixty of them
+//! were a tenth of what a browser downloads. Here only the comparison itself is new at each call.
 
 use core::cmp::Ordering;
 use litemap::LiteMap;
 
-/// Slices no longer than this are sorted where they are.
+/// Slices of at most this length are sorted in place.
 const SHORT: usize = 16;
 
-/// Sorts by a comparison; what compares equal keeps its order.
+/// Sorts by a comparison; equal rows keep their order.
 ///
-/// As `slice::sort_by`, with these differences: the rows move at the end, once, and a slice of more than 16 rows takes
-/// 8 bytes of memory for each. For sorts of numbers there is [`sort_numbers`]; where
-/// sorting rows without order is what takes the time, those of the standard library are faster. Where `compare` is no
-/// total order, the rows come in some order.
+/// As `slice::sort_by`, with these differences: the rows move once, at the end, and a slice of more than 16 rows takes
+/// 8 bytes of memory for each. For numbers there is [`sort_numbers`]; where sorting unordered rows dominates the time,
+/// the sorts of the standard library are faster. If `compare` is not a total order, the resulting order is unspecified.
 ///
 /// ```
 /// let mut rows = ["three", "to", "be", "sorted"];
@@ -33,7 +32,7 @@ pub fn sort_by<T>(rows: &mut [T], mut compare: impl FnMut(&T, &T) -> Ordering) {
         return;
     }
     let mut order = sorted_order(rows.len(), &mut |a, b| compare(&rows[a as usize], &rows[b as usize]));
-    // Place after place takes its row; the row that was there goes where the next one comes from.
+    // Cycle by cycle, each place receives its row; the displaced row moves on to the place that the next one leaves.
     for first in 0..rows.len() {
         let mut to = first;
         loop {
@@ -58,7 +57,7 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_unstable_by(f64::total_cmp);
 }
 
-/// The middle one of numbers, of an even count the upper of the two; none of none.
+/// Returns the median: of an even count the upper of the two middle numbers, `None` of an empty list.
 ///
 /// ```
 /// assert_eq!(base::median(vec![3.0, 1.0, 9.0, 2.0]), Some(3.0));
@@ -69,9 +68,10 @@ pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
     numbers.get(numbers.len() / 2).copied()
 }
 
-/// Puts the first `n` of rows in an order before the others, each part in some order, the last of the first in its place.
+/// Moves the first `n` rows of an order before the others; each part is unordered, but the last of the first part is in
+/// its place.
 ///
-/// As `select_nth_unstable_by`, one routine for all. `n`: 1 to the number of rows.
+/// As `select_nth_unstable_by`, compiled once for all callers. `n`: 1 to the number of rows.
 pub fn first_of(rows: &mut [usize], n: usize, compare: &mut dyn FnMut(&usize, &usize) -> Ordering) {
     rows.select_nth_unstable_by(n - 1, compare);
 }
@@ -79,11 +79,12 @@ pub fn first_of(rows: &mut [usize], n: usize, compare: &mut dyn FnMut(&usize, &u
 /// A set as a map without values.
 pub type Set<K> = LiteMap<K, ()>;
 
-/// A map of rows, of which the last with a key stays.
+/// Makes a map of rows; of several with one key the last stays.
 ///
 /// A sorted vector: a tree of the standard library adds four to twelve kilobytes for each kind of row to what a browser
-/// downloads. A row that comes after all others is put in at once, any other moves those behind it; so this is for rows
-/// that come in order, or are few. To collect rows adds a sort for each kind of them: here they are put in one by one.
+/// downloads. Inserting a row after all others is immediate, inserting any other moves those behind it; so this is for
+/// rows that come in order, or are few. `collect` would compile a sort for each kind of row: here the rows are inserted
+/// one by one.
 ///
 /// ```
 /// assert_eq!(base::map_of([(2, 'b'), (1, 'a')])[&1], 'a');
@@ -96,20 +97,20 @@ pub fn map_of<K: Ord, V>(rows: impl IntoIterator<Item = (K, V)>) -> LiteMap<K, V
     map
 }
 
-/// A set, made as [`map_of`] makes maps.
+/// Makes a set as [`map_of`] makes maps.
 pub fn set_of<K: Ord>(keys: impl IntoIterator<Item = K>) -> Set<K> {
     map_of(keys.into_iter().map(|key| (key, ())))
 }
 
-/// Sorts by a key; what has the same key keeps its order. As [`sort_by`].
+/// Sorts by a key; rows of equal keys keep their order. As [`sort_by`].
 pub fn sort_by_key<T, K: Ord>(rows: &mut [T], mut key: impl FnMut(&T) -> K) {
     sort_by(rows, |a, b| key(a).cmp(&key(b)));
 }
 
-/// The numbers from 0 to `n` in the order of a comparison; what compares equal stays in order.
+/// Returns the numbers from 0 to `n` in the order of a comparison; equal ones keep their order.
 ///
-/// Cost: n log r comparisons for rows that rise and fall in r runs; so a drawn line, which does that a few times, takes
-/// little more than n.
+/// Cost: n log r comparisons for rows that rise and fall in r runs; a drawn line, which has few, takes little more than
+/// n.
 ///
 /// ```
 /// let heights = [1.5_f64, 0.5, 1.0];
@@ -146,7 +147,7 @@ pub fn sorted_order(n: usize, compare: &mut dyn FnMut(u32, u32) -> Ordering) -> 
     order
 }
 
-/// Makes runs that rise, of [`SHORT`] rows at least but for the last: where each ends.
+/// Makes rising runs of at least [`SHORT`] rows, except for the last, and returns the end of each.
 fn runs(order: &mut [u32], compare: &mut dyn FnMut(u32, u32) -> Ordering) -> Vec<usize> {
     let (n, mut ends, mut first) = (order.len(), Vec::new(), 0);
     while first < n {
@@ -158,7 +159,7 @@ fn runs(order: &mut [u32], compare: &mut dyn FnMut(u32, u32) -> Ordering) -> Vec
         if falls {
             order[first..end].reverse();
         }
-        // A run too short for a merge takes what follows, row by row.
+        // A run too short for a merge is extended by the rows that follow, by insertion.
         let least = (first + SHORT).min(n);
         while end < least {
             let mut at = end;
@@ -198,7 +199,7 @@ mod tests {
                 assert_eq!(ours, theirs, "{n} rows");
                 sort_by(&mut ours, |a, b| a.1.cmp(&b.1));
                 assert_eq!(ours, rows, "{n} rows by key");
-                // Rises and falls, as a line that is drawn to and fro.
+                // Rises and falls, like a line drawn to and fro.
                 let mut waves: Vec<(i64, usize)> = (0..n)
                     .map(|i| ((i as i64 % 60 - 30).abs() / 2 + (rows[i].0 % 3) as i64 / 2, i))
                     .collect();

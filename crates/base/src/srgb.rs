@@ -1,10 +1,10 @@
-//! The curve of sRGB (IEC 61966-2-1).
+//! The transfer curve of sRGB (IEC 61966-2-1).
 
 use std::sync::OnceLock;
 
 use crate::ops;
 
-/// A share of light, 0 to 1, of an sRGB value from 0 to 1.
+/// Returns the linear light, 0 to 1, of an sRGB value from 0 to 1.
 ///
 /// ```
 /// assert_eq!((base::linear_of_srgb(0.0), base::linear_of_srgb(1.0)), (0.0, 1.0));
@@ -14,12 +14,12 @@ pub fn linear_of_srgb(srgb: f64) -> f64 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ops::powf((srgb + 0.055) / 1.055, 2.4) }
 }
 
-/// The sRGB value, 0 to 1, of a share of light from 0 to 1.
+/// Returns the sRGB value, 0 to 1, of linear light from 0 to 1.
 pub fn srgb_of_linear(light: f64) -> f64 {
     if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * ops::powf(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// The share of light of an sRGB byte: [`linear_of_srgb`] of it, of which there are but 256.
+/// Returns the linear light of an sRGB byte: [`linear_of_srgb`] from a table of 256 entries.
 #[inline]
 pub fn light_of_byte(byte: u8) -> f64 {
     static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
@@ -27,7 +27,7 @@ pub fn light_of_byte(byte: u8) -> f64 {
     TABLE.get_or_init(|| core::array::from_fn(of))[usize::from(byte)]
 }
 
-/// The nearest sRGB byte of a share of light; what lies beyond 0 and 1 is taken for those, and what is no number for 0.
+/// Returns the sRGB byte nearest to a linear light; values beyond 0 and 1 are clamped, NaN becomes 0.
 ///
 /// ```
 /// assert!((0..=255).all(|b| base::byte_of_light(base::light_of_byte(b)) == b));

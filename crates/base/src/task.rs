@@ -1,4 +1,4 @@
-//! How something is computed (never what): cancellation, threads, clocks, budgets.
+//! The means of a computation, never its subject: cancellation, threads, clocks, budgets.
 
 use core::fmt;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::{Budget, OverBudget};
 
-/// A flag that a shell sets and a computation polls; the other way goes how far the computation is.
+/// A flag that a shell sets and a computation polls; in return the computation reports its progress through it.
 ///
 /// ```
 /// let token = base::CancelToken::new();
@@ -21,12 +21,12 @@ pub struct CancelToken(Arc<Shared>);
 #[derive(Debug, Default)]
 struct Shared {
     cancelled: AtomicBool,
-    /// 1 + the share that is done, in ten thousandths; 0 while nothing was told.
+    /// 1 + the share that is done, in ten thousandths; 0 before the first report.
     done: AtomicU32,
 }
 
 impl CancelToken {
-    /// A token that nobody has cancelled.
+    /// Creates a token that nobody has cancelled.
     pub fn new() -> Self {
         Self::default()
     }
@@ -44,7 +44,7 @@ impl CancelToken {
         if self.0.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// The computation tells which share of it is done, 0 to 1, for people who wait. It never goes back.
+    /// Reports the share of the computation that is done, 0 to 1, for people who wait. It never decreases.
     pub fn reached(&self, share: f64) {
         if share >= 0.0 {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 10,000")]
@@ -53,13 +53,13 @@ impl CancelToken {
         }
     }
 
-    /// The share that is done, 0 to 1; `None` where the computation does not tell.
+    /// Returns the share that is done, 0 to 1; `None` if the computation does not report it.
     pub fn share(&self) -> Option<f64> {
         let done = self.0.done.load(Ordering::Relaxed).checked_sub(1)?;
         Some(f64::from(done) / 10_000.0)
     }
 
-    /// Forgets the share, before another computation.
+    /// Resets the share before another computation.
     pub fn forget(&self) {
         self.0.done.store(0, Ordering::Relaxed);
     }
@@ -70,18 +70,18 @@ impl CancelToken {
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Why a computation ended before its result.
+/// Reason why a computation ended without a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Stopped {
-    /// The user asked for it.
+    /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// It would have been too much.
+    /// A limit of the budget was exceeded.
     #[error(transparent)]
     OverBudget(#[from] OverBudget),
 }
 
-/// Runs independent jobs, on as many threads as the shell allows. The core never makes threads itself.
+/// Runs independent jobs, on as many threads as the shell allows. The core never creates threads itself.
 pub trait Executor: Sync {
     /// Calls `job(0)` to `job(n - 1)`, each once, in any order, and returns when all are done.
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync));
@@ -97,22 +97,22 @@ impl Executor for Serial {
     }
 }
 
-/// Tells how far a computation is that hands its work to an executor in rounds of which nobody knows how many there will
-/// be: each round goes through two fifths of what was left before it.
+/// Reports the progress of a computation that hands its work to an executor in an unknown number of rounds: each round
+/// counts as two fifths of the share that was left before it.
 #[derive(Debug)]
 pub struct Telling<'a> {
     run: Run<'a>,
-    /// The share that is done before the next round.
+    /// Share that is done before the next round.
     done: Mutex<f64>,
 }
 
 impl<'a> Telling<'a> {
-    /// Rounds of a computation of which this share is done, 0 to 1.
+    /// Starts to report the rounds of a computation of which the share `done`, 0 to 1, is finished.
     pub fn from(done: f64, run: &Run<'a>) -> Self {
         Self { run: *run, done: Mutex::new(done) }
     }
 
-    /// The computation that tells.
+    /// Returns the run whose executor reports the progress.
     pub fn run(&self) -> Run<'_> {
         Run { executor: self, ..self.run }
     }
@@ -121,7 +121,7 @@ impl<'a> Telling<'a> {
 impl Executor for Telling<'_> {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
         const ROUND: f64 = 0.4;
-        // Rounds within a round, and those after a fault, tell nothing.
+        // Nested rounds, and those after a panic, report nothing.
         let Ok(mut done) = self.done.try_lock() else { return self.run.executor.for_each(n, job) };
         let round = ROUND * (1.0 - *done);
         let (from, finished) = (*done, AtomicU32::new(0));
@@ -134,7 +134,7 @@ impl Executor for Telling<'_> {
     }
 }
 
-/// `(0..n).map(f)`, spread over `executor`, collected in index order: the same result for any thread count.
+/// Computes `(0..n).map(f)`, spread over `executor`, collected in index order: the same result for any thread count.
 ///
 /// ```
 /// assert_eq!(base::map_indexed(&base::Serial, 4, |i| i * i), [0, 1, 4, 9]);
@@ -152,7 +152,8 @@ pub fn map_indexed<T: Send>(executor: &dyn Executor, n: usize, f: impl Fn(usize)
     values
 }
 
-/// [`map_indexed`] that looks before each job whether it is still wanted: make a job at most some ten milliseconds long.
+/// As [`map_indexed`], but checks before each job whether the run was cancelled: a job should take at most some ten
+/// milliseconds.
 ///
 /// # Errors
 /// [`Cancelled`]: at least one job was not done.
@@ -172,7 +173,7 @@ pub fn map_until_cancelled<T: Send>(
     map_indexed(run.executor, n, |i| run.cancel.check().map(|()| f(i))).into_iter().collect()
 }
 
-/// Time as the shell sees it: the core reads no clock of its own.
+/// Time as the shell provides it: the core reads no clock of its own.
 pub trait Clock: Sync {
     /// Milliseconds since any fixed moment.
     fn now_ms(&self) -> f64;
@@ -193,11 +194,11 @@ impl Clock for NoClock {
 pub struct Run<'a> {
     /// Polled between steps.
     pub cancel: &'a CancelToken,
-    /// Where independent parts are computed.
+    /// Executor of the independent parts.
     pub executor: &'a dyn Executor,
     /// Read for the stage times of the report only.
     pub clock: &'a dyn Clock,
-    /// How much may be made. What is more is refused, never made smaller.
+    /// Limits on the amount that may be made. A larger request is refused, never reduced.
     pub budget: Budget,
 }
 
@@ -211,7 +212,7 @@ impl fmt::Debug for Run<'_> {
 }
 
 impl Run<'static> {
-    /// One thread, no clock, never cancelled: what tests and doctests want.
+    /// Creates a run with one thread and no clock, never cancelled, for tests and doctests.
     pub fn plain() -> Self {
         static NEVER: std::sync::OnceLock<CancelToken> = std::sync::OnceLock::new();
         Self {

@@ -1,4 +1,4 @@
-//! Turns with the same bits on native and WASM.
+//! Rotations with the same bits on native and WASM.
 //!
 //! `glam`'s own functions of angles call the platform's sine and cosine; these call [`ops`]. Everything else of
 //! `glam` (products, lengths, normals) is made of exact operations and may be used as it is.
@@ -7,14 +7,14 @@ use glam::{DQuat, DVec2, DVec3};
 
 use crate::ops;
 
-/// The unit vector at an angle in radians from +x towards +y.
+/// Returns the unit vector at an angle in radians from +x towards +y.
 #[inline]
 pub fn direction(angle: f64) -> DVec2 {
     let (s, c) = ops::sin_cos(angle);
     DVec2::new(c, s)
 }
 
-/// The turn by an angle in radians about a unit vector, right-handed.
+/// Returns the rotation by an angle in radians about a unit vector, right-handed.
 ///
 /// ```
 /// use glam::DVec3;
@@ -27,7 +27,7 @@ pub fn about(axis: DVec3, angle: f64) -> DQuat {
     DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
 }
 
-/// The least turn of one unit vector onto another; by any half turn where they are opposite.
+/// Returns the smallest rotation of one unit vector onto another; of opposite vectors any half turn.
 pub fn between(from: DVec3, to: DVec3) -> DQuat {
     const NEARLY: f64 = 1.0 - 2.0 * f64::EPSILON;
     let dot = from.dot(to);
@@ -41,7 +41,7 @@ pub fn between(from: DVec3, to: DVec3) -> DQuat {
     }
 }
 
-/// A share of a turn, the shorter way round: none at 0, all of it at 1 (spherical linear interpolation).
+/// Returns a share of a rotation, the shorter way round: none at 0, all of it at 1 (spherical linear interpolation).
 ///
 /// ```
 /// use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Conversions at the door: inside, everything is metres, radians, days, right-handed, +Y up.
+//! Unit conversions at input and output: inside, everything is metres, radians, days, right-handed, +Y up.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,9 +9,9 @@ use crate::ops::PI;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} must be a finite number in {range}, not {value}")]
 pub struct NotFinite {
-    /// What the value is.
+    /// Name of the value.
     pub what: &'static str,
-    /// The range that it must lie in.
+    /// The range that the value must lie in.
     pub range: &'static str,
     /// The value given.
     pub value: f64,
@@ -29,7 +29,7 @@ pub struct NotFinite {
 pub struct Angle(f64);
 
 impl Angle {
-    /// An angle given in degrees.
+    /// Makes an angle given in degrees.
     ///
     /// # Errors
     /// [`NotFinite`] for NaN and infinities.
@@ -41,12 +41,12 @@ impl Angle {
         }
     }
 
-    /// Radians.
+    /// Returns the angle in radians.
     pub const fn radians(self) -> f64 {
         self.0
     }
 
-    /// Degrees, for files and people.
+    /// Returns the angle in degrees, for files and people.
     pub fn degrees(self) -> f64 {
         self.0 * (180.0 / PI)
     }
@@ -57,7 +57,7 @@ impl Angle {
 pub struct Tolerance(f64);
 
 impl Tolerance {
-    /// A tolerance in metres.
+    /// Makes a tolerance given in metres.
     ///
     /// # Errors
     /// [`NotFinite`] unless `metres` is finite and above 0.
@@ -69,7 +69,7 @@ impl Tolerance {
         }
     }
 
-    /// Metres.
+    /// Returns the tolerance in metres.
     pub const fn get(self) -> f64 {
         self.0
     }
@@ -88,26 +88,31 @@ pub enum Unit {
     /// Millimetres.
     #[serde(rename = "mm")]
     Millimetre,
+    /// International feet.
+    #[serde(rename = "ft")]
+    Foot,
 }
 
-crate::words!(Unit { Metre = "m", Centimetre = "cm", Millimetre = "mm" });
+crate::words!(Unit { Metre = "m", Centimetre = "cm", Millimetre = "mm", Foot = "ft" });
 
 impl Unit {
-    /// The plural of its name.
+    /// Returns the plural of its name.
     pub const fn plural(self) -> &'static str {
         match self {
             Self::Metre => "metres",
             Self::Centimetre => "centimetres",
             Self::Millimetre => "millimetres",
+            Self::Foot => "feet",
         }
     }
 
-    /// Metres per unit.
+    /// Returns the metres per unit.
     pub const fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,
             Self::Centimetre => 0.01,
             Self::Millimetre => 0.001,
+            Self::Foot => 0.3048,
         }
     }
 }
@@ -130,7 +135,7 @@ pub enum TimeUnit {
 crate::words!(TimeUnit { Day = "day", Week = "week", Month = "month", Year = "year" });
 
 impl TimeUnit {
-    /// Whether it is the usual one, which files leave out.
+    /// Whether the unit is the default one, which files leave out.
     pub fn is_day(&self) -> bool {
         *self == Self::Day
     }

@@ -1,6 +1,6 @@
-//! Choices by the words that people write: [`words!`](crate::words).
+//! Enums whose choices users write as words: [`words!`](crate::words).
 
-/// Lists the choices of an enum with their words: gives it `ALL`, `word` and `from_word`.
+/// Lists the choices of an enum with their words: defines `ALL`, `word` and `from_word`.
 ///
 /// ```
 /// #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,19 +17,19 @@ macro_rules! words {
             /// Every choice, in the order in which lists have them.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$choice),+];
 
-            /// The word that the choice is written as.
+            /// Returns the word that the choice is written as.
             pub const fn word(self) -> &'static str {
                 match self {
                     $(Self::$choice => $word,)+
                 }
             }
 
-            /// The choice that a word stands for.
+            /// Returns the choice that a word stands for.
             pub fn from_word(word: &str) -> Option<Self> {
                 Self::ALL.into_iter().find(|choice| choice.word() == word)
             }
 
-            /// The words of all choices, as a list for people.
+            /// Lists the words of all choices for people.
             pub fn words() -> String {
                 $crate::either(&Self::ALL.map(Self::word))
             }

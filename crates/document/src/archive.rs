@@ -1,43 +1,43 @@
-//! Zip files: written whole, read with bounds.
+//! Zip files: written in full, read within bounds.
 
 use base::LiteMap;
 use std::io::{Read as _, Write as _};
 
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveWriter};
 
-/// Most entries of an archive that are looked at.
+/// Most entries of an archive that are examined.
 const MAX_ENTRIES: usize = 256;
 
-/// From this size on an entry is packed fast: a model as text takes seconds otherwise.
+/// Size in bytes from which an entry is compressed fast: a model as text takes seconds otherwise.
 const FAST_FROM: usize = 2 << 20;
 
-/// Why a zip file could not be read or written.
+/// Reason why a zip file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ArchiveError {
-    /// The bytes are no zip file, or a damaged one.
+    /// The bytes are not a zip file, or are a damaged one.
     #[error("it is not a whole zip file ({0}); save or copy it again")]
     Zip(#[from] rawzip::Error),
     /// An entry is damaged.
     #[error("its entry \"{name}\" is damaged ({source}); save or copy it again")]
     Entry {
-        /// The entry.
+        /// Name of the entry.
         name: String,
-        /// What is wrong.
+        /// The underlying error.
         source: std::io::Error,
     },
-    /// Beyond the bounds that keep hostile files harmless.
+    /// The archive exceeds the bounds that keep hostile files harmless.
     #[error("it holds more than {limit} {what}: it was not made by Burgeon")]
     TooMuch {
-        /// What is counted.
+        /// The limited quantity.
         what: &'static str,
         /// The bound.
         limit: usize,
     },
-    /// Packed in a way that we do not read.
+    /// The entry is compressed with a method that is not supported.
     #[error("its entry \"{name}\" is packed with a method that is not read; use plain deflate")]
     Method {
-        /// The entry.
+        /// Name of the entry.
         name: String,
     },
     /// Writing failed.
@@ -74,7 +74,7 @@ pub fn pack(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ArchiveError> {
     Ok(out)
 }
 
-/// Unpacks the entries of these names; others are skipped unread. No entry grows beyond `limit` bytes.
+/// Unpacks the entries of these names; others are skipped unread. No entry may exceed `limit` bytes.
 pub(crate) fn unpack(
     bytes: &[u8],
     names: &[&str],
@@ -100,7 +100,7 @@ pub(crate) fn unpack(
         let inner: Box<dyn std::io::Read + '_> =
             if deflated { Box::new(flate2::bufread::DeflateDecoder::new(data)) } else { Box::new(data) };
         let mut content = Vec::new();
-        // One byte more than allowed tells a file at the limit from one beyond it.
+        // One byte more than allowed distinguishes a file at the limit from one beyond it.
         let bounded = local.verifying_reader(inner).take(limit as u64 + 1);
         let damaged = |source| ArchiveError::Entry { name: (*name).into(), source };
         { bounded }.read_to_end(&mut content).map_err(damaged)?;

@@ -2,12 +2,12 @@
 
 use crate::{Command, CommandError, Document, Event};
 
-/// One step of the history: what one undo takes back.
+/// One step of the history: the unit of undo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What it is called: [`Command::name`] of its first command, or the gesture's name.
+    /// Name of the step: [`Command::name`] of its first command, or the gesture's name.
     pub name: String,
-    /// What happened, in order.
+    /// Its events, in order.
     pub events: Vec<Event>,
 }
 
@@ -34,32 +34,32 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// An editor of a document that was read; its history is empty.
+    /// Makes an editor of a document that was read; its history is empty.
     pub fn new(document: Document) -> Self {
         Self { document, ..Self::default() }
     }
 
-    /// The document as it is now, an open gesture included.
+    /// Returns the document as it is now, an open gesture included.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// Grows with every change, undo and redo included; never returns to an earlier value.
+    /// Returns a number that grows with every change, undo and redo included, and never returns to an earlier value.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Steps that can be undone, oldest first.
+    /// Returns the steps that can be undone, oldest first.
     pub fn done(&self) -> &[Step] {
         &self.done
     }
 
-    /// Steps that can be redone; the next one is last.
+    /// Returns the steps that can be redone; the next one is last.
     pub fn undone(&self) -> &[Step] {
         &self.undone
     }
 
-    /// Does what a command asks, as one step, or as part of the open gesture.
+    /// Executes a command, as one step or as part of the open gesture.
     ///
     /// # Errors
     /// [`CommandError`]; then nothing changed.
@@ -90,7 +90,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Replaces what the open gesture did so far by one command: a drag shows its latest state only.
+    /// Replaces all changes of the open gesture so far by one command: a drag shows its latest state only.
     ///
     /// # Errors
     /// [`CommandError`]; then the gesture is as it was before the call.
@@ -107,7 +107,7 @@ impl Editor {
                 step.events = events;
                 Ok(())
             }
-            // Dragged back to where it began.
+            // Dragged back to its start.
             Err(CommandError::Nothing(_)) => {
                 step.events.clear();
                 Ok(())
@@ -122,7 +122,7 @@ impl Editor {
         outcome
     }
 
-    /// Closes the gesture; if it changed anything it is one step now. Returns whether it did.
+    /// Closes the gesture; if it changed anything, it becomes one step. Returns whether it did.
     pub fn commit(&mut self) -> bool {
         let Some(step) = self.gesture.take() else { return false };
         let changed = !step.events.is_empty();
@@ -132,7 +132,7 @@ impl Editor {
         changed
     }
 
-    /// Closes the gesture and takes back what it did.
+    /// Closes the gesture and reverts it.
     pub fn cancel_gesture(&mut self) {
         if let Some(step) = self.gesture.take() {
             step.events.iter().rev().for_each(|e| e.revert(&mut self.document));
@@ -140,7 +140,7 @@ impl Editor {
         }
     }
 
-    /// Takes the last step back and returns its name; an open gesture is closed first.
+    /// Undoes the last step and returns its name; an open gesture is closed first.
     pub fn undo(&mut self) -> Option<&str> {
         self.commit();
         let step = self.done.pop()?;
@@ -150,7 +150,7 @@ impl Editor {
         self.undone.last().map(|s| s.name.as_str())
     }
 
-    /// Does the last step that was taken back again and returns its name.
+    /// Redoes the last step that was undone and returns its name.
     pub fn redo(&mut self) -> Option<&str> {
         self.commit();
         let step = self.undone.pop()?;

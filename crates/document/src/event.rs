@@ -1,49 +1,49 @@
-//! What happened to a document, with all that is needed to take it back.
+//! Changes of a document, with all that is needed to revert them.
 
 use crate::state::Settings;
 use crate::{Document, DocumentPlant, DocumentStroke, PlantId};
 
-/// Strokes and the rows at which they lie, ascending.
+/// Strokes with their rows, ascending.
 pub type StrokeRows = Vec<(usize, DocumentStroke)>;
 
 /// One change, applied forwards and backwards.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// Strokes came in at these rows (of the sketch after).
+    /// Strokes were inserted at these rows (of the sketch after the change).
     Added {
-        /// Whose.
+        /// The plant of the strokes.
         plant: PlantId,
         /// Row and stroke.
         rows: StrokeRows,
         /// The next stroke number, before and after.
         next_stroke: (u32, u32),
     },
-    /// Strokes at these rows (of the sketch before) went.
+    /// Strokes at these rows (of the sketch before the change) were removed.
     Removed {
-        /// Whose.
+        /// The plant of the strokes.
         plant: PlantId,
         /// Row and stroke.
         rows: StrokeRows,
     },
     /// Strokes were edited in place.
     Edited {
-        /// Whose.
+        /// The plant of the strokes.
         plant: PlantId,
         /// Row, before, after.
         rows: Vec<(usize, DocumentStroke, DocumentStroke)>,
     },
-    /// The settings of a plant were set.
+    /// The settings of a plant were changed.
     Set {
-        /// Whose.
+        /// The plant.
         plant: PlantId,
-        /// As they were.
+        /// The settings before.
         before: Box<Settings>,
-        /// As they are.
+        /// The settings after.
         after: Box<Settings>,
     },
-    /// A plant came in.
+    /// A plant was added.
     PlantAdded {
-        /// Its row after.
+        /// Its row after the change.
         row: usize,
         /// The plant.
         plant: Box<DocumentPlant>,
@@ -52,31 +52,31 @@ pub enum Event {
         /// The next stroke number, before and after.
         next_stroke: (u32, u32),
     },
-    /// A plant went.
+    /// A plant was removed.
     PlantRemoved {
-        /// Its row before.
+        /// Its row before the change.
         row: usize,
         /// The plant.
         plant: Box<DocumentPlant>,
     },
-    /// The scene got another name.
+    /// The scene was renamed.
     Renamed {
-        /// As it was.
+        /// The name before.
         before: String,
-        /// As it is.
+        /// The name after.
         after: String,
     },
-    /// Another document took the place.
+    /// Another document replaced this one.
     Opened {
-        /// As it was.
+        /// The document before.
         before: Box<Document>,
-        /// As it is.
+        /// The document after.
         after: Box<Document>,
     },
 }
 
 impl Event {
-    /// Makes the change.
+    /// Applies the change.
     pub(crate) fn apply(&self, document: &mut Document) {
         match self {
             Self::Added { plant, rows, next_stroke } => {
@@ -98,7 +98,7 @@ impl Event {
         }
     }
 
-    /// Takes the change back; `document` must be as [`Event::apply`] left it.
+    /// Reverts the change; `document` must be as [`Event::apply`] left it.
     pub(crate) fn revert(&self, document: &mut Document) {
         match self {
             Self::Added { plant, rows, next_stroke } => {

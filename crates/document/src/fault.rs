@@ -1,4 +1,4 @@
-//! What can be wrong with the settings of a plant.
+//! Faults in the settings of a plant.
 
 use bloom::FlowerSpec;
 use spec::RangeFault;
@@ -9,72 +9,72 @@ pub(crate) const MAX_OBSTACLES: usize = 64;
 pub(crate) const MAX_PICTURES: usize = 16;
 /// Most layers of a drawing.
 pub(crate) const MAX_LAYERS: usize = 100;
-/// Most edits by hand of a plant.
+/// Most hand edits of a plant.
 pub(crate) const MAX_EDITS: usize = 1000;
 
-/// The first setting of a plant that is at fault, with what to do.
+/// The first setting of a plant that is at fault, with a remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingFault {
-    /// A number is out of the range that its schema has.
+    /// A number is out of the range in its schema.
     #[error(transparent)]
     Range(#[from] RangeFault),
-    /// More obstacles than a tree may have.
+    /// The tree has too many obstacles.
     #[error("a tree has at most {MAX_OBSTACLES} obstacles; join some of them into one mesh")]
     Obstacles,
-    /// An obstacle that is nowhere.
+    /// A number of an obstacle is not finite.
     #[error("every number of an obstacle must be finite")]
     Obstacle,
-    /// Too far away, or too large or small.
+    /// The plant stands too far away, or is too large or small.
     #[error("a plant stands within 100 km, 0.001 to 1000 times its size")]
     Place,
-    /// A photograph that cannot be seen.
+    /// The photograph cannot be seen.
     #[error("the photograph lies out of reach; put it nearer and make it larger")]
     Photo,
-    /// A material whose picture is not there.
+    /// The picture of a material is missing.
     #[error("the picture of a material is not there; choose one")]
     Picture,
-    /// More pictures than a plant may have.
+    /// The plant has too many pictures.
     #[error("a plant has at most {MAX_PICTURES} pictures; use one of them again")]
     Pictures,
-    /// A layer without a name, or two of one name.
+    /// A layer has no name, or two layers share one.
     #[error("each layer of a drawing has a name of its own")]
     LayerName,
-    /// More layers than a drawing may have.
+    /// The drawing has too many layers.
     #[error("a drawing has at most {MAX_LAYERS} layers; join some")]
     Layers,
-    /// No such flower.
+    /// There is no flower of this name.
     #[error("the flower {name:?} is unknown; use one of {}", FlowerSpec::PRESETS.join(", "))]
     Flower {
-        /// What was asked for, shortened.
+        /// The requested name, shortened.
         name: String,
     },
-    /// A growth law that cannot be used.
+    /// The growth law cannot be used.
     #[error("{0}")]
     Law(String),
-    /// A petal colour that is not known.
+    /// The petal colour is unknown.
     #[error("the petal colour {word:?} is unknown; use one of {known}")]
     Petals {
-        /// What was asked for.
+        /// The requested colour.
         word: String,
-        /// All that there are.
+        /// List of the known colours.
         known: String,
     },
-    /// Edits by hand of what has no branches.
+    /// The plant has hand edits but no branches.
     #[error("a {maker} has no branches to edit by hand")]
     NoBranches {
         /// The word of its maker.
         maker: &'static str,
     },
-    /// More edits than a plant may have.
+    /// The plant has too many hand edits.
     #[error("a plant has at most {MAX_EDITS} edits by hand; remove some")]
     Edits,
-    /// An edit that cannot be.
+    /// A hand edit is not possible.
     #[error("edit {row} by hand: {why}")]
     Edit {
-        /// From 0.
+        /// Row of the edit, from 0.
         row: usize,
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
 }

@@ -1,6 +1,6 @@
 //! The project file: a zip of versioned JSON.
 //!
-//! `manifest.json` says what the file is and which version it has; `document.json` is the document in that version. Each
+//! `manifest.json` names the kind of file and its version; `document.json` is the document in that version. Each
 //! version has its own structs here, so that the types of the program may change without breaking files.
 
 use std::sync::Arc;
@@ -29,12 +29,13 @@ use crate::{
     Settings, WornPicture, WornPictures,
 };
 
-/// The version that is written, as `manifest.json` names it.
+/// The version that is written, in the words of `manifest.json`.
 pub const PROJECT_SCHEMA: &str = "project/7";
-/// Earlier versions that are read.
+/// Earlier versions that can be read.
 const EARLIER: [&str; 6] = ["project/1", "project/2", "project/3", "project/4", "project/5", "project/6"];
-/// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
+/// Largest project file that is read; 64 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
+/// Largest entry of a project file that is read; 256 MiB.
 const MAX_ENTRY_BYTES: usize = 256 << 20;
 /// Most strokes of a document that is read.
 const MAX_STROKES: usize = 100_000;
@@ -43,10 +44,10 @@ const MAX_POINTS: usize = 4_000_000;
 
 const MANIFEST: &str = "manifest.json";
 const DOCUMENT: &str = "document.json";
-/// The photograph of versions 1 and 2; later ones have `photo-ROW.png`.
+/// Entry of the photograph in versions 1 and 2; later ones have `photo-ROW.png`.
 const PHOTO: &str = "photo.png";
 
-/// Why a project could not be read or written.
+/// Reason why a project could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProjectError {
@@ -56,37 +57,37 @@ pub enum ProjectError {
     /// An entry is missing.
     #[error("project file: there is no \"{0}\" in it; it was not made by Burgeon or is damaged")]
     Missing(String),
-    /// Made by a version that this one does not know.
+    /// The file has a version that this program does not know.
     #[error(
         "project file: its version is {found:?}, this program reads {PROJECT_SCHEMA:?}; take a newer Burgeon"
     )]
     Version {
-        /// What `manifest.json` says.
+        /// The version in `manifest.json`.
         found: String,
     },
-    /// An entry is no JSON, or not of the version.
+    /// An entry is not JSON, or does not fit the version.
     #[error("project file, {entry}: {}", base::brief(&base::plainly(&source.to_string())))]
     Json {
-        /// Which entry.
+        /// Name of the entry.
         entry: &'static str,
-        /// What and where.
+        /// The error with its place.
         source: serde_json::Error,
     },
     /// A stroke is not sound.
     #[error("project file, stroke {row}: {what}")]
     Stroke {
-        /// Its row, from 0.
+        /// Row of the stroke, from 0.
         row: usize,
-        /// What is wrong and what to do.
+        /// The fault and its remedy.
         what: &'static str,
     },
-    /// The spec of a tree is none.
+    /// The spec of a tree is invalid.
     #[error("project file, spec of a tree: {0}")]
     Tree(#[source] SpecFault),
     /// A setting is out of its range.
     #[error("project file: {0}")]
     Setting(#[source] SettingFault),
-    /// The scene does not hold together.
+    /// The scene is inconsistent.
     #[error("project file: {0}; it was not made by Burgeon or is damaged")]
     Scene(crate::DocumentFault),
     /// The photograph cannot be used.
@@ -95,10 +96,10 @@ pub enum ProjectError {
     /// A picture of a material cannot be used.
     #[error("project file: {0}")]
     Picture(#[from] PictureError),
-    /// Beyond the bounds that keep hostile files harmless.
+    /// The file exceeds the bounds that keep hostile files harmless.
     #[error("project file: more than {limit} {what}; split the drawing")]
     TooMuch {
-        /// What is counted.
+        /// The limited quantity.
         what: &'static str,
         /// The bound.
         limit: usize,
@@ -212,13 +213,13 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
     }
 }
 
-/// Reads a `.burgeon` file. The bytes may be hostile: sizes are bounded and nothing is believed unseen.
+/// Reads a `.burgeon` file. The bytes may be hostile: sizes are bounded and everything is checked.
 ///
 /// Guaranteed: a document whose `validate()` is empty. Its plants and strokes are numbered from 0.
-/// Not guaranteed: that the numbers of a tree's spec or the marks of a leaf make one; their makers report that.
+/// Not guaranteed: that the numbers of a tree's spec or the marks of a leaf yield a plant; their makers report that.
 ///
 /// # Errors
-/// [`ProjectError`]: what is wrong, where, and what to do.
+/// [`ProjectError`]: the fault, its place and its remedy.
 pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     if bytes.len() > MAX_PROJECT_BYTES {
         return Err(ProjectError::TooMuch { what: "bytes", limit: MAX_PROJECT_BYTES });
@@ -234,7 +235,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     }
     let document = entries.remove(DOCUMENT).ok_or_else(|| missing(DOCUMENT))?;
     let json = |source| ProjectError::Json { entry: DOCUMENT, source };
-    // Every version is read by its own structs and then brought forward; each has a file in fixtures/projects.
+    // Every version is read by its own structs and then converted to the next; each has a file in fixtures/projects.
     let second = |v1: DocumentV1| DocumentV2::from(v1);
     let third = |v2: DocumentV2| DocumentV3::from(v2);
     let fifth = |v4: DocumentV4| DocumentV5::try_from(v4).map_err(ProjectError::Setting);
@@ -277,10 +278,10 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     checked(file, photo, &mut pictures)
 }
 
-/// Before plants had groups, so many or more of one name and maker were shown as one.
+/// Least number of plants with one name and maker that were shown as one entry before plants had groups.
 const ALIKE: usize = 3;
 
-/// Puts plants of files without groups into those in which they were shown.
+/// Puts plants of files without groups into the groups in which they were shown.
 fn group_alike(file: &mut DocumentV7) {
     let key = |p: &PlantV4<MakerV5>| (p.name.clone(), core::mem::discriminant(&p.maker));
     let keys: Vec<_> = file.plants.iter().map(key).collect();
@@ -291,7 +292,7 @@ fn group_alike(file: &mut DocumentV7) {
     }
 }
 
-/// As text, because commands are read from text: reading from bytes would be all the same code once more.
+/// As text, because commands are read from text: reading from bytes would compile all that code a second time.
 fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::Error> {
     serde_json::from_str(core::str::from_utf8(bytes).map_err(serde_json::Error::custom)?)
 }
@@ -375,7 +376,7 @@ fn checked(
         document.plants.push(DocumentPlant { id: PlantId(document.next_plant), settings, strokes: kept });
         document.next_plant += 1;
     }
-    // Points are sound by now: this looks at what refers to other plants.
+    // Points are sound by now: this checks the references to other plants.
     let fault = document.validate().next();
     fault.map_or(Ok(document), |fault| Err(ProjectError::Scene(fault)))
 }
@@ -395,7 +396,7 @@ fn from_sketch(
     Ok((Maker::Sketch(Box::new(settings)), strokes))
 }
 
-/// Obstacles lie beside the spec, with their names.
+/// Stores obstacles next to the spec, with their names.
 fn spec_to_file(spec: &TreeSpec) -> Value {
     let mut value = spec::to_json(spec);
     value.as_object_mut().map(|fields| fields.remove("obstacles"));
@@ -422,7 +423,9 @@ base::coded!(ProjectError {
     Self::Archive(why) => "project-archive" { why },
     Self::Missing(name) => "project-missing" { name },
     Self::Version { found } => "project-version" { found },
-    Self::Json { entry, source } => "project-json" { entry, why = &base::Slip::of(&source.to_string()) => base::Slip },
+    Self::Json { entry, source } => "project-json" {
+        entry, why = &base::Slip::from_message(&source.to_string()) => base::Slip
+    },
     Self::Stroke { row, what } => "project-stroke" { row, why = what },
     Self::Setting(why) => "project-setting" { why => SettingFault },
     Self::Scene(why) => "project-scene" { why },

@@ -1,17 +1,17 @@
-//! What a person made and what is saved: descriptions, never results.
+//! The user's work, as it is saved: descriptions, never results.
 //!
 //! `Command -> Editor (decide -> Event -> apply) -> Document <-> project file (.burgeon)`
 //!
 //! | module | owns |
 //! |---|---|
-//! | `state` | [`Document`]: plants with name, seed, place, edits by hand, strokes |
-//! | `makers` | [`Maker`]: what each maker is asked for |
-//! | `command` | [`Command`]: what can be asked, checked against the document; a small enum for each maker |
-//! | `event` | [`Event`]: what happened; applied forwards and backwards |
+//! | `state` | [`Document`]: plants with name, seed, place, hand edits, strokes |
+//! | `makers` | [`Maker`]: the settings of each maker |
+//! | `command` | [`Command`]: requests, checked against the document; a small enum for each maker |
+//! | `event` | [`Event`]: changes, applied forwards and backwards |
 //! | `editor` | [`Editor`]: named, unlimited undo; a gesture is one step |
 //! | `file` | [`read_project`], [`write_project`]: a zip of versioned JSON |
 //! | `versions` | the structs of each version of the file |
-//! | `photo`, `picture` | [`Photo`]: what lies under the drawing; [`WornPicture`]: what organs wear |
+//! | `photo`, `picture` | [`Photo`]: the picture under the drawing; [`WornPicture`]: pictures of materials |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
 //! Coordinates of strokes are the drawing's own unit, y up, as in [`ink::Drawing`].

@@ -1,4 +1,4 @@
-//! What each maker is asked for: sketch, tree, measured leaf, flower.
+//! Settings of each maker: sketch, tree, measured leaf, flower.
 
 use std::sync::Arc;
 
@@ -15,7 +15,8 @@ use crate::fault::{MAX_LAYERS, MAX_OBSTACLES};
 use crate::names::shortened;
 use crate::{Photo, PlantId, SettingFault};
 
-/// The maker of a plant, and what it is asked for. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].
+/// The maker of a plant with its settings. Strokes of a sketch are stored separately, in
+/// [`crate::DocumentPlant::strokes`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Maker {
@@ -25,7 +26,7 @@ pub enum Maker {
     Tree(Box<TreeSettings>),
     /// Measured.
     Leaf(Box<LeafMaker>),
-    /// A species that opens.
+    /// A flower that opens.
     Flower(Box<FlowerMaker>),
 }
 
@@ -36,7 +37,7 @@ impl Default for Maker {
 }
 
 impl Maker {
-    /// The word of the maker in files and reports: `sketch`, `tree`, `leaf` or `flower`.
+    /// Returns the word of the maker in files and reports: `sketch`, `tree`, `leaf` or `flower`.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::Sketch(_) => "sketch",
@@ -46,7 +47,7 @@ impl Maker {
         }
     }
 
-    /// The plant of the scene whose leaf this one bears.
+    /// Returns the plant of the scene whose leaf this one bears.
     pub fn leaf(&self) -> Option<PlantId> {
         match self {
             Self::Sketch(s) => s.leaf,
@@ -55,7 +56,7 @@ impl Maker {
         }
     }
 
-    /// Whether it makes plants with stems and branches, which take edits by hand: all but a single leaf.
+    /// Whether it makes plants with stems and branches, which take hand edits: all except a single leaf.
     pub const fn branches(&self) -> bool {
         !matches!(self, Self::Leaf(_))
     }
@@ -68,7 +69,7 @@ impl Maker {
         }
     }
 
-    /// What is out of its range.
+    /// Returns the first setting that is out of its range.
     pub(crate) fn fault(&self) -> Option<SettingFault> {
         match self {
             Self::Sketch(s) => s.fault(),
@@ -79,20 +80,20 @@ impl Maker {
     }
 }
 
-/// A plant that is drawn: how the drawing is understood.
+/// A drawn plant: how the drawing is interpreted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SketchSettings {
-    /// How the drawing is understood and given depth.
+    /// Settings for interpreting the drawing and giving it depth.
     pub sketch: SketchSpec,
-    /// How the plant is meshed and coloured. Its `seed` is not saved: it always follows the plant's.
+    /// Settings for meshing and colouring the plant. Its `seed` is not saved: it always follows the plant's.
     pub skin: SkinSpec,
     /// Its layers from below upwards, at most 100; strokes name theirs.
     pub layers: Vec<Layer>,
-    /// What lies under the drawing.
+    /// The photograph under the drawing.
     pub photo: Option<Photo>,
-    /// The day at which its flowers are shown, 0 (bud) to 100; none shows them as they are drawn.
+    /// Day on which its flowers are shown, 0 (bud) to 100; `None` shows them as they are drawn.
     pub day: Option<f64>,
-    /// The plant of the scene whose leaf this one bears in the place of its own.
+    /// The plant of the scene whose leaf this one bears instead of its own.
     pub leaf: Option<PlantId>,
 }
 
@@ -115,18 +116,18 @@ fn layers_fault(layers: &[Layer]) -> Option<SettingFault> {
     (!named).then_some(SettingFault::LayerName)
 }
 
-/// A tree that is grown. Its spec is checked when it is grown.
+/// A grown tree. Its spec is checked when it is grown.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeSettings {
     /// The species that the spec came from.
     pub preset: Option<String>,
     /// The spec, without obstacles.
     pub spec: Arc<TreeSpec>,
-    /// What it grows around, in the tree's own coordinates; at most 64.
+    /// The obstacles that it grows around, in the tree's own coordinates; at most 64.
     pub obstacles: Vec<NamedObstacle>,
-    /// How the tree is meshed. Its `seed` is not saved.
+    /// Settings for meshing the tree. Its `seed` is not saved.
     pub skin: SkinSpec,
-    /// The plant of the scene whose leaf this tree bears in the place of its own.
+    /// The plant of the scene whose leaf this tree bears instead of its own.
     pub leaf: Option<PlantId>,
 }
 
@@ -142,22 +143,22 @@ impl TreeSettings {
     }
 }
 
-/// An obstacle with the name under which a person knows it.
+/// An obstacle with a name for its user.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedObstacle {
-    /// For lists; at most 200 characters.
+    /// Name in lists; at most 200 characters.
     pub name: String,
     /// The solid.
     pub shape: Arc<Obstacle>,
 }
 
-/// A leaf that was measured.
+/// A measured leaf.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeafMaker {
-    /// What was measured, as a file.
+    /// The measurements, as a file.
     pub data: LeafData,
-    /// How the leaf is made of it.
+    /// Settings for making the leaf from them.
     pub settings: LeafSpec,
 }
 
@@ -186,7 +187,7 @@ pub struct FlowerMaker {
     pub spec: Arc<FlowerSpec>,
     /// Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. 0 to 100, default 4.
     pub day: f64,
-    /// A fitted law that sets the pace; none takes the species' own.
+    /// Fitted law that sets the pace; `None` keeps the species' own.
     pub law: Option<Arc<GrowthLaw>>,
 }
 
@@ -198,7 +199,7 @@ impl Default for FlowerMaker {
 }
 
 impl FlowerMaker {
-    /// A flower that comes with the program, on the day of `default`; none for a species that is not known.
+    /// Returns a flower that comes with the program, on the day of `default`; `None` for an unknown species.
     pub fn of_preset(name: &str) -> Option<Self> {
         let spec = Arc::new(bloom::preset(name)?);
         Some(Self { preset: Some(name.into()), spec, ..Self::default() })
@@ -211,11 +212,11 @@ impl FlowerMaker {
     }
 }
 
-/// The flower of a new plant.
+/// Species of a new flower.
 pub(crate) const DEFAULT_FLOWER: &str = "lily";
-/// Its day, on which most species are half open.
+/// Day of a new flower, on which most species are half open.
 pub(crate) const DEFAULT_DAY: f64 = 4.0;
-/// The last day at which flowers are shown: the longest opening and wilting together.
+/// Last day on which flowers are shown: the longest opening and wilting together.
 const LAST_DAY: f64 = 100.0;
 
 fn day_fault(day: f64) -> Option<SettingFault> {
@@ -226,7 +227,7 @@ fn day_fault(day: f64) -> Option<SettingFault> {
     (!(0.0..=LAST_DAY).contains(&day)).then(fault)
 }
 
-/// What is out of its range.
+/// Returns the first setting that is out of its range.
 fn fault<T: spec::Spec>(settings: &T) -> Option<SettingFault> {
     spec::check(settings).err().map(SettingFault::Range)
 }

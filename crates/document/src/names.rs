@@ -7,7 +7,7 @@ pub(crate) fn too_long(name: &str) -> bool {
     name.chars().count() > NAME_LENGTH
 }
 
-/// A name cut to its greatest length, without line breaks.
+/// Returns a name cut to its greatest length, without line breaks.
 pub(crate) fn shortened(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { ' ' } else { c }).take(NAME_LENGTH).collect()
 }

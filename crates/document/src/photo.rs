@@ -8,22 +8,23 @@ use spec::RangeFault;
 
 use crate::SettingFault;
 
-/// Most bytes and longest side of a photograph that a document holds: 24 MiB, 4,096 pixels.
+/// Most bytes of a photograph that a document holds: 24 MiB.
 pub const MAX_PHOTO_BYTES: usize = 24 << 20;
+/// Longest side of a photograph that a document holds, pixels.
 const MAX_SIDE: u32 = 4096;
 
-/// A photograph under the drawing, and how it lies there.
+/// A photograph under the drawing, with its place there.
 ///
-/// It is held as PNG: what every platform decodes to the same pixels.
+/// It is stored as PNG, which every platform decodes to the same pixels.
 #[derive(Clone, PartialEq)]
 pub struct Photo {
     pub(crate) png: Arc<[u8]>,
     pub(crate) size: (u32, u32),
-    /// How it lies under the drawing.
+    /// Its place under the drawing.
     pub place: PhotoPlace,
 }
 
-/// How a photograph lies under the drawing.
+/// Place of a photograph under the drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhotoPlace {
@@ -33,7 +34,7 @@ pub struct PhotoPlace {
     pub y: f64,
     /// Width, in the drawing's unit, above 0; the height follows from the picture. Default 1.
     pub width: f64,
-    /// How strongly it shows under the drawing, 0 to 1, default 0.5. No matter for the plant.
+    /// Opacity under the drawing, 0 to 1, default 0.5. Does not affect the plant.
     pub opacity: f64,
     /// Whether organs that were traced over it take its colours. Default true.
     pub paint: bool,
@@ -52,19 +53,19 @@ impl std::fmt::Debug for Photo {
     }
 }
 
-/// Why a picture was not taken as a photograph.
+/// Reason why a picture was not accepted as a photograph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PhotoError {
-    /// Not the first bytes of a PNG.
+    /// The bytes do not start like a PNG.
     #[error("the photograph is no PNG; save it as PNG")]
     NotPng,
-    /// Beyond the bounds.
+    /// The picture exceeds the bounds.
     #[error("the photograph has more than {MAX_SIDE} pixels a side or 24 MB; make it smaller")]
     TooLarge,
 }
 
-/// Pixels across and down, each above 0, as the header of a PNG says; `None` for what is none.
+/// Returns the pixels across and down, each above 0, in the header of a PNG; `None` for other bytes.
 pub(crate) fn png_size(png: &[u8]) -> Option<(u32, u32)> {
     let header = png.get(..24).filter(|h| h.starts_with(b"\x89PNG\r\n\x1a\n") && &h[12..16] == b"IHDR")?;
     let number = |at: usize| u32::from_be_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
@@ -73,12 +74,13 @@ pub(crate) fn png_size(png: &[u8]) -> Option<(u32, u32)> {
 }
 
 impl Photo {
-    /// A photograph whose left lower corner is at the origin, one unit wide, half strong, that paints.
+    /// Makes a photograph whose lower left corner is at the origin, one unit wide, half opaque, that gives its colours
+    /// to organs.
     ///
-    /// Guaranteed: its size is believed from the header and bounded. Not guaranteed: that its pixels decode.
+    /// Guaranteed: its size is read from the header and bounded. Not guaranteed: that its pixels decode.
     ///
     /// # Errors
-    /// [`PhotoError`] for what is no PNG or is too large.
+    /// [`PhotoError`] if it is not a PNG or is too large.
     ///
     /// ```
     /// assert!(document::Photo::new(b"GIF89a".as_slice().into()).is_err());
@@ -91,17 +93,17 @@ impl Photo {
         Ok(Self { png, size, place: PhotoPlace::default() })
     }
 
-    /// The picture's bytes.
+    /// Returns the picture's bytes.
     pub fn png(&self) -> &Arc<[u8]> {
         &self.png
     }
 
-    /// Pixels across and down, each 1 to 4,096.
+    /// Returns the pixels across and down, each 1 to 4,096.
     pub fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    /// Height in the drawing's unit.
+    /// Returns the height in the drawing's unit.
     pub fn height(&self) -> f64 {
         self.place.width * f64::from(self.size.1) / f64::from(self.size.0)
     }
@@ -112,7 +114,7 @@ impl Photo {
         (at.x..=at.x + at.width).contains(&x) && (at.y..=at.y + self.height()).contains(&y)
     }
 
-    /// What is out of its range.
+    /// Returns the first setting that is out of its range.
     pub(crate) fn fault(&self) -> Option<SettingFault> {
         let near = |v: f64| v.abs() <= 1e9;
         let PhotoPlace { x, y, width, opacity, .. } = self.place;

@@ -1,4 +1,4 @@
-//! Pictures that organs wear.
+//! Pictures of materials.
 
 use base::LiteMap;
 use std::sync::{Arc, OnceLock};
@@ -10,13 +10,14 @@ use skin::{OrganMaterial, Pattern};
 use crate::SettingFault;
 use crate::photo::png_size;
 
-/// Most bytes and longest side of a picture: 8 MiB, 2,048 pixels.
+/// Most bytes of a picture: 8 MiB.
 const MAX_PICTURE_BYTES: usize = 8 << 20;
+/// Longest side of a picture, pixels.
 const MAX_SIDE: u32 = 2048;
 
-/// A picture that organs wear.
+/// A picture of a material that organs wear.
 ///
-/// It is held as PNG: what every platform decodes to the same pixels. Two pictures are equal if their files are.
+/// It is stored as PNG, which every platform decodes to the same pixels. Two pictures are equal if their files are.
 #[derive(Clone)]
 pub struct WornPicture {
     png: Arc<[u8]>,
@@ -35,25 +36,25 @@ impl std::fmt::Debug for WornPicture {
     }
 }
 
-/// Why a picture was not taken.
+/// Reason why a picture was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// Not the first bytes of a PNG.
+    /// The bytes do not start like a PNG.
     #[error("the picture is no PNG; save it as PNG")]
     NotPng,
-    /// Beyond the bounds.
+    /// The picture exceeds the bounds.
     #[error("the picture has more than {MAX_SIDE} pixels a side or 8 MB; make it smaller")]
     TooLarge,
 }
 
 impl WornPicture {
-    /// A picture from the bytes of a PNG.
+    /// Makes a picture from the bytes of a PNG.
     ///
-    /// Guaranteed: its size is believed from the header and bounded. Not guaranteed: that its pixels decode.
+    /// Guaranteed: its size is read from the header and bounded. Not guaranteed: that its pixels decode.
     ///
     /// # Errors
-    /// [`PictureError`] for what is no PNG or is too large.
+    /// [`PictureError`] if it is not a PNG or is too large.
     ///
     /// ```
     /// assert!(document::WornPicture::new(b"GIF89a".as_slice().into()).is_err());
@@ -66,19 +67,19 @@ impl WornPicture {
         Ok(Self { png, decoded: Arc::default() })
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn png(&self) -> &Arc<[u8]> {
         &self.png
     }
 
-    /// The name under which it is kept: the same for the same bytes.
+    /// Returns the name under which it is stored: the same for the same bytes.
     pub fn name(&self) -> String {
         let mut digest = Digest::new();
         digest.bytes(&self.png);
         digest.hex().chars().take(16).collect()
     }
 
-    /// Its pixels, decoded by `decode` at the first call; `None` if they do not decode.
+    /// Returns its pixels, decoded by `decode` at the first call; `None` if they do not decode.
     pub fn texture(&self, decode: impl FnOnce(&[u8]) -> Option<Texture>) -> Option<Arc<Texture>> {
         self.decoded.get_or_init(|| decode(&self.png).map(Arc::new)).clone()
     }
@@ -87,7 +88,7 @@ impl WornPicture {
 /// Pictures by their names.
 pub type WornPictures = LiteMap<String, WornPicture>;
 
-/// What is wrong with a material of a plant that has these pictures.
+/// Returns the fault in a material of a plant that has these pictures.
 pub(crate) fn material_fault(material: &OrganMaterial, pictures: &WornPictures) -> Option<SettingFault> {
     if let Err(fault) = spec::check(material) {
         return Some(SettingFault::Range(fault));

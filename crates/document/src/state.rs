@@ -1,4 +1,4 @@
-//! The document: a scene of plants, each with its maker's description.
+//! The document: a scene of plants, each with the description for its maker.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -22,22 +22,22 @@ use crate::{Maker, Photo, SettingFault, SketchSettings, WornPictures};
 pub struct DocumentStroke {
     /// Its name, unique in the whole document.
     pub id: StrokeId,
-    /// What the pen left; finite points, shared with the undo history.
+    /// The line as drawn; finite points, shared with the undo history.
     pub stroke: Arc<Stroke>,
-    /// The class that the person set; `None` leaves it to the classifier.
+    /// The class that the user set; `None` leaves it to the classifier.
     pub class: Option<StrokeClass>,
-    /// What the person was shown it as, clearly, when the last stroke was drawn: it is not read as something else without
-    /// clear evidence. `None` for what came from a file of strokes.
+    /// The class that the user was clearly shown when the last stroke was drawn: the stroke is not reclassified without
+    /// clear evidence. `None` for strokes from a file.
     pub shown: Option<StrokeClass>,
-    /// The material of the leaves and petals that are read from it; `None` leaves it to their plant.
+    /// The material of the leaves and petals of this stroke; `None` takes that of the plant.
     pub material: Option<Arc<OrganMaterial>>,
 }
 
-/// Where a plant stands: scaled, turned about the vertical, then moved.
+/// Place of a plant: scaled, turned about the vertical, then moved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Placement {
-    /// Where its origin stands, metres; each coordinate up to 100 km.
+    /// Position of its origin, metres; each coordinate up to 100 km.
     #[schemars(with = "[f64; 3]")]
     pub position: DVec3,
     /// Turn about +Y, degrees, counter-clockwise seen from above. Default 0.
@@ -60,39 +60,39 @@ impl Placement {
     }
 }
 
-/// Everything of a plant but its strokes.
+/// All data of a plant except its strokes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Name of the plant, for files and reports. At most 200 characters.
     pub name: String,
-    /// What all chance follows from. Default 1.
+    /// Seed of all random choices. Default 1.
     pub seed: Seed,
     /// Whether dice leave the seed alone. Default false.
     pub locked: bool,
-    /// Whether it stays where it stands. Default false.
+    /// Whether the plant's place is locked. Default false.
     pub fixed: bool,
-    /// Whether it is left out of the view and of exports of the scene. Default false.
+    /// Whether the plant is left out of the view and of exports of the scene. Default false.
     pub hidden: bool,
     /// The group it belongs to, by name; empty for none. At most 200 characters.
     pub group: String,
-    /// Where it stands.
+    /// Its place in the scene.
     pub placement: Placement,
-    /// The materials of its organs by their kinds; `strokes` is empty, as strokes have theirs with them.
+    /// The materials of its organs by their kinds; `strokes` is empty, as strokes store their own.
     pub wear: Wear,
     /// The pictures that its materials name, at most 16.
     pub pictures: WornPictures,
-    /// Its maker, and what the maker is asked for.
+    /// Its maker with its settings.
     pub maker: Maker,
-    /// Edits by hand, in the order in which they are done; of sketches and trees only, at most 1,000.
+    /// Hand edits, in the order in which they are applied; only for sketches and trees, at most 1,000.
     pub edits: Vec<PlantEdit>,
 }
 
-/// An edit by hand that is kept with a plant.
+/// A hand edit that is stored with a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantEdit {
-    /// What is done; shared with the undo history.
+    /// The edit; shared with the undo history.
     pub edit: Arc<HandEdit>,
-    /// Left out for now. Default false.
+    /// Whether the edit is switched off. Default false.
     pub off: bool,
 }
 
@@ -133,7 +133,7 @@ impl Settings {
         Some(SettingFault::Edit { row, why: why.to_string() })
     }
 
-    /// Forgets pictures that no material names; `strokes`: the materials of strokes.
+    /// Drops pictures that no material names; `strokes`: the materials of strokes.
     pub(crate) fn keep_pictures<'a>(&mut self, strokes: impl Iterator<Item = &'a OrganMaterial>) {
         let named = |m: &OrganMaterial| m.picture.clone();
         let worn = self.wear.materials().filter_map(named).chain(strokes.filter_map(named));
@@ -148,12 +148,12 @@ impl Settings {
         self.wear.materials().find_map(|m| material_fault(m, &self.pictures))
     }
 
-    /// The settings of a sketch; `None` for other makers.
+    /// Returns the settings of a sketch; `None` for other makers.
     pub fn sketch(&self) -> Option<&SketchSettings> {
         if let Maker::Sketch(s) = &self.maker { Some(s) } else { None }
     }
 
-    /// The photograph under a sketch.
+    /// Returns the photograph under a sketch.
     pub fn photo(&self) -> Option<&Photo> {
         self.sketch()?.photo.as_ref()
     }
@@ -168,22 +168,22 @@ pub struct DocumentPlant {
 }
 
 impl DocumentPlant {
-    /// Its name within the document.
+    /// Returns its number within the document.
     pub fn id(&self) -> PlantId {
         self.id
     }
 
-    /// Everything but its strokes.
+    /// Returns all its data except the strokes.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The strokes of a sketch in the order in which they were drawn; empty for other makers.
+    /// Returns the strokes of a sketch in the order in which they were drawn; empty for other makers.
     pub fn strokes(&self) -> &[DocumentStroke] {
         &self.strokes
     }
 
-    /// The strokes as the sketch maker takes them; row `i` is `strokes()[i]`. Cost: a copy of every point.
+    /// Returns the strokes as the sketch maker takes them; row `i` is `strokes()[i]`. Cost: a copy of every point.
     pub fn drawing(&self) -> Drawing {
         let hidden = |s: &DocumentStroke| self.layer_of(s).is_some_and(|l| l.hidden);
         let stroke = |s| Stroke { hidden: hidden(s), ..Stroke::clone(&s.stroke) };
@@ -191,18 +191,18 @@ impl DocumentPlant {
         Drawing { name: self.settings.name.clone(), strokes, layers: self.layers().to_vec() }
     }
 
-    /// The layers of a sketch from below upwards; none for other makers.
+    /// Returns the layers of a sketch from below upwards; empty for other makers.
     pub fn layers(&self) -> &[Layer] {
         self.settings.sketch().map_or(&[], |s| &s.layers)
     }
 
-    /// The layer of a stroke; `None` for the sheet itself.
+    /// Returns the layer of a stroke; `None` for the sheet itself.
     pub fn layer_of(&self, stroke: &DocumentStroke) -> Option<&Layer> {
         let name = stroke.stroke.layer.as_ref()?;
         self.layers().iter().find(|l| l.name == *name)
     }
 
-    /// Which organs wear which material: kinds, and strokes by row of [`DocumentPlant::drawing`].
+    /// Returns the materials of organs: by kinds, and of strokes by row of [`DocumentPlant::drawing`].
     pub fn wear(&self) -> Wear {
         let mut wear = Wear { strokes: Vec::new(), ..self.settings.wear.clone() };
         for (row, s) in (0..).zip(&self.strokes) {
@@ -218,22 +218,22 @@ impl DocumentPlant {
         wear
     }
 
-    /// Classes that the person set, by row of [`DocumentPlant::drawing`].
+    /// Returns the classes that the user set, by row of [`DocumentPlant::drawing`].
     pub fn classes(&self) -> base::LiteMap<u32, StrokeClass> {
         base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))))
     }
 
-    /// What strokes were shown as when the last one was drawn, by row of [`DocumentPlant::drawing`].
+    /// Returns the classes that were shown when the last stroke was drawn, by row of [`DocumentPlant::drawing`].
     pub fn shown(&self) -> base::LiteMap<u32, StrokeClass> {
         base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.shown?))))
     }
 
-    /// The row of a stroke.
+    /// Returns the row of a stroke.
     pub fn row(&self, id: StrokeId) -> Option<usize> {
         self.strokes.iter().position(|s| s.id == id)
     }
 
-    /// Materials without their pictures.
+    /// Removes the pictures from materials.
     fn leave_pictures(&mut self) {
         let plain = |m: &mut OrganMaterial| {
             if m.picture.take().is_some() {
@@ -270,14 +270,14 @@ impl DocumentPlant {
     }
 }
 
-/// What a person made: a scene of plants.
+/// The user's work: a scene of plants.
 ///
 /// ```
 /// use document::{Document, Editor, NewStroke, SketchCommand};
 /// use glam::DVec2;
 /// let mut editor = Editor::default();
 /// let plant = editor.document().plants()[0].id();
-/// editor.run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).of(plant))?;
+/// editor.run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).for_plant(plant))?;
 /// assert_eq!(editor.document().plants()[0].drawing().strokes.len(), 1);
 /// # Ok::<(), document::CommandError>(())
 /// ```
@@ -285,43 +285,43 @@ impl DocumentPlant {
 pub struct Document {
     pub(crate) name: String,
     pub(crate) plants: Vec<DocumentPlant>,
-    /// The number of the next stroke: above every id ever given in this document.
+    /// Number of the next stroke: above every id ever given in this document.
     pub(crate) next_stroke: u32,
-    /// The number of the next plant.
+    /// Number of the next plant.
     pub(crate) next_plant: u32,
 }
 
 impl Default for Document {
-    /// One empty sketch.
+    /// Returns a document with one empty sketch.
     fn default() -> Self {
         let plant = DocumentPlant { id: PlantId(0), settings: Settings::default(), strokes: Vec::new() };
         Self { name: "plant".into(), plants: vec![plant], next_stroke: 0, next_plant: 1 }
     }
 }
 
-/// Something that is wrong with a document.
+/// A fault of a document.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentFault {
-    /// Two strokes have one name.
+    /// Two strokes share a number.
     #[error("two strokes have the number {}", .0.0)]
     SameId(StrokeId),
-    /// A stroke's number was not given by this document yet.
+    /// A stroke has a number that this document has not assigned yet.
     #[error("stroke {} has a number that is not given yet", .0.0)]
     FutureId(StrokeId),
-    /// Two plants have one name, or one that was not given yet.
+    /// Two plants share a number, or one has a number that was not assigned yet.
     #[error("plant {} has a number that is taken or not given yet", .0.0)]
     PlantNumber(PlantId),
     /// A point is NaN or infinite, or there is no point.
     #[error("stroke {} has no point or one that is not finite", .0.0)]
     NotFinite(StrokeId),
-    /// A stroke lies on a layer that is not there.
+    /// A stroke lies on a layer that does not exist.
     #[error("stroke {} lies on a layer that is not there", .0.0)]
     Layer(StrokeId),
-    /// Strokes where no sketch is.
+    /// A plant that is not a sketch has strokes.
     #[error("plant {} has strokes but is no sketch", .0.0)]
     Strokes(PlantId),
-    /// A plant bears the leaf of one that is not there, of itself, or of one that has none of its own.
+    /// A plant bears the leaf of one that does not exist, of itself, or of one that has none of its own.
     #[error("plant {} bears the leaf of a plant that has none", .0.0)]
     Leaf(PlantId),
     /// The name is too long.
@@ -339,7 +339,8 @@ pub enum DocumentFault {
 pub(crate) const MAX_PLANTS: usize = 200;
 
 impl Document {
-    /// A document of a drawing as it was read: points that are not finite are left out, strokes without a point too.
+    /// Makes a document of a drawing as it was read: points that are not finite are left out, and strokes without
+    /// points too.
     pub fn from_drawing(drawing: &Drawing) -> Self {
         let mut document = Self { name: shortened(&drawing.name), ..Self::default() };
         let mut strokes = Vec::new();
@@ -360,7 +361,7 @@ impl Document {
         document
     }
 
-    /// Gives the first sketch what a plant with the same strokes wears: materials, pictures, layers.
+    /// Gives the first sketch the materials, pictures and layers of a plant with the same strokes.
     pub fn dress(&mut self, like: &DocumentPlant) {
         let Some(plant) = self.plants.first_mut().filter(|p| p.strokes.len() == like.strokes.len()) else {
             return;
@@ -372,30 +373,31 @@ impl Document {
         }
     }
 
-    /// Name of the scene, for its file. At most 200 characters.
+    /// Returns the name of the scene, for its file. At most 200 characters.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The plants in the order in which they came in.
+    /// Returns the plants in the order in which they were added.
     pub fn plants(&self) -> &[DocumentPlant] {
         &self.plants
     }
 
-    /// A plant by its name.
+    /// Returns a plant by its number.
     pub fn plant(&self, id: PlantId) -> Option<&DocumentPlant> {
         self.plants.iter().find(|p| p.id == id)
     }
 
-    /// The numbers that its plants go by.
+    /// Returns the numbers of its plants.
     pub fn numbers(&self) -> PlantNumbers {
         PlantNumbers { plants: self.plants.iter().map(DocumentPlant::id).collect(), next: self.next_plant }
     }
 
-    /// The same plants under other numbers, such as a session had that saved it: what names plants by number means them again.
+    /// Returns the same plants under other numbers, such as those of the session that saved it, so that references by
+    /// number stay valid.
     ///
     /// # Errors
-    /// [`DocumentFault::PlantNumber`] where the numbers are too few, too many, taken twice, or not below the next one.
+    /// [`DocumentFault::PlantNumber`] if the numbers are too few, too many, used twice, or not below the next one.
     ///
     /// ```
     /// use document::{Document, PlantId, PlantNumbers};
@@ -419,7 +421,8 @@ impl Document {
         fault.map_or(Ok(self), Err)
     }
 
-    /// A name that no group has: this one, or with the least number from 2 on behind it; nothing for nothing.
+    /// Returns a name that no group has: this one, or this one with the least free number from 2 on; an empty name
+    /// stays empty.
     pub(crate) fn free_group(&self, name: &str) -> String {
         if name.is_empty() {
             return String::new();
@@ -441,7 +444,7 @@ impl Document {
         self.plants.iter_mut().find(|p| p.id == id)
     }
 
-    /// The one plant, if it is a sketch that stands where it was drawn: such a document is a drawing.
+    /// Returns the only plant, if it is a sketch that stands where it was drawn: such a document is a drawing.
     pub fn only_sketch(&self) -> Option<&DocumentPlant> {
         let [plant] = self.plants.as_slice() else { return None };
         let s = &plant.settings;
@@ -459,8 +462,8 @@ impl Document {
         })
     }
 
-    /// A smaller document that looks the same: points on a grid of at most 1/10,000 of the drawing's diagonal, without
-    /// their times; without photographs and pictures, for which materials are plain. For links, not for files.
+    /// Returns a smaller document that looks the same: points on a grid of at most 1/10,000 of the drawing's diagonal,
+    /// without their times; without photographs and pictures, whose materials become plain. For links, not for files.
     pub fn compact(&self) -> Self {
         let mut document = self.clone();
         for plant in &mut document.plants {
@@ -479,7 +482,7 @@ impl Document {
         id
     }
 
-    /// Everything that is wrong; nothing, after any sequence of commands. Cost: linear in points.
+    /// Iterates over all faults; there are none after any sequence of commands. Cost: linear in points.
     pub fn validate(&self) -> impl Iterator<Item = DocumentFault> + '_ {
         let mut seen = BTreeSet::new();
         let strokes = self.plants.iter().flat_map(|p| &p.strokes).flat_map(move |s| {
@@ -517,8 +520,8 @@ impl Document {
     }
 }
 
-/// The stroke with finite points only; `None` if there is none. Unknown times and pressures stay unknown. Whether it is
-/// seen is its layer's matter.
+/// Returns the stroke with its finite points only; `None` if there are none. Unknown times and pressures stay unknown.
+/// Its layer decides whether it is visible.
 pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
     stroke.samples.retain(|p| p.at.is_finite());
     for p in &mut stroke.samples {
@@ -530,12 +533,12 @@ pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
     (!stroke.samples.is_empty()).then_some(stroke)
 }
 
-/// Whether a pen can be so wide, in the drawing's unit.
+/// Whether a pen can have this width, in the drawing's unit.
 pub(crate) fn is_width(width: f64) -> bool {
     (1e-9..=1e9).contains(&width)
 }
 
-/// The first setting that is out of its range, `None` if all are sound.
+/// Returns the first setting that is out of its range, `None` if all are sound.
 pub fn range_fault(settings: &Settings) -> Option<SettingFault> {
     let wear = || settings.wear_fault();
     settings

@@ -1,4 +1,4 @@
-//! The structs of each version of `document.json`, and how a version becomes the next.
+//! The structs of each version of `document.json`, and the conversion of a version to the next.
 
 use std::sync::Arc;
 
@@ -16,18 +16,18 @@ use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
 use crate::state::is_width;
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
 
-/// Version 7: as version 6, with groups of plants, and branches that are turned while they are moved. A program that reads
-/// version 6 would refuse these by the names of their fields.
+/// Version 7: as version 6, with groups of plants, and branches that are turned while they are moved. A program that
+/// reads version 6 would reject the new field names.
 pub(crate) type DocumentV7 = DocumentV6;
 
-/// Version 6: as version 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so the structs
-/// of version 5 have them too.
+/// Version 6: as version 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so
+/// the structs of version 5 have them too.
 pub(crate) type DocumentV6 = DocumentV5;
 
-/// Version 5: as version 4, with the whole spec of a flower, and plants that stay where they stand.
+/// Version 5: as version 4, with the whole spec of a flower, and plants whose place is locked.
 pub(crate) type DocumentV5 = DocumentV4<MakerV5>;
 
-/// Version 4: as version 3, and edits by hand.
+/// Version 4: as version 3, with hand edits.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DocumentV4<M = MakerV3> {
@@ -49,21 +49,21 @@ pub(crate) struct PlantV4<M> {
     /// From version 7 on.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub(crate) group: String,
-    /// Metres.
+    /// Position, metres.
     #[serde(default)]
     pub(crate) position: [f64; 3],
     #[serde(default)]
     pub(crate) yaw_deg: f64,
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    /// From version 6 on; of strokes, see [`StrokeV1::material`].
+    /// From version 6 on; for strokes, see [`StrokeV1::material`].
     #[serde(default, skip_serializing_if = "is_bare", deserialize_with = "spec::through_json::read")]
     pub(crate) wear: Wear,
     /// The names of its pictures `picture-NAME.png`; from version 6 on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) pictures: Vec<String>,
     pub(crate) maker: M,
-    /// In the order in which they are done.
+    /// In the order in which they are applied.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) edits: Vec<EditV4>,
 }
@@ -145,7 +145,7 @@ impl From<DocumentV3> for DocumentV4 {
     }
 }
 
-/// Form 3: a scene of plants.
+/// Version 3: a scene of plants.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DocumentV3 {
@@ -184,7 +184,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// Tagged from outside: a tag inside would make the reader hold every point twice.
+/// Externally tagged: an internal tag would make the reader hold every point twice.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[expect(clippy::large_enum_variant, reason = "one for each plant, and only while a file is read or written")]
@@ -225,10 +225,10 @@ pub(crate) struct SketchV3 {
     #[serde(default)]
     pub(crate) skin: SkinV1,
     pub(crate) strokes: Vec<StrokeV1>,
-    /// From below upwards; from version 6 on.
+    /// Layers from below upwards; from version 6 on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) layers: Vec<Layer>,
-    /// How `photo-ROW.png` lies under the drawing, with ROW the plant's.
+    /// Place of `photo-ROW.png` under the drawing, with ROW the plant's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) photo: Option<PhotoPlace>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -263,7 +263,7 @@ pub(crate) struct ObstacleV3 {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LeafV3 {
-    /// Name and text of the file of marks or veins.
+    /// Name of the file of marks or veins; `text` is its text.
     pub(crate) file: String,
     pub(crate) data: String,
     #[serde(default, deserialize_with = "spec::through_json::read")]
@@ -282,7 +282,7 @@ pub(crate) struct FlowerV5 {
     pub(crate) law: Option<GrowthLaw>,
 }
 
-/// A species by name, and what was chosen otherwise.
+/// A species by name, with the settings that differ from it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FlowerV3 {
@@ -354,7 +354,7 @@ impl From<DocumentV2> for DocumentV3 {
     }
 }
 
-/// Version 2: as version 1, and a photograph.
+/// Version 2: as version 1, with a photograph.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DocumentV2 {
@@ -424,7 +424,7 @@ pub(crate) struct StrokeV1 {
     pub(crate) mode: StrokeMode,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) class: Option<StrokeClass>,
-    /// What it was shown as when the last stroke was drawn.
+    /// Class in which it was shown when the last stroke was drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) shown: Option<StrokeClass>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

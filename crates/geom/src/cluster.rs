@@ -1,4 +1,4 @@
-//! Points -> clusters, without their number being known.
+//! Groups points into clusters of unknown number.
 
 use crate::kd::KdTree2;
 use crate::vector::Vector;
@@ -7,13 +7,12 @@ use glam::DVec2;
 // Flat-kernel paths settle in about 10 steps; 100 bounds a path that creeps along a ridge.
 const MAX_STEPS: usize = 100;
 
-/// Mean shift with a flat kernel: the cluster number of each point, numbered by first member.
+/// Mean shift with a flat kernel: returns the cluster number of each point, numbered by first member.
 ///
-/// Each point walks to the mean of the points within `bandwidth` until it rests; resting places closer than
-/// `bandwidth` are one cluster, the most crowded first. The number of clusters is not given. An unusable
-/// point is a cluster of its own, as is every distinct point when `bandwidth` is not positive. The result
-/// depends on nothing but the input. Cost per step: the number of pairs within reach, linear for points that
-/// are spread wider than the bandwidth.
+/// Each point moves to the mean of the points within `bandwidth` until it rests; resting places closer than `bandwidth`
+/// are one cluster, the most crowded first. An unusable point is a cluster of its own, as is every distinct point when
+/// `bandwidth` is not positive. The result depends on nothing but the input. Cost per step: the number of pairs within
+/// reach, linear for points that are spread wider than the bandwidth.
 ///
 /// Comaniciu and Meer 2002; used by He and Cheng (2021) on petal roots.
 ///
@@ -43,7 +42,7 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
             modes.push(rest);
         }
     }
-    // Only now that all modes are known: else equal points could go to different ones.
+    // Only now that all modes are known: otherwise equal points could go to different ones.
     let label = rests.into_iter().map(|rest| rest.and_then(|(rest, _)| nearest(&modes, rest)));
 
     let mut number: Vec<Option<usize>> = vec![None; modes.len()];
@@ -60,7 +59,7 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
         .collect()
 }
 
-/// Where the walk from `start` comes to rest, and how many points are within reach there.
+/// Returns the resting place of the walk from `start`, and the number of points within reach there.
 fn settle(
     points: &[DVec2],
     grid: &KdTree2,

@@ -1,4 +1,4 @@
-//! Points -> the outline round them that follows their bays, and triangles within an outline.
+//! Outlines of point sets that follow their bays, and triangulations within an outline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 use crate::polygon::signed_area;
 use crate::vector::Vector as _;
 
-/// The triangles between points, from which outlines of any closeness are made.
+/// The triangles between points, from which outlines of any radius are made.
 ///
 /// ```
 /// use glam::dvec2;
@@ -41,7 +41,7 @@ pub struct AlphaOutline {
 }
 
 impl AlphaShape {
-    /// Unusable points are on no outline. Cost: n log n.
+    /// Builds the shape, ignoring unusable points. Cost: n log n.
     pub fn new(points: &[DVec2]) -> Self {
         let Some((net, index)) = net(points) else { return Self::default() };
         let circle = |[a, b, c]: [usize; 3]| {
@@ -54,8 +54,9 @@ impl AlphaShape {
         Self { points: points.to_vec(), triangles: triangles.collect() }
     }
 
-    /// The outline of the largest piece of what triangles with circles of at most `radius` cover (Edelsbrunner, Kirkpatrick
-    /// and Seidel 1983). It touches itself nowhere: what hangs on one point is left out. `None` where nothing is covered.
+    /// Returns the outline of the largest piece of the area covered by triangles whose circumcircles have at most
+    /// `radius` (Edelsbrunner, Kirkpatrick and Seidel 1983). It does not touch itself: parts attached at one point only
+    /// are left out. `None` if nothing is covered.
     pub fn outline(&self, radius: f64) -> Option<AlphaOutline> {
         let kept = || self.triangles.iter().filter(|t| t.1 <= radius).map(|t| t.0);
         let sides: BTreeSet<[usize; 2]> = kept().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
@@ -81,7 +82,7 @@ impl AlphaShape {
                 }
                 at = next;
                 if let Some(seen) = line.iter().position(|&k| k == at) {
-                    // A loop is closed; what led to it goes on.
+                    // A closed loop ends here; the part before it continues.
                     let round = line.split_off(seen);
                     let corners: Vec<DVec2> = round.iter().map(|&k| self.points[k]).collect();
                     let area = signed_area(&corners);
@@ -106,10 +107,11 @@ impl AlphaShape {
     }
 }
 
-/// Triangles of `inner` points within an outline, counter-clockwise; corners count the outline first.
+/// Triangulates `inner` points within an outline, counter-clockwise; corner indices count the outline first.
 ///
-/// `lines` are pairs of inner points that are joined where nothing is in the way. Points outside are corners of no triangle.
-/// Guaranteed: the triangles cover the outline exactly. `None` for an outline that crosses itself or has no area.
+/// `lines` are pairs of inner points that are joined if nothing is in the way. Points outside are not corners of any
+/// triangle. Guaranteed: the triangles cover the outline exactly. `None` for an outline that crosses itself or has no
+/// area.
 ///
 /// ```
 /// use glam::DVec2;
@@ -177,7 +179,7 @@ pub fn triangulate_within(
     Some(inside.collect())
 }
 
-/// The triangulation of usable points, each place once, and which point each of its corners is.
+/// Returns the triangulation of usable points without repetitions, and the index of the point at each of its corners.
 fn net(points: &[DVec2]) -> Option<(ConstrainedDelaunayTriangulation<Point2<f64>>, Vec<usize>)> {
     let usable = || points.iter().copied().filter(|p| p.usable());
     let lo = usable().fold(DVec2::INFINITY, DVec2::min);
@@ -189,7 +191,7 @@ fn net(points: &[DVec2]) -> Option<(ConstrainedDelaunayTriangulation<Point2<f64>
     let mut corners = Vec::with_capacity(points.len());
     let mut seen = BTreeSet::new();
     for (k, p) in points.iter().enumerate().filter(|(_, p)| p.usable()) {
-        // From 1 to 2: no number is too small for exact predicates.
+        // From 1 to 2: there no number is too small for exact predicates.
         let p = (*p - lo) / size + DVec2::ONE;
         if seen.insert([p.x.to_bits(), p.y.to_bits()]) {
             index.push(k);

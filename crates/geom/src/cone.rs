@@ -9,16 +9,16 @@ use crate::vector::Vector;
 use base::ops;
 use glam::{DVec2, DVec3};
 
-// A point is put no deeper than this times its distance from the apex in the drawing: a generator within
-// 0.06 degrees of the line of sight cannot be told from that line.
+// Largest ratio of a point's depth to its distance from the apex in the drawing: a generator within 0.06 degrees of the
+// line of sight is indistinguishable from that line.
 const STEEPEST: f64 = 1e3;
-// Below this share of the axis towards the viewer the tips say nothing about which sheet they are on.
+// Share of the axis towards the viewer below which the tips do not determine their sheet.
 const EDGE_ON: f64 = 0.05;
-// Half opening of a flower seen from the front, where the drawing does not show it: 60 degrees.
+// Half opening of a flower seen from the front, which the drawing does not show: 60 degrees.
 const FRONT_HALF_ANGLE: f64 = ops::PI / 3.0;
-// No flower is a tube of more than this many radii.
+// Largest ratio of height to radius of a flower.
 const LONGEST: f64 = 20.0;
-// And none flatter than this many: a cone of height 0 has no upper side. One degree.
+// Least ratio of height to radius: a cone of height 0 has no upper side. One degree.
 const FLATTEST: f64 = 0.0175;
 
 /// A cone: apex, unit axis from the apex into the opening, half opening angle.
@@ -31,7 +31,7 @@ const FLATTEST: f64 = 0.0175;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Where the petals are rooted.
+    /// Point at which the petals are rooted.
     pub apex: DVec3,
     /// Unit vector from the apex into the cone.
     pub axis: DVec3,
@@ -39,7 +39,7 @@ pub struct Cone {
     pub half_angle: f64,
 }
 
-/// Which of the two crossings of a view ray with a cone.
+/// One of the two intersections of a view ray with a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConeSheet {
     /// The one nearer to the viewer (greater z).
@@ -49,7 +49,7 @@ pub enum ConeSheet {
 }
 
 impl ConeSheet {
-    /// The other sheet.
+    /// Returns the other sheet.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
@@ -59,22 +59,22 @@ impl ConeSheet {
     }
 }
 
-/// Where the view ray through a point meets the whole cone, relative to the apex.
+/// Intersections of the view ray through a point with the whole cone, relative to the apex.
 struct RayHits {
     lower: f64,
     upper: f64,
-    /// The ray lies more steeply than every generator: it meets the opening side once.
+    /// The ray is steeper than every generator: it meets the opening side once.
     inside: bool,
-    /// No real crossing with the opening side; both depths are those of the nearest tangent.
+    /// No real intersection with the opening side; both depths are those of the nearest tangent.
     missed: bool,
 }
 
 impl Cone {
-    /// World z of the point of the cone that the drawing shows at `xy`.
+    /// Returns the world z of the point of the cone that the drawing shows at `xy`.
     ///
-    /// Where the view ray meets the opening side of the cone once, `sheet` makes no difference. Outside the
-    /// silhouette the depth is that of the tangent point. Guaranteed: finite; at most a thousand times as far
-    /// from the apex in z as in the drawing; the apex's z if `xy` is not usable.
+    /// If the view ray meets the opening side of the cone once, `sheet` makes no difference. Outside the silhouette the
+    /// depth is that of the tangent point. Guaranteed: finite; at most a thousand times as far from the apex in z as in
+    /// the drawing; the apex's z if `xy` is not usable.
     ///
     /// He and Cheng (2021), Eq 3, in closed form (docs/papers.md).
     pub fn depth(&self, xy: DVec2, sheet: ConeSheet) -> f64 {
@@ -90,10 +90,10 @@ impl Cone {
         if z.is_finite() { z } else { self.apex.z }
     }
 
-    /// The sheet on which a petal lies, from its tip in the drawing and the height of the cone's rim.
+    /// Returns the sheet on which a petal lies, from its tip in the drawing and the height of the cone's rim.
     ///
-    /// The sheet whose depth at the tip is nearer to that of the rim's plane. Seen edge-on (axis within 3
-    /// degrees of the drawing plane) a single tip does not tell, and the answer is `Near`: use
+    /// The sheet whose depth at the tip is nearer to that of the rim's plane. Seen edge-on (axis within 3 degrees of
+    /// the drawing plane) a single tip does not determine the sheet, and the answer is `Near`: use
     /// [`Cone::sheets_for_tips`] there.
     pub fn sheet_for_tip(&self, tip: DVec2, height: f64) -> ConeSheet {
         if !tip.usable() || self.axis.z.abs() < EDGE_ON {
@@ -108,9 +108,9 @@ impl Cone {
         if (hits.lower - rim).abs() < (hits.upper - rim).abs() { ConeSheet::Far } else { ConeSheet::Near }
     }
 
-    /// The sheets of all petals of a flower: as [`Cone::sheet_for_tip`], and edge-on in turn.
+    /// Returns the sheets of all petals of a flower: as [`Cone::sheet_for_tip`], but alternating if seen edge-on.
     ///
-    /// Edge-on the tips, sorted across the axis, are laid on the near and the far sheet by turns, so that
+    /// Edge-on, the tips, sorted across the axis, are assigned to the near and the far sheet alternately, so that
     /// neighbours in the drawing do not share a sheet.
     pub fn sheets_for_tips(&self, tips: &[DVec2], height: f64) -> Vec<ConeSheet> {
         let mut sheets: Vec<ConeSheet> = tips.iter().map(|&tip| self.sheet_for_tip(tip, height)).collect();
@@ -140,21 +140,21 @@ impl Cone {
         let squared = q.length_squared();
         let inside = d > 0.0;
         let radicand = c * (s * s + d * squared);
-        // Behind the apex a ray that is flatter than the generators meets the other nappe only.
+        // Behind the apex a ray that is flatter than the generators meets only the other nappe.
         if radicand < 0.0 || (!inside && s < 0.0) {
             let tangent = if d == 0.0 { az * f64::INFINITY } else { -s * az / d };
             return RayHits { lower: tangent, upper: tangent, inside: false, missed: true };
         }
         let m = s * az;
         let sum = m + radicand.sqrt() * if m < 0.0 { -1.0 } else { 1.0 };
-        // The two roots of d z^2 + 2 m z + s^2 - c q^2, neither by a difference of nearly equal numbers. The
-        // second stays right when d vanishes, where the first goes to infinity.
+        // The two roots of d z^2 + 2 m z + s^2 - c q^2, neither by a difference of nearly equal numbers. The second
+        // stays valid when d vanishes, where the first goes to infinity.
         let second = if sum == 0.0 { 0.0 } else { (c * squared - s * s) / sum };
         let first = if d == 0.0 { second } else { -sum / d };
         RayHits { lower: first.min(second), upper: first.max(second), inside, missed: false }
     }
 
-    /// Whether the point of the drawing lies on the cone's picture (so that [`Cone::depth`] is no clamp).
+    /// Whether the point of the drawing lies on the cone's image (so that [`Cone::depth`] is not clamped).
     pub fn covers(&self, xy: DVec2) -> bool {
         xy.usable() && !self.hits(xy - self.apex.truncate()).missed
     }
@@ -181,13 +181,13 @@ pub struct FlowerCone {
     pub rho: f64,
 }
 
-/// The cone on which the petals of a flower lie, from its centre and its petals' tips in the drawing.
+/// Returns the cone on which the petals of a flower lie, from its centre and its petals' tips in the drawing.
 ///
-/// `None` for fewer than 3 usable tips, an unusable centre, or tips all in one place. `facing_viewer` decides
-/// what the drawing does not show: the same picture is that of a flower opening away. The rim is fitted by
-/// [`fit_ellipse`] for 5 tips and more if that makes sense, else by [`fit_ellipse_harmonic`]. From the front
-/// the height is not in the drawing and comes from a half opening of 60 degrees; ratios from 0.90 to 0.97 go over to
-/// that gradually. A rim that is no circle about the centre is that of a flat flower, which opens upwards.
+/// `None` for fewer than 3 usable tips, an unusable centre, or coincident tips. `facing_viewer` decides what the
+/// drawing does not show: a flower that opens away gives the same picture. The rim is fitted by [`fit_ellipse`] for 5
+/// tips and more if the result is plausible, otherwise by [`fit_ellipse_harmonic`]. From the front the height is not in
+/// the drawing and comes from a half opening of 60 degrees; ratios from 0.90 to 0.97 blend gradually. A rim that is not
+/// a circle about the centre is that of a flat flower, which opens upwards.
 ///
 /// He and Cheng (2021), section 5.1, corrected: docs/papers.md.
 pub fn flower_cone(centre: DVec2, tips: &[DVec2], facing_viewer: bool) -> Option<FlowerCone> {
@@ -202,7 +202,7 @@ pub fn flower_cone(centre: DVec2, tips: &[DVec2], facing_viewer: bool) -> Option
 
     let front_height = radius / ops::tan(FRONT_HALF_ANGLE);
     let front = DVec3::Z * sign;
-    // An error of 0.02 in rho costs 16 % of the height at rho = 0.94: from there on it is a guess anyway.
+    // An error of 0.02 in rho costs 16 % of the height at rho = 0.94: beyond that it is a guess anyway.
     let guess = ((rho - 0.90) / (0.97 - 0.90)).clamp(0.0, 1.0);
     let (axis, height) = if guess < 1.0 {
         let sine = if rho < EDGE_ON { 0.0 } else { rho };
@@ -218,10 +218,11 @@ pub fn flower_cone(centre: DVec2, tips: &[DVec2], facing_viewer: bool) -> Option
     (height > 0.0 && height.is_finite()).then_some(FlowerCone { cone, height, radius, rho })
 }
 
-/// The unit direction in the drawing towards which a tilted flower opens: from its centre to the middle of its rim.
+/// Returns the unit direction in the drawing towards which a tilted flower opens: from its centre to the centre of its
+/// rim.
 ///
-/// A flat flower has both in one place. Then it is one of the two directions of the rim's shorter axis, which look the
-/// same: the upper one, towards the light. From 0.05 to 0.10 radii one goes over to the other.
+/// In a flat flower both coincide. Then it is one of the two directions of the rim's shorter axis, which look the same:
+/// the upper one, towards the light. From 0.05 to 0.10 radii the two rules blend.
 fn towards(rim: &Ellipse, offset: DVec2) -> DVec2 {
     let across = rim.axis.perp();
     let up = if across.y < 0.0 || (across.y <= 0.0 && across.x < 0.0) { -across } else { across };
@@ -233,11 +234,11 @@ fn towards(rim: &Ellipse, offset: DVec2) -> DVec2 {
     mixed.direction().unwrap_or(side)
 }
 
-/// The ellipse of the rim by the better of two fits.
+/// Returns the ellipse of the rim by the better of two fits.
 fn rim(centre: DVec2, tips: &[DVec2]) -> Option<Ellipse> {
     let harmonic = fit_ellipse_harmonic(tips)?;
     let spread = pca2(tips)?.lambda;
-    // Nearly on a line: any conic fits.
+    // Nearly collinear: any conic fits.
     if spread[1] < 1e-3 * spread[0] {
         return Some(harmonic);
     }
@@ -245,7 +246,7 @@ fn rim(centre: DVec2, tips: &[DVec2]) -> Option<Ellipse> {
     Some(fit_ellipse(tips).filter(|e| makes_sense(e, centre, reach)).unwrap_or(harmonic))
 }
 
-/// The listed ways in which an algebraic fit goes wrong on few hand-drawn tips.
+/// Whether an algebraic fit is free of its usual failures on few hand-drawn tips.
 fn makes_sense(e: &Ellipse, centre: DVec2, reach: f64) -> bool {
     let rho = e.ratio();
     let offset = e.centre - centre;
@@ -283,14 +284,14 @@ mod tests {
         }
     }
 
-    /// The point of a cone at slant length 1 and the given turn about the axis, relative to the apex.
+    /// Returns the point of a cone at slant length 1 and the given rotation about the axis, relative to the apex.
     fn generator(cone: &Cone, turn: f64) -> DVec3 {
         let (u, v) = cone.axis.any_orthonormal_pair();
         let (s, c) = ops::sin_cos(turn);
         cone.axis * ops::cos(cone.half_angle) + (u * c + v * s) * ops::sin(cone.half_angle)
     }
 
-    /// Tips of a flower on the rim, in space.
+    /// Returns the tips of a flower on the rim, in space.
     fn rim_tips(cone: &Cone, height: f64, n: usize, first: f64) -> Vec<DVec3> {
         let slant = height / ops::cos(cone.half_angle);
         (0..n).map(|k| cone.apex + generator(cone, first + ops::TAU * k as f64 / n as f64) * slant).collect()
@@ -304,8 +305,8 @@ mod tests {
             let cone = made.cone();
             let size = made.stream.range(0.01, 3.0);
             let p = generator(&cone, made.stream.range(0.0, ops::TAU)) * size;
-            // At the silhouette the depth changes infinitely fast with the place; along the line of sight it
-            // is cut off on purpose.
+            // At the silhouette the depth changes infinitely fast with the position; along the line of sight it is
+            // limited on purpose.
             let normal_z = (p / size * ops::cos(cone.half_angle) - cone.axis).z;
             if normal_z.abs() < 1e-4 || p.z.abs() > 900.0 * p.truncate().length() {
                 continue;
@@ -409,7 +410,8 @@ mod tests {
                     assert!((found.cone.axis - DVec3::new(0.0, cosine, sine)).length() < 1e-6, "{found:?}");
                     assert!(found.height < 0.06 * found.radius, "{found:?}");
                 }
-                // By 3 % of noise it stays within a dozen degrees or two: the error of rho is that of the rim's fit.
+                // With 3 % of noise the error stays within about a dozen degrees: that of rho is the error of the rim's
+                // fit.
                 let mut made = Made::new(n as u64);
                 let rim = Ellipse { centre: DVec2::ZERO, major: 1.0, minor: sine, axis: DVec2::X };
                 let mut off: Vec<f64> = (0..12)

@@ -1,12 +1,12 @@
-//! Points -> cubes: many points -> few, evenly spread.
+//! Sorts points into cubes, and thins them to few, evenly spread ones.
 
 use glam::DVec3;
 
-/// The finite points sorted into cubes of edge `cell` (above 0): the cube of each as z, y, x from the lowest corner
-/// of their box, with its index; by z, y, x, then index.
+/// Sorts the finite points into cubes of edge `cell` (above 0): the cube of each as z, y, x from the lowest corner of
+/// their box, with its index; by z, y, x, then index.
 ///
-/// Cubes farther than 2^31 edges from that corner are one with the last. Cost: linear where the box is full enough,
-/// else n log n.
+/// Cubes farther than 2^31 edges from that corner are merged with the last. Cost: linear if the box is full enough,
+/// otherwise n log n.
 pub fn cubes(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
     let low = points.iter().filter(|p| p.is_finite()).fold(DVec3::INFINITY, |a, &p| a.min(p));
     let mut most = [0_u64; 3];
@@ -29,7 +29,7 @@ pub fn cubes(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
     let [_, wide, long] = most.map(|m| m + 1);
     let whole = most.iter().try_fold(1_u64, |n, m| n.checked_mul(m + 1)).filter(|n| *n < 1 << 60);
     match whole {
-        // Below this sorting by comparison is as quick.
+        // With fewer points sorting by comparison is as fast.
         Some(whole) if keyed.len() > 4096 => {
             #[expect(clippy::cast_sign_loss, reason = "not negative")]
             let number = |[z, y, x]: [i32; 3]| (z as u64 * wide + y as u64) * long + x as u64;
@@ -61,8 +61,8 @@ fn by_digits(keyed: &mut Vec<([i32; 3], u32)>, whole: u64, number: impl Fn([i32;
     }
 }
 
-/// Indices of one point a cube of edge `cell` (above 0), cube by cube: the one nearest to the mean of the cube's
-/// points, so that a dense part weighs no more than a sparse one.
+/// Returns the index of one point for each cube of edge `cell` (above 0), cube by cube: the one nearest to the mean of
+/// the cube's points, so that a dense part weighs no more than a sparse one.
 pub fn one_a_cube(points: &[DVec3], cell: f64) -> Vec<u32> {
     let keyed = cubes(points, cell);
     let mut out = Vec::new();

@@ -1,12 +1,12 @@
-//! Points -> smooth curves through or along them, sampled.
+//! Smooth curves through or along points, sampled.
 
 use crate::vector::{Vector, distinct};
 use glam::DVec3;
 
-// More samples than this on one piece are a slip, not a wish.
+// More samples than this on one piece must be a mistake.
 const MAX_PER_PIECE: usize = 4096;
 
-/// Quadratic Bezier pieces that join with one tangent, `per_piece` samples each; the ends are kept.
+/// Samples quadratic Bezier pieces that join with one tangent, `per_piece` samples each; the ends are kept.
 ///
 /// The points are control points: the curve runs from each midpoint of a segment to the next, drawn towards
 /// the point between, and passes through the first and last point only. Unusable and repeated points are
@@ -36,7 +36,7 @@ pub fn bezier_quadratic_c1(points: &[DVec3], per_piece: usize) -> Vec<DVec3> {
     out
 }
 
-/// A centripetal Catmull-Rom curve through all points, `per_piece` samples between each two.
+/// Samples a centripetal Catmull-Rom curve through all points, `per_piece` samples between each two.
 ///
 /// Passes through every distinct point, never makes a loop or cusp within a piece, and has a continuous
 /// tangent. Beyond the ends the line is continued by reflection. Unusable and repeated points are dropped;
@@ -66,7 +66,7 @@ pub fn catmull_rom(points: &[DVec3], per_piece: usize) -> Vec<DVec3> {
     out
 }
 
-/// The point at share `t` between the second and third of four distinct points.
+/// Returns the point at share `t` between the second and third of four distinct points.
 fn centripetal(p: [DVec3; 4], t: f64) -> DVec3 {
     let gap = |a: DVec3, b: DVec3| Vector::distance(a, b).sqrt();
     let k1 = gap(p[0], p[1]);
@@ -74,7 +74,7 @@ fn centripetal(p: [DVec3; 4], t: f64) -> DVec3 {
     let k3 = k2 + gap(p[2], p[3]);
     let x = k1 + (k2 - k1) * t;
     let mix = |a: DVec3, b: DVec3, from: f64, to: f64| {
-        // The gap can vanish beside a much larger one; the piece is then the straight line.
+        // The gap can vanish compared with a much larger one; the piece is then the straight line.
         let share = if to > from { (x - from) / (to - from) } else { t };
         a + (b - a) * share
     };

@@ -1,4 +1,4 @@
-//! Petal tips -> the ellipse as which the rim of a flower is seen.
+//! Fits the ellipse as which the rim of a flower appears to petal tips.
 
 use crate::pca::symmetric_2x2;
 use crate::vector::Vector;
@@ -28,13 +28,13 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// minor / major, in \[0, 1\]: the sine of the angle between the flower's axis and the drawing plane.
+    /// Returns minor / major, in \[0, 1\]: the sine of the angle between the flower's axis and the drawing plane.
     pub fn ratio(&self) -> f64 {
         self.minor / self.major
     }
 }
 
-/// The mean of the usable points and the root mean square distance from it.
+/// Returns the usable points relative to their mean, the mean, and the root mean square distance from it.
 fn centre_and_scale(points: &[DVec2]) -> Option<(Vec<DVec2>, DVec2, f64)> {
     let usable: Vec<DVec2> = points.iter().copied().filter(|p| p.usable()).collect();
     let first = *usable.first()?;
@@ -44,7 +44,7 @@ fn centre_and_scale(points: &[DVec2]) -> Option<(Vec<DVec2>, DVec2, f64)> {
     (scale > 0.0 && (1.0 / scale).is_finite()).then_some((usable, centre, scale))
 }
 
-/// The ellipse that fits points best in the algebraic sense; always an ellipse, never another conic.
+/// Fits the best ellipse in the algebraic sense; always an ellipse, never another conic.
 ///
 /// Needs at least 5 different usable points; `None` with fewer, or for points (nearly) on a straight line.
 /// Exact, up to rounding, for points of an ellipse; with noise somewhat too small. Invariant under shift,
@@ -98,7 +98,7 @@ pub fn fit_ellipse(points: &[DVec2]) -> Option<Ellipse> {
     (fit.centre.usable() && fit.major.is_finite() && fit.major > 0.0).then_some(fit)
 }
 
-/// The ellipse `a x^2 + b xy + c y^2 + d x + e y + f = 0`, if it is one.
+/// Returns the ellipse `a x^2 + b xy + c y^2 + d x + e y + f = 0`, if it is one.
 fn from_conic([a, b, c, d, e, f]: [f64; 6]) -> Option<Ellipse> {
     let middle = Matrix2::new(2.0 * a, b, b, 2.0 * c).try_inverse()? * nalgebra::Vector2::new(-d, -e);
     let level = -(f + 0.5 * (d * middle[0] + e * middle[1]));
@@ -119,12 +119,11 @@ fn from_conic([a, b, c, d, e, f]: [f64; 6]) -> Option<Ellipse> {
     })
 }
 
-/// The ellipse through the tips of equally spaced petals, from their first harmonic.
+/// Fits the ellipse through the tips of equally spaced petals, from their first harmonic.
 ///
-/// Needs at least 3 usable points; `None` with fewer or if all lie in one place. The tips may come in any
-/// order and are sorted by their angle about the mean. Exact if they are the parallel projection of a regular
-/// polygon (for 3 tips: Steiner's circumscribed ellipse; for 4: from conjugate diameters). Tips on a straight
-/// line give `minor` 0. Cost: n log n.
+/// Needs at least 3 usable points; `None` with fewer or if all coincide. The tips may come in any order and are sorted
+/// by their angle about the mean. Exact if they are the parallel projection of a regular polygon (for 3 tips: Steiner's
+/// circumscribed ellipse; for 4: from conjugate diameters). Tips on a straight line give `minor` 0. Cost: n log n.
 ///
 /// The "highly symmetric" assumption of He and Cheng (2021), section 5.1.
 pub fn fit_ellipse_harmonic(tips: &[DVec2]) -> Option<Ellipse> {
@@ -158,7 +157,7 @@ pub fn fit_ellipse_harmonic(tips: &[DVec2]) -> Option<Ellipse> {
 pub(crate) mod tests {
     use super::*;
 
-    /// Equally spaced tips (in the plane of the flower) on an ellipse.
+    /// Returns equally spaced tips (in the plane of the flower) on an ellipse.
     pub(crate) fn tips(e: &Ellipse, n: usize, first: f64) -> Vec<DVec2> {
         (0..n)
             .map(|k| ops::sin_cos(first + ops::TAU * k as f64 / n as f64))

@@ -1,9 +1,9 @@
-//! Line in space -> frames along it that do not twist.
+//! Frames along a line in space that do not twist.
 
 use crate::vector::Vector;
 use glam::DVec3;
 
-/// A place on a curve with three unit vectors at right angles; `binormal = tangent x normal`.
+/// A point of a curve with three unit vectors at right angles; `binormal = tangent x normal`.
 ///
 /// ```
 /// use glam::DVec3;
@@ -22,7 +22,7 @@ pub struct Frame3 {
     pub binormal: DVec3,
 }
 
-/// One frame per point of a line, turning about the tangent as little as can be.
+/// Returns one frame per point of a line, with the least rotation about the tangent.
 ///
 /// The tangent at an inner point halves the angle of its two segments; where the line turns back on itself it
 /// is the direction of arrival. `first_normal` need not be at right angles to the line (its part along the
@@ -48,7 +48,7 @@ pub fn rotation_minimising_frames(points: &[DVec3], first_normal: Option<DVec3>)
     owner.into_iter().map(|k| frames[k]).collect()
 }
 
-/// The distinct usable places, and for each point which of them it stands for.
+/// Returns the distinct usable points, and for each point which of them represents it.
 fn distinct_places(points: &[DVec3]) -> (Vec<DVec3>, Vec<usize>) {
     let mut places: Vec<DVec3> = Vec::with_capacity(points.len());
     let owner = points
@@ -84,7 +84,7 @@ fn tangents(places: &[DVec3]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The normal carried from one frame to the next place (not yet made orthonormal).
+/// Carries the normal from one frame to the next point (not yet made orthonormal).
 fn double_reflection(from: &Frame3, place: DVec3, tangent: DVec3) -> DVec3 {
     let reflect = |v: DVec3, mirror: Option<DVec3>| mirror.map_or(v, |m| v - m * (2.0 * Vector::dot(m, v)));
     let first = (place - from.origin).direction();
@@ -94,7 +94,7 @@ fn double_reflection(from: &Frame3, place: DVec3, tangent: DVec3) -> DVec3 {
     if Vector::length(gap) > 1e-12 { reflect(normal, gap.direction()) } else { normal }
 }
 
-/// A unit vector at right angles to the unit vector `tangent`, as near to `wish` as can be.
+/// Returns a unit vector at right angles to the unit vector `tangent`, as near to `wish` as possible.
 pub(crate) fn perpendicular(tangent: DVec3, wish: Option<DVec3>) -> DVec3 {
     let across = |v: DVec3| {
         let v = v.direction()?;
@@ -103,7 +103,7 @@ pub(crate) fn perpendicular(tangent: DVec3, wish: Option<DVec3>) -> DVec3 {
         let v = if Vector::length(v) > 1e-6 { v.direction()? } else { return None };
         (v - tangent * Vector::dot(v, tangent)).direction()
     };
-    // The coordinate axis that is least along the tangent; x first, so an upright line has its normal there.
+    // The coordinate axis that is least along the tangent; x first, so that it is the normal of a vertical line.
     let (x, y, z) = (tangent.x.abs(), tangent.y.abs(), tangent.z.abs());
     let axis = if x <= y && x <= z {
         DVec3::X
@@ -132,7 +132,7 @@ mod tests {
         assert!(skew < 1e-12, "{f:?}");
     }
 
-    /// Rotation about the tangent from one normal to the next, after turning tangent onto tangent.
+    /// Returns the rotation about the tangent from one normal to the next, after turning tangent onto tangent.
     fn twist(a: &Frame3, b: &Frame3) -> f64 {
         let axis = a.tangent.cross(b.tangent);
         let angle = ops::atan2(axis.length(), a.tangent.dot(b.tangent));

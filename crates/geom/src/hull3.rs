@@ -30,31 +30,31 @@ impl Hull3 {
         self.triangles.iter().map(|t| t.map(|i| self.points[i as usize]))
     }
 
-    /// The volume inside, cubic metres for points in metres.
+    /// Returns the volume inside, cubic metres for points in metres.
     pub fn volume(&self) -> f64 {
-        // Measured from a corner, so that a hull far from the origin loses no digits.
+        // Relative to a corner, so that a hull far from the origin loses no digits.
         let o = self.points.first().copied().unwrap_or_default();
         self.corners().map(|[a, b, c]| (a - o).dot((b - o).cross(c - o))).sum::<f64>() / 6.0
     }
 
-    /// The planes of its faces as unit normals that point outwards and distances from the origin along them: a point is
-    /// inside where `normal.dot(point) <= distance` for all. Faces without area are left out.
+    /// Returns the planes of its faces as unit normals that point outwards and distances from the origin along them: a
+    /// point is inside if `normal.dot(point) <= distance` for all. Faces without area are left out.
     pub fn planes(&self) -> Vec<(DVec3, f64)> {
         self.corners().map(plane).filter(|(normal, _)| *normal != DVec3::ZERO).collect()
     }
 
-    /// The area of the surface.
+    /// Returns the area of the surface.
     pub fn area(&self) -> f64 {
         self.corners().map(|[a, b, c]| (b - a).cross(c - a).length()).sum::<f64>() / 2.0
     }
 }
 
-/// The convex hull of `points`; `None` if they lie in one plane (within 1e-9 of their extent) or are fewer than 4.
+/// Returns the convex hull of `points`; `None` if they lie in one plane (within 1e-9 of their extent) or are fewer than
+/// 4.
 ///
-/// Unusable points are left out. Guaranteed: a closed surface; no point lies outside it by more than about 1e-9 of
-/// the extent; the same bits everywhere. Not guaranteed: that corners nearer than that to the surface are kept.
-/// Cost: n log n for points in general, n times the corners at worst. Barber, Dobkin and Huhdanpaa 1996
-/// (quickhull).
+/// Unusable points are left out. Guaranteed: a closed surface; no point lies outside it by more than about 1e-9 of the
+/// extent; the same bits everywhere. Not guaranteed: that corners nearer than that to the surface are kept. Cost:
+/// usually n log n, n times the corners at worst. Barber, Dobkin and Huhdanpaa 1996 (quickhull).
 pub fn convex_hull3(points: &[DVec3]) -> Option<Hull3> {
     let points: Vec<DVec3> = points.iter().copied().filter(|p| p.usable()).collect();
     let first = simplex(&points)?;
@@ -67,10 +67,10 @@ pub fn convex_hull3(points: &[DVec3]) -> Option<Hull3> {
     Some(hull.finish())
 }
 
-/// The unit normal of a triangle, zero without area, and its distance from the origin along it.
+/// Returns the unit normal of a triangle, zero without area, and its distance from the origin along it.
 fn plane([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let normal = (b - a).cross(c - a).normalize_or_zero();
-    // Of the middle, not of a corner: long thin faces are tilted less by rounding.
+    // From the centroid, not a corner: long thin faces are tilted less by rounding.
     (normal, normal.dot((a + b + c) / 3.0))
 }
 
@@ -79,7 +79,7 @@ const NONE: usize = usize::MAX;
 #[derive(Clone, Debug)]
 struct Face {
     corner: [usize; 3],
-    /// The face across the edge from corner i to corner i + 1.
+    /// The neighbouring face across the edge from corner i to corner i + 1.
     across: [usize; 3],
     normal: DVec3,
     offset: f64,
@@ -99,7 +99,7 @@ struct Quickhull<'a> {
     round: u32,
 }
 
-/// Four points that span a body, and the size of the cloud.
+/// Returns four points that span a body, and the size of the cloud.
 fn simplex(points: &[DVec3]) -> Option<([usize; 4], f64)> {
     let first = *points.first()?;
     let (mut lo, mut hi) = (first, first);
@@ -139,7 +139,7 @@ fn simplex(points: &[DVec3]) -> Option<([usize; 4], f64)> {
 }
 
 impl<'a> Quickhull<'a> {
-    /// `corners`: the fourth lies below the first three, seen counter-clockwise.
+    /// Starts with a tetrahedron: the fourth of `corners` lies below the first three, seen counter-clockwise.
     fn new(points: &'a [DVec3], (corners, size): ([usize; 4], f64)) -> Self {
         let [a, b, c, d] = corners;
         let mut hull = Self {
@@ -198,7 +198,7 @@ impl<'a> Quickhull<'a> {
         let Some(apex) = self.faces[face].outside.pop() else { return };
         let p = self.points[apex];
         let Some(horizon) = self.horizon(face, p) else {
-            // Rounding made the edge no loop: the point is within rounding of the surface and left out.
+            // By rounding the edges form no loop: the point is within rounding of the surface and left out.
             self.faces[face].farthest = 0.0;
             if !self.faces[face].outside.is_empty() {
                 self.waiting.push(face);
@@ -222,7 +222,8 @@ impl<'a> Quickhull<'a> {
         self.assign(orphans.into_iter(), first);
     }
 
-    /// The loop of edges between faces that `p` sees and others: `(from, to, face beyond)`, counter-clockwise.
+    /// Returns the loop of edges between faces visible from `p` and others: `(from, to, face beyond)`,
+    /// counter-clockwise.
     fn horizon(&mut self, from: usize, p: DVec3) -> Option<Vec<(usize, usize, usize)>> {
         self.round += 1;
         self.visible.clear();
@@ -329,7 +330,7 @@ mod tests {
     }
 
     proptest! {
-        // Points on a coarse lattice: many in one plane, on one line and twice.
+        // Points on a coarse lattice: many coplanar, collinear or repeated.
         #[test]
         fn hulls_are_closed_and_hold_every_point(
             raw in prop::collection::vec((0..6_i32, 0..6_i32, 0..6_i32, 0..3_i32), 4..200),

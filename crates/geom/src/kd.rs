@@ -1,11 +1,11 @@
-//! Points -> neighbours, by a k-d tree.
+//! Finds neighbours of points by a k-d tree.
 
 use crate::vector::Vector;
 use glam::{DVec2, DVec3};
 
-/// Points of a leaf: below 8 the tree costs more than the points, above 16 the points.
+/// Points of a leaf: below 8 the nodes dominate the cost, above 16 the points.
 const LEAF: usize = 12;
-/// Nodes that wait to be looked at: one a level, and 2^32 points have fewer levels than this.
+/// Nodes on the stack of a search: one per level, and 2^32 points have fewer levels than this.
 const WAITING: usize = 48;
 
 /// The box around the points of a subtree. Its left half is the next node.
@@ -17,13 +17,13 @@ struct Node {
     end: u32,
     /// The right half; 0 at a leaf.
     right: u32,
-    /// The lowest index of its points: of equally near points the lowest is the answer.
+    /// The lowest index of its points: of equally near points the lowest is returned.
     least: u32,
 }
 
 impl Node {
-    /// The square of a distance that no point of the box is nearer than, worked out as [`Vector::distance`] does:
-    /// rounding keeps the order, so that it is never greater than what is computed for a point.
+    /// Returns a lower bound of the squared distance to any point of the box, computed as [`Vector::distance`] does:
+    /// rounding is monotonic, so the bound never exceeds the value computed for a point.
     fn gap2(&self, p: DVec3) -> f64 {
         let off = |x: f64, lo: f64, hi: f64| {
             if x < lo {
@@ -42,9 +42,9 @@ impl Node {
 
 /// A fixed set of points in space that answers neighbour questions.
 ///
-/// The points are halved along the longest side of their box, so that neither uneven density nor repeated points
-/// nor far outliers cost anything; and every part knows its box, so that points far from all of them are answered as
-/// quickly as near ones. Unusable points are never found. At most 2^32 - 1 points are taken.
+/// The points are halved along the longest side of their box, so that uneven density, repeated points and far outliers
+/// cost nothing extra; and every part stores its box, so that queries far from all points are as fast as near ones.
+/// Unusable points are never found. At most 2^32 - 1 points are taken.
 ///
 /// ```
 /// use glam::DVec3;
@@ -62,7 +62,7 @@ pub struct KdTree {
 }
 
 impl KdTree {
-    /// Cost: n log n; a million points take a third of a second.
+    /// Builds the tree. Cost: n log n; a million points take a third of a second.
     pub fn new(points: &[DVec3]) -> Self {
         let mut tree = Self { points: Vec::with_capacity(points.len()), nodes: vec![] };
         let numbered = points.iter().zip(0..u32::MAX).filter(|(p, _)| p.usable());
@@ -97,16 +97,16 @@ impl KdTree {
         self.split(first + half, end);
     }
 
-    /// The indices of the usable points, each once, neighbours together: in this order questions about the points
-    /// themselves are answered quickest.
+    /// Iterates over the indices of the usable points, each once, neighbours together: queries of the points themselves
+    /// are fastest in this order.
     pub fn order(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.points.iter().map(|p| p.1 as usize)
     }
 
-    /// The index of the point nearest to `p` and at most `max` away; of equally near ones the lowest.
+    /// Returns the index of the point nearest to `p` and at most `max` away; of equally near ones the lowest.
     ///
     /// `None` if there is none, if `p` is not usable or `max` is negative or NaN. `max` may be infinite; a small one
-    /// makes it quicker.
+    /// makes the query faster.
     pub fn nearest(&self, p: DVec3, max: f64) -> Option<usize> {
         let mut best = Nearest { distance: max, bound2: above(max), index: u32::MAX };
         if max >= 0.0 {
@@ -126,9 +126,9 @@ impl KdTree {
         }
     }
 
-    /// Fills `out` with the distances of as many nearest points, nearest first; infinity where there are no more.
+    /// Fills `out` with the distances of the nearest points, nearest first; infinity if there are too few.
     ///
-    /// Repeated points count each. All are infinite if `p` is not usable.
+    /// Repeated points count separately. All are infinite if `p` is not usable.
     pub fn nearest_distances(&self, p: DVec3, out: &mut [f64]) {
         out.fill(f64::INFINITY);
         if !out.is_empty() {
@@ -136,17 +136,17 @@ impl KdTree {
         }
     }
 
-    /// Shows the points that are at most `reach` away from `p`, those of nearer leaves first, until `look` has enough: it
-    /// is given the index of each and returns how far the next may be, `None` to end.
+    /// Visits the points that are at most `reach` away from `p`, those of nearer leaves first: `look` receives the
+    /// index of each and returns the largest distance of interest for the next, or `None` to stop.
     ///
-    /// None are shown if `p` is not usable or `reach` is negative or NaN.
+    /// None are visited if `p` is not usable or `reach` is negative or NaN.
     pub fn look(&self, p: DVec3, reach: f64, look: impl FnMut(usize) -> Option<f64>) {
         if reach >= 0.0 {
             self.search(p, &mut Looking { bound2: above(reach), look });
         }
     }
 
-    /// Shows a search the leaves that are not hopeless, nearer ones first.
+    /// Passes the leaves that may matter to a search, nearer ones first.
     fn search(&self, p: DVec3, search: &mut impl Search) {
         if !p.usable() || self.nodes.is_empty() {
             return;
@@ -169,7 +169,7 @@ impl KdTree {
                 let (a, b) = (at + 1, node.right);
                 let (one, two) = (&self.nodes[a as usize], &self.nodes[b as usize]);
                 let (gap_a, gap_b) = (one.gap2(p), two.gap2(p));
-                // Of two that are equally near the one with the lower index: the other one may then be hopeless.
+                // If two are equally near, the one with the lower index first: the other may then be skipped.
                 let first = gap_a < gap_b || (gap_a <= gap_b && one.least < two.least);
                 let (near, far) = if first { ((a, gap_a), (b, gap_b)) } else { ((b, gap_b), (a, gap_a)) };
                 waiting[left] = far;
@@ -180,14 +180,14 @@ impl KdTree {
     }
 }
 
-/// A square that no computed distance of at most `r` exceeds.
+/// Returns a square that no computed distance of at most `r` exceeds.
 fn above(r: f64) -> f64 {
     r * r * (1.0 + 4.0 * f64::EPSILON) + f64::MIN_POSITIVE
 }
 
-/// One question to the tree.
+/// One query of the tree.
 trait Search {
-    /// No point of a box that is at least this far (squared), with these indices, can matter.
+    /// Whether no point of a box that is at least this far away (squared), with these indices, can matter.
     fn hopeless(&self, gap2: f64, least: u32) -> bool;
     fn leaf(&mut self, p: DVec3, points: &[(DVec3, u32)]);
 }
@@ -236,7 +236,7 @@ impl Search for Within<'_> {
 }
 
 struct Looking<F> {
-    /// Negative once enough was seen.
+    /// Negative once the search is finished.
     bound2: f64,
     look: F,
 }
@@ -300,7 +300,7 @@ impl KdTree2 {
         self.0.nearest(p.extend(0.0), max)
     }
 
-    /// [`KdTree::nearest_distances`] in the plane.
+    /// Does in the plane what [`KdTree::nearest_distances`] does in space.
     pub fn nearest_distances(&self, p: DVec2, out: &mut [f64]) {
         self.0.nearest_distances(p.extend(0.0), out);
     }
@@ -331,7 +331,7 @@ mod tests {
         near.into_iter().reduce(|a, b| if d(b) < d(a) { b } else { a })
     }
 
-    /// A lattice has many ties; a few coordinates are wild.
+    /// A lattice has many ties; a few coordinates are extreme.
     fn coordinate() -> impl Strategy<Value = f64> {
         prop_oneof![
             12 => (-4..4_i32).prop_map(|i| f64::from(i) * 0.5),
@@ -363,7 +363,7 @@ mod tests {
                 Some(r)
             });
             shown.sort_unstable();
-            // Rounding may show points that are a hair too far.
+            // Rounding may visit points that are slightly too far.
             shown.retain(|&i| Vector::distance(points[i], p) <= r);
             prop_assert_eq!(&shown, &out);
             tree.look(p, r, |i| {
@@ -387,7 +387,7 @@ mod tests {
 
     #[test]
     fn a_hundred_thousand_equal_points_are_answered_at_once() {
-        // Looking at every point would be 10^10 distances: minutes.
+        // A linear search would take 10^10 distances: minutes.
         let points = vec![DVec3::ONE; 100_000];
         let tree = KdTree::new(&points);
         let mut seventh = [0.0; 7];

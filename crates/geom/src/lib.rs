@@ -1,21 +1,21 @@
-//! Geometry for plants, in f64: curves, frames, fits, triangulation, neighbours. Knows nothing of plants.
+//! Geometry for plants, in f64: curves, frames, fits, triangulation, neighbours. Independent of plants.
 //!
-//! Every function takes whatever a pen or a file can give. A point is *usable* if all its coordinates are
-//! finite and at most 1e100 in size (so that squares and their sums stay finite); others are left out, as
-//! each function says. Nothing here panics on user data.
+//! Every function accepts whatever a pen or a file can produce. A point is *usable* if all its coordinates are finite
+//! and at most 1e100 in size (so that squares and their sums stay finite); others are left out, as each function says.
+//! Nothing here panics on user data.
 //!
 //! | module | owns |
 //! |---|---|
 //! | `polyline` | length, resampling, smoothing, simplification, nearest point on open lines |
 //! | `polygon` | area, inside test, hull, cross-sections of closed lines |
-//! | `outline` | [`simple_outline`]: the polygon that a scribble means |
+//! | `outline` | [`simple_outline`]: the polygon represented by a scribble |
 //! | `pca` | principal axes and their box |
 //! | `ellipse`, `cone` | the flower's ellipse and cone (He and Cheng 2021, section 5.1) |
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
 //! | `concave` | outlines that follow the bays of points; triangles within an outline |
-//! | `kd`, `cubes`, `voxels`, `step` | neighbours; few points for many; shortest ways |
+//! | `kd`, `cubes`, `voxels`, `step` | neighbours; thinned points; shortest paths |
 //! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (Wang et al. 2011) |
 

@@ -5,14 +5,14 @@ use core::ops::{Add, Mul, Sub};
 use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Matrix4, SymmetricEigen};
 
-/// What can be interpolated: numbers, points, balls.
+/// A value that can be interpolated: number, point, ball.
 pub trait Blend: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Blend for T {}
 
-/// Solves `a x = b` for numbers or vectors, `a` symmetric positive definite (only its lower half is read), both in place:
-/// `b` becomes `x`.
+/// Solves `a x = b` for numbers or vectors, `a` symmetric positive definite (only its lower half is read), both in
+/// place: `b` becomes `x`.
 ///
-/// `None` where a pivot is below 1e-13 of the largest element of the diagonal. Cost: n cubed over 6 (Cholesky).
+/// `None` if a pivot is below 1e-13 of the largest element of the diagonal. Cost: n cubed over 6 (Cholesky).
 pub fn solve_positive<V: Blend>(matrix: &mut [f64], right: &mut [V]) -> Option<()> {
     let n = right.len();
     let largest = (0..n).map(|i| matrix[i * n + i]).fold(0.0, f64::max);
@@ -23,7 +23,7 @@ pub fn solve_positive<V: Blend>(matrix: &mut [f64], right: &mut [V]) -> Option<(
             let dot: f64 = tail[..j].iter().zip(row_j).map(|(x, y)| x * y).sum();
             let rest = tail[j] - dot;
             if i == j {
-                // 1e-13: below this a control hangs in the air (no data near it).
+                // 1e-13: below this a control is undetermined (no data near it).
                 if rest <= 1e-13 * largest || rest.is_nan() {
                     return None;
                 }
@@ -50,7 +50,7 @@ pub fn solve_positive<V: Blend>(matrix: &mut [f64], right: &mut [V]) -> Option<(
     Some(())
 }
 
-/// The rotation that brings `from` nearest to `to` (both relative to their centres), weights 1.
+/// Returns the rotation that brings `from` nearest to `to` (both relative to their centres), weights 1.
 ///
 /// Never a reflection; the identity for fewer than two pairs. Horn (1987), the eigenvector of the largest eigenvalue of
 /// the 4 x 4 matrix of his equation for unit quaternions.

@@ -1,36 +1,38 @@
-//! Scribble -> the simple polygon that it means.
+//! Turns a scribble into the simple polygon that it represents.
 //!
-//! The closed line is put on a grid of whole numbers, where the tests below are exact in f64, and cut wherever
-//! it meets itself; a walk along the outer side of the net that results, with pieces that hang on one knot
-//! split off, gives simple polygons, and the largest is the answer. So loops at the closing point, overshoot
-//! and loops along the margin fall away, and anything drawn inside is not seen.
+//! The closed line is rounded to a grid of whole numbers, where the tests below are exact in f64, and cut wherever it
+//! meets itself. A walk along the outer side of the resulting net, split at knots where parts are attached at one point
+//! only, gives simple polygons, and the largest is the result. So loops at the closing point, overshoot and loops along
+//! the margin disappear, and anything drawn inside is ignored.
 
 use crate::polygon::{convex_hull, signed_area};
 use crate::vector::distinct_closed;
 use glam::DVec2;
 
-// 2^24 steps over the drawing: 6e-8 of its size; products of two differences stay below 2^53, so are exact.
+// Grid steps over the drawing, 2^24: 6e-8 of its size; products of two differences stay below 2^53, so are exact.
 const STEPS: f64 = 16_777_216.0;
-// A closed line of more corners than this is thinned: no outline needs them and time grows with the square
-// at worst.
+// Most corners of a closed line; others are thinned out: no outline needs more, and time grows with the square at
+// worst.
 const MAX_CORNERS: usize = 12_000;
-// A net of more crossings than 4 n + this is a hatching; every second point shows its outline as well.
+// Offset of the limit of 4 n + this crossings, above which a net is a hatching, whose outline is as well given by every
+// second point.
 const MANY_CROSSINGS: usize = 4_000;
-// Rounding a crossing to the grid can make a new one with a line close by; two rounds are usual.
+// Most rounds of rounding: rounding a crossing to the grid can create a new one with a line close by; two rounds are
+// usual.
 const MAX_ROUNDS: usize = 12;
-// Less area than this share of the squared size is a line drawn to and fro.
+// Area as a share of the squared size below which a line only goes to and fro.
 const NO_AREA: f64 = 1e-9;
 
-/// How two segments meet.
+/// Intersection of two segments.
 enum Meeting {
     Apart,
-    /// They cross in, or touch at, one place.
+    /// They cross or touch at one point.
     At(DVec2),
     /// They share a stretch of one straight line.
     Overlap,
 }
 
-/// Twice the signed area of a triangle; exact for whole numbers up to 2^25.
+/// Returns twice the signed area of a triangle; exact for whole numbers up to 2^25.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -64,7 +66,7 @@ fn meet(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Meeting {
     Meeting::At(c + (d - c) * (c_side / (c_side - d_side)))
 }
 
-/// Calls `f` for every pair of segments (lower index first) whose boxes meet; stops when it returns false.
+/// Calls `f` for every pair of segments (lower index first) whose boxes overlap; stops when it returns false.
 ///
 /// Sweeps along the longer side of the drawing. Cost: n log n for outlines, n^2 / 2 box tests at worst.
 fn meeting_boxes(segments: &[(DVec2, DVec2)], mut f: impl FnMut(usize, usize) -> bool) {
@@ -82,7 +84,7 @@ fn meeting_boxes(segments: &[(DVec2, DVec2)], mut f: impl FnMut(usize, usize) ->
     }
 }
 
-/// The box around each segment, the longer side of all along x, and the order in which they begin.
+/// Returns the box around each segment, with the longer side of all along x, and the order in which they begin.
 fn boxes_in_order(segments: &[(DVec2, DVec2)]) -> (Vec<(DVec2, DVec2)>, Vec<usize>) {
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for &(a, b) in segments {
@@ -102,7 +104,7 @@ fn closed_segments(corners: &[DVec2]) -> Vec<(DVec2, DVec2)> {
     (0..n).map(|i| (corners[i], corners[(i + 1) % n])).collect()
 }
 
-/// The number of pairs of edges of a closed line that meet where they should not.
+/// Returns the number of pairs of edges of a closed line that meet although they should not.
 ///
 /// Neighbouring edges count if they lie on each other, others if they cross, touch or overlap. 0 means a
 /// simple polygon. Unusable and repeated points are left out. Cost: n log n for outlines, n^2 at worst.
@@ -116,9 +118,10 @@ pub fn self_crossings(points: &[DVec2]) -> usize {
     crossings_up_to(&distinct_closed(points), usize::MAX)
 }
 
-/// Where a closed line crosses or touches itself, at most `most` places; see [`self_crossings`] for what counts.
+/// Returns the points at which a closed line crosses or touches itself, at most `most`; see [`self_crossings`] for the
+/// definition.
 ///
-/// Of edges that overlap the start of the later one. In no particular order. Cost: as [`self_crossings`], less where
+/// For edges that overlap, the start of the later one. In no particular order. Cost: as [`self_crossings`], less if
 /// `most` is reached.
 ///
 /// ```
@@ -163,15 +166,14 @@ fn each_crossing(corners: &[DVec2], mut seen: impl FnMut(DVec2) -> bool) {
     });
 }
 
-/// The simple counter-clockwise polygon that a closed scribble means; `None` if it encloses no area.
+/// Returns the simple counter-clockwise polygon that a closed scribble represents; `None` if it encloses no area.
 ///
-/// The line is closed from its last point to its first. What it encloses, seen from outside, is split where it
-/// hangs together in one point only, and the largest part is returned: overshoot at the closing point, small
-/// loops and everything inside the outline disappear. Guaranteed: at least 3 points, [`self_crossings`] is 0,
-/// the area is positive. A line that is simple already comes back with its own points (turned round if it ran
-/// clockwise); otherwise the points lie within 1e-7 of the drawing's size of where they were drawn. Unusable
-/// and repeated points are dropped, lines of more than 12 000 points and dense hatchings are thinned.
-/// Cost: n log n for outlines.
+/// The line is closed from its last point to its first. The area that it encloses, seen from outside, is split where it
+/// is connected at one point only, and the largest part is returned: overshoot at the closing point, small loops and
+/// everything inside the outline disappear. Guaranteed: at least 3 points, [`self_crossings`] is 0, the area is
+/// positive. A line that is already simple keeps its own points (reversed if it ran clockwise); otherwise the points
+/// lie within 1e-7 of the drawing's size of the drawn ones. Unusable and repeated points are dropped, lines of more
+/// than 12 000 points and dense hatchings are thinned. Cost: n log n for outlines.
 ///
 /// ```
 /// use glam::DVec2;
@@ -197,15 +199,16 @@ pub fn simple_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
         return None;
     }
     let no_area = NO_AREA * size * size;
-    // Turned round before the test, not after it: a touch that is decided by the last bit may be decided
-    // otherwise when the same edges run the other way.
+    // Reversed before the test, not after it: a touch that is decided by the last bit may be decided differently when
+    // the same edges run in the opposite direction.
     if signed_area(&corners) < 0.0 {
         corners.reverse();
     }
     if crossings_up_to(&corners, 1) == 0 {
         return (signed_area(&corners) > no_area).then_some(corners);
     }
-    // At least the spacing of numbers at the drawing's place, so that going back from the grid is exact.
+    // At least the spacing of floating-point numbers at the drawing's position, so that the way back from the grid is
+    // exact.
     let unit = (size / STEPS).max(lo.abs().max(hi.abs()).max_element() * 4.0 * f64::EPSILON);
     let unit = power_of_two_from(unit)?;
     let origin = (lo / unit).floor() * unit;
@@ -227,7 +230,7 @@ pub fn simple_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     (outline.len() >= 3 && signed_area(&outline) > no_area).then_some(outline)
 }
 
-/// The smallest power of two that is at least `x`; `None` outside the range of normal numbers.
+/// Returns the smallest power of two that is at least `x`; `None` outside the range of normal numbers.
 fn power_of_two_from(x: f64) -> Option<f64> {
     if !x.is_normal() {
         return None;
@@ -236,8 +239,8 @@ fn power_of_two_from(x: f64) -> Option<f64> {
     Some(if below < x { below * 2.0 } else { below })
 }
 
-/// The line's pieces between the places where it meets itself, on whole numbers; no two of them meet other
-/// than at their ends. `None` if there are too many.
+/// Returns the line's pieces between the points where it meets itself, on whole numbers; they meet only at their ends.
+/// `None` if there are too many.
 fn cut_at_meetings(corners: &[DVec2]) -> Option<Vec<(DVec2, DVec2)>> {
     let enough = 4 * corners.len() + MANY_CROSSINGS;
     let mut segments = closed_segments(corners);
@@ -280,7 +283,7 @@ fn cut_at_meetings(corners: &[DVec2]) -> Option<Vec<(DVec2, DVec2)>> {
     None
 }
 
-/// Drops segments without length and repetitions, whichever way they run.
+/// Drops segments without length and repetitions in either direction.
 fn tidy(segments: &mut Vec<(DVec2, DVec2)>) {
     for s in segments.iter_mut() {
         if order(s.1, s.0).is_lt() {
@@ -293,7 +296,7 @@ fn tidy(segments: &mut Vec<(DVec2, DVec2)>) {
 }
 
 fn order(p: DVec2, q: DVec2) -> core::cmp::Ordering {
-    // + 0.0: rounding makes negative zeros, which are other bits for the same place.
+    // + 0.0: rounding produces negative zeros, which are different bits for the same point.
     (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
 }
 
@@ -314,7 +317,7 @@ fn apply_cuts(segments: &[(DVec2, DVec2)], mut cuts: Vec<(usize, DVec2)>) -> Vec
     out
 }
 
-/// The largest simple polygon on the outer side of a connected net of segments that meet at their ends only.
+/// Returns the largest simple polygon on the outer side of a connected net of segments that meet only at their ends.
 fn outer_polygon(net: Vec<(DVec2, DVec2)>) -> Vec<DVec2> {
     let mut knots: Vec<DVec2> = net.iter().flat_map(|&(a, b)| [a, b]).collect();
     base::sort_by(&mut knots, |&p, &q| order(p, q));
@@ -381,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_touch_that_the_last_bit_decides_is_simple_whichever_way_it_runs() {
-        // The last corner lies on the fourth edge, but for rounding.
+        // The last corner lies on the fourth edge, except for rounding.
         let mut corners: Vec<DVec2> = [
             (0.3055251773482429, 0.0016531079842704414),
             (0.30828245342287797, 0.0016742396690292633),
@@ -407,7 +410,7 @@ mod tests {
         }
     }
 
-    /// A circle drawn by hand: from angle `from` over `turns` turns, with a wobble of the radius.
+    /// Makes a circle drawn by hand: from angle `from` over `turns` turns, with a varying radius.
     fn drawn_circle(n: u32, from: f64, turns: f64, wobble: f64) -> Vec<DVec2> {
         (0..n)
             .map(|i| {

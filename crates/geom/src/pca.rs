@@ -1,4 +1,4 @@
-//! Points -> principal axes and the box along them.
+//! Principal axes of points, and the box along them.
 
 use crate::vector::Vector;
 use glam::{DVec2, DVec3};
@@ -25,7 +25,7 @@ pub struct Pca2 {
     pub extent: [f64; 2],
 }
 
-/// Principal axes of the usable points; `None` if there is none.
+/// Returns the principal axes of the usable points; `None` if there are none.
 ///
 /// Points without a preferred direction (all equal, or a regular polygon) have the x axis as `major`.
 pub fn pca2(points: &[DVec2]) -> Option<Pca2> {
@@ -49,20 +49,20 @@ pub fn pca2(points: &[DVec2]) -> Option<Pca2> {
     Some(Pca2 { centre, major, minor, lambda: lambda.map(|l| l.max(0.0)), extent })
 }
 
-/// Eigenvalues of a symmetric 2 x 2 matrix, greater first, with the unit eigenvector of the first: x > 0, or x = 0
-/// and y > 0; the x axis where there is no preferred direction.
+/// Returns the eigenvalues of a symmetric 2 x 2 matrix, greater first, with the unit eigenvector of the first: x > 0,
+/// or x = 0 and y > 0; the x axis if there is no preferred direction.
 pub(crate) fn symmetric_2x2(xx: f64, xy: f64, yy: f64) -> ([f64; 2], DVec2) {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let spread = (half * half + xy * xy).sqrt();
-    // Of the two rows of the eigenvector equation the one without cancellation.
+    // The row of the eigenvector equation without cancellation.
     let v = if half >= 0.0 { DVec2::new(half + spread, xy) } else { DVec2::new(xy, spread - half) };
-    // 1e-12: a difference of rounding size is no direction.
+    // 1e-12: a difference of the size of rounding defines no direction.
     let v = if spread > 1e-12 * mean.abs() { v.direction().unwrap_or(DVec2::X) } else { DVec2::X };
     let v = if v.x < 0.0 || (v.x <= 0.0 && v.y < 0.0) { -v } else { v };
     ([mean + spread, mean - spread], v)
 }
 
-/// The mean of the usable points, their principal axes (unit, at right angles, greatest variance first, right
+/// Returns the mean of the usable points, their principal axes (unit, at right angles, greatest variance first, right
 /// handed) and the variances along them; `None` if there is no usable point.
 pub fn pca3(points: &[DVec3]) -> Option<(DVec3, [DVec3; 3], [f64; 3])> {
     let usable = || points.iter().copied().filter(|p| p.usable());

@@ -1,28 +1,28 @@
-//! Closed line -> its measures: area, inside, hull, cross-sections.
+//! Measures of closed lines: area, inside test, hull, cross-sections.
 //!
-//! A polygon is a list of corners whose first is not repeated (repeating it does no harm), counter-clockwise
-//! unless said otherwise. Corners that are not usable are left out.
+//! A polygon is a list of corners whose first is not repeated (repeating it does no harm), counter-clockwise unless
+//! stated otherwise. Corners that are not usable are left out.
 
 use crate::polyline::{point_at, polyline_length, tangent_at};
 use crate::vector::{Vector, distinct_closed};
 use core::cmp::Ordering;
 use glam::DVec2;
 
-/// The usable edges of a polygon.
+/// Returns the usable edges of a polygon.
 fn edges(polygon: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     let usable = || polygon.iter().copied().filter(|p| p.usable());
     let skip = usable().count().min(1);
     usable().zip(usable().skip(skip).chain(usable().take(1)))
 }
 
-/// The area of a polygon, positive if it is counter-clockwise; parts run round twice count twice.
+/// Returns the area of a polygon, positive if it is counter-clockwise; parts that are circled twice count twice.
 pub fn signed_area(polygon: &[DVec2]) -> f64 {
     let Some(origin) = polygon.iter().copied().find(|p| p.usable()) else { return 0.0 };
-    // Relative to a corner: far from the origin the products would drown the area.
+    // Relative to a corner: far from the origin the area would be lost in the products.
     edges(polygon).map(|(a, b)| 0.5 * (a - origin).perp_dot(b - origin)).sum()
 }
 
-/// The centre of gravity of a polygon's area; the mean of its corners if it has no area; else the origin.
+/// Returns the centroid of a polygon; the mean of its corners if it has no area; otherwise the origin.
 pub fn centroid(polygon: &[DVec2]) -> DVec2 {
     let Some(origin) = polygon.iter().copied().find(|p| p.usable()) else { return DVec2::ZERO };
     let (mut area, mut size, mut moment) = (0.0, 0.0, DVec2::ZERO);
@@ -35,7 +35,7 @@ pub fn centroid(polygon: &[DVec2]) -> DVec2 {
         mean += a;
         n += 1.0;
     }
-    // 1e-12: what is left of cancelled products is no area.
+    // 1e-12: the remainder of cancelled products is not an area.
     if area.abs() > 1e-12 * size && (moment / area).usable() {
         origin + moment / area
     } else {
@@ -43,7 +43,7 @@ pub fn centroid(polygon: &[DVec2]) -> DVec2 {
     }
 }
 
-/// Whether a point lies inside a polygon, by the even-odd rule; on the edge either answer may come.
+/// Whether a point lies inside a polygon, by the even-odd rule; on the edge either answer is possible.
 ///
 /// False if `p` is not usable. Cost: linear.
 pub fn contains(polygon: &[DVec2], p: DVec2) -> bool {
@@ -56,7 +56,7 @@ pub fn contains(polygon: &[DVec2], p: DVec2) -> bool {
     inside && p.usable()
 }
 
-/// [`contains`] for points of one height.
+/// As [`contains`], for points of one height.
 ///
 /// Cost: linear in the corners, and for each point in the edges that cross this height.
 ///
@@ -78,12 +78,12 @@ pub fn contains_along<X: IntoIterator<Item = f64>>(
     })
 }
 
-/// [`contains`] for many points in any order: the edges are kept by height.
+/// As [`contains`], for many points in any order: the edges are sorted by height.
 ///
 /// ```
 /// use glam::dvec2;
 /// let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)];
-/// let inside = geom::Inside::of(&triangle);
+/// let inside = geom::Inside::new(&triangle);
 /// assert!(inside.has(dvec2(1.0, 2.0)) && !inside.has(dvec2(3.0, 2.0)) && !inside.has(dvec2(1.0, 9.0)));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -94,8 +94,9 @@ pub struct Inside {
 }
 
 impl Inside {
-    /// Of a polygon. Cost: linear in its corners and in the rows that its edges cross, half as many rows as corners.
-    pub fn of(polygon: &[DVec2]) -> Self {
+    /// Prepares a polygon. Cost: linear in its corners and in the rows that its edges cross, half as many rows as
+    /// corners.
+    pub fn new(polygon: &[DVec2]) -> Self {
         let (low, high) = edges(polygon)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (a, _)| (l.min(a.y), h.max(a.y)));
         let count = (polygon.len() / 2).clamp(1, 512);
@@ -116,7 +117,7 @@ impl Inside {
         (base::ops::whole(at) as usize).min(self.rows.len().saturating_sub(1))
     }
 
-    /// Whether a point lies inside, as [`contains`] says.
+    /// Whether a point lies inside, as in [`contains`].
     pub fn has(&self, p: DVec2) -> bool {
         if !p.usable() {
             return false;
@@ -136,7 +137,7 @@ pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
     if b.y > a.y { turn > 0.0 } else { turn < 0.0 }
 }
 
-/// Lower left and upper right corner of the box around points; `None` for no points. Linear.
+/// Returns the lower left and upper right corner of the box around points; `None` for no points. Linear.
 ///
 /// ```
 /// use glam::DVec2;
@@ -148,7 +149,7 @@ pub fn bounds(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
     Some(points.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p))))
 }
 
-/// Indices of the hull's corners, counter-clockwise from the leftmost lowest; repeated places once.
+/// Returns the indices of the hull's corners, counter-clockwise from the leftmost lowest; coincident points once.
 fn hull_indices(points: &[DVec2]) -> Vec<usize> {
     #[expect(clippy::cast_possible_truncation, reason = "no more points than u32 counts")]
     let usable: Vec<u32> = (0..points.len() as u32).filter(|&i| points[i as usize].usable()).collect();
@@ -184,18 +185,18 @@ fn hull_indices(points: &[DVec2]) -> Vec<usize> {
     hull
 }
 
-/// The convex hull, counter-clockwise, without corners on straight edges. Cost: n log n.
+/// Returns the convex hull, counter-clockwise, without corners on straight edges. Cost: n log n.
 ///
-/// One point for one place, two for a straight line, none without a usable point.
+/// One point if all coincide, two for a straight line, none without a usable point.
 ///
 /// Andrew 1979, monotone chain.
 pub fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     hull_indices(points).into_iter().map(|i| points[i]).collect()
 }
 
-/// The two points that lie farthest apart, by index, the lower index first; `None` for no usable point.
+/// Returns the two points that are farthest apart, by index, the lower index first; `None` for no usable point.
 ///
-/// A set in one place gives a pair of one index twice. Cost: n log n and the square of the hull's corners.
+/// If all coincide, it is a pair of one index twice. Cost: n log n and the square of the hull's corners.
 pub fn farthest_pair(points: &[DVec2]) -> Option<(usize, usize)> {
     let mut hull = hull_indices(points);
     hull.sort_unstable();
@@ -212,7 +213,7 @@ pub fn farthest_pair(points: &[DVec2]) -> Option<(usize, usize)> {
     Some(best.1)
 }
 
-/// The piece of a straight line inside a polygon that holds, or lies nearest to, the line's own point.
+/// Returns the piece of a straight line inside a polygon that contains, or is nearest to, the line's own point.
 fn cross_section(polygon: &[DVec2], at: DVec2, across: DVec2) -> Option<(f64, f64)> {
     let along = across.perp();
     let mut hits: Vec<f64> = Vec::new();
@@ -228,12 +229,12 @@ fn cross_section(polygon: &[DVec2], at: DVec2, across: DVec2) -> Option<(f64, f6
     hits.chunks_exact(2).map(|w| (w[0], w[1])).min_by(|p, q| outside(p).total_cmp(&outside(q)))
 }
 
-/// Cross-sections of an elongated polygon from one end to the other: centres and half widths.
+/// Returns cross-sections of an elongated polygon from one end to the other: centres and half widths.
 ///
-/// `samples` (at least 2, at most 10 000) sections stand at equal distances on the way from `from` to `to`,
-/// both included; the way is the straight line at first and then, once, the line of the centres found, so
-/// that a bent leaf is cut across its own direction. Where a section misses the polygon the half width is 0.
-/// Empty if the polygon has fewer than 3 usable corners or an end is not usable. Cost: samples x corners.
+/// `samples` (at least 2, at most 10 000) sections stand at equal distances on the path from `from` to `to`, both
+/// included; the path is first the straight line and then, once, the line of the centres found, so that a bent leaf is
+/// cut across its own direction. If a section misses the polygon the half width is 0. Empty if the polygon has fewer
+/// than 3 usable corners or an end is not usable. Cost: samples x corners.
 pub fn medial_axis_width(polygon: &[DVec2], from: DVec2, to: DVec2, samples: usize) -> Vec<(DVec2, f64)> {
     let polygon = distinct_closed(polygon);
     if polygon.len() < 3 || !from.usable() || !to.usable() {
@@ -244,7 +245,7 @@ pub fn medial_axis_width(polygon: &[DVec2], from: DVec2, to: DVec2, samples: usi
     let mut way: Vec<DVec2> = vec![from];
     way.extend(straight[1..samples - 1].iter().map(|s| s.0));
     way.push(to);
-    // Centres jump where a lobe begins; a mean of five keeps the directions calm.
+    // Centres jump at the start of a lobe; a mean of five smooths the directions.
     let calm: Vec<DVec2> = (0..way.len())
         .map(|i| {
             let half = 2.min(i).min(way.len() - 1 - i);

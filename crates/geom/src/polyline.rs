@@ -1,13 +1,13 @@
-//! Stroke -> polyline: measures, resampling, smoothing and look-ups on open lines.
+//! Open lines: measures, resampling, smoothing and queries.
 //!
-//! Points that are not usable (see the crate's first page) are left out and their neighbours joined, unless
-//! a function says otherwise. Empty and one-point lines are legal everywhere.
+//! Points that are not usable (see the crate's first page) are left out and their neighbours joined, unless a function
+//! says otherwise. Empty and one-point lines are valid everywhere.
 
 use crate::vector::{Vector, distinct, to_index};
 use base::ops;
 use glam::{DVec2, DVec3};
 
-// A line of more pieces than this is a slip in `step`, not a wish; the memory stays under 24 MB.
+// A line of more pieces than this means a mistake in `step`; the memory stays under 24 MB.
 const MAX_PIECES: usize = 1_000_000;
 
 fn usable_pairs<V: Vector>(points: &[V]) -> impl Iterator<Item = (usize, V, V)> {
@@ -23,12 +23,12 @@ fn length_of<V: Vector>(points: &[V]) -> f64 {
     usable_pairs(points).map(|(_, a, b)| a.distance(b)).sum()
 }
 
-/// The length of a line: the sum of its segments' lengths, 0 for fewer than two usable points.
+/// Returns the length of a line: the sum of its segments' lengths, 0 for fewer than two usable points.
 pub fn polyline_length(points: &[DVec2]) -> f64 {
     length_of(points)
 }
 
-/// The length of a line that comes back to its first point: that of a polygon's margin.
+/// Returns the length of a closed line: that of a polygon's margin.
 ///
 /// ```
 /// use glam::DVec2;
@@ -39,7 +39,7 @@ pub fn perimeter(polygon: &[DVec2]) -> f64 {
     polyline_length(polygon) + last
 }
 
-/// The length of a line in space: the sum of its segments' lengths, 0 for fewer than two usable points.
+/// Returns the length of a line in space: the sum of its segments' lengths, 0 for fewer than two usable points.
 pub fn polyline_length3(points: &[DVec3]) -> f64 {
     length_of(points)
 }
@@ -72,10 +72,10 @@ fn resample_any<V: Vector>(points: &[V], step: f64) -> Vec<V> {
     out
 }
 
-/// Points at equal distances along a line, at most `step` apart; the first and last point are kept.
+/// Returns points at equal distances along a line, at most `step` apart; the first and last point are kept.
 ///
-/// Drops unusable and repeated points. A `step` that is not positive returns the line so cleaned. At most a
-/// million pieces are made, whatever the step. Distances are measured along the line, so corners are cut.
+/// Drops unusable and repeated points. A `step` that is not positive only does that. At most a million pieces are made,
+/// whatever the step. Distances are measured along the line, so corners are cut.
 ///
 /// ```
 /// use glam::DVec2;
@@ -86,12 +86,12 @@ pub fn resample(points: &[DVec2], step: f64) -> Vec<DVec2> {
     resample_any(points, step)
 }
 
-/// [`resample`] in space.
+/// As [`resample`], in space.
 pub fn resample3(points: &[DVec3], step: f64) -> Vec<DVec3> {
     resample_any(points, step)
 }
 
-/// The weighted mean of Eq 1 over the points whose indices `near` yields.
+/// Returns the weighted mean of Eq 1 over the points whose indices `near` yields.
 fn gaussian_mean(points: &[DVec2], i: usize, c: f64, near: impl Iterator<Item = usize>) -> DVec2 {
     let here = points[i];
     let (mut sum, mut weights) = (DVec2::ZERO, 0.0);
@@ -106,9 +106,9 @@ fn gaussian_mean(points: &[DVec2], i: usize, c: f64, near: impl Iterator<Item = 
 
 /// Smooths an open line: each point becomes the mean of its neighbours, weighted by exp(-d^2/c).
 ///
-/// `half_window` points on either side take part, fewer near the ends; `c` is in squared units of the line.
-/// The ends stay where they are, and the number of points stays the same; unusable points are passed through
-/// and take no part. With `c` not positive the line is returned as it is. Cost: points x window.
+/// `half_window` points on either side take part, fewer near the ends; `c` is in squared units of the line. The ends
+/// stay in place, and the number of points stays the same; unusable points are passed through and do not contribute. If
+/// `c` is not positive the line is returned unchanged. Cost: points x window.
 ///
 /// He and Cheng (2021), Eq 1.
 pub fn smooth_gaussian(points: &[DVec2], half_window: usize, c: f64) -> Vec<DVec2> {
@@ -120,7 +120,7 @@ pub fn smooth_gaussian(points: &[DVec2], half_window: usize, c: f64) -> Vec<DVec
     let last = points.len() - 1;
     for (i, smoothed) in out.iter_mut().enumerate().take(last).skip(1) {
         if points[i].usable() {
-            // Truncated on both sides alike near the ends: a one-sided mean would pull them inwards.
+            // Truncated equally on both sides near the ends: a one-sided mean would pull them inwards.
             let half = half_window.min(i).min(last - i);
             *smoothed = gaussian_mean(points, i, c, i - half..=i + half);
         }
@@ -128,7 +128,7 @@ pub fn smooth_gaussian(points: &[DVec2], half_window: usize, c: f64) -> Vec<DVec
     out
 }
 
-/// [`smooth_gaussian`] for a closed line (first point not repeated): the window runs over the seam.
+/// As [`smooth_gaussian`], for a closed line (first point not repeated): the window runs over the seam.
 pub fn smooth_gaussian_closed(points: &[DVec2], half_window: usize, c: f64) -> Vec<DVec2> {
     let mut out = points.to_vec();
     let n = points.len();
@@ -147,8 +147,8 @@ pub fn smooth_gaussian_closed(points: &[DVec2], half_window: usize, c: f64) -> V
 
 /// Leaves out points while the line stays within `tolerance` of every point left out.
 ///
-/// Keeps the ends; drops unusable and repeated points. A tolerance that is not positive drops no others than
-/// those. Cost: n log n as a rule, n^2 at worst.
+/// Keeps the ends; drops unusable and repeated points. A tolerance that is not positive drops no others. Cost: usually
+/// n log n, n^2 at worst.
 ///
 /// Douglas and Peucker 1973.
 pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
@@ -179,7 +179,7 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     line.into_iter().zip(keep).filter_map(|(p, k)| k.then_some(p)).collect()
 }
 
-/// Parameter in \[0, 1\] and place of the point of a segment nearest to `p`.
+/// Returns the point of a segment nearest to `p`, as a parameter in \[0, 1\] and as a position.
 pub(crate) fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> (f64, DVec2) {
     let along = b - a;
     let squared = along.length_squared();
@@ -187,7 +187,7 @@ pub(crate) fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> (f64, DVec2) {
     (t, if t >= 1.0 { b } else { a + along * t })
 }
 
-/// The distance of a point from the segment between `a` and `b`; no check of the numbers.
+/// Returns the distance of a point from the segment between `a` and `b`; the numbers are not checked.
 ///
 /// ```
 /// use glam::DVec2;
@@ -209,7 +209,7 @@ pub fn distance_to_segment(a: DVec2, b: DVec2, p: DVec2) -> f64 {
 pub struct Closest {
     /// The segment, by the index of its first point.
     pub index: usize,
-    /// Where on the segment, 0 at its first point, 1 at its second.
+    /// Position on the segment, 0 at its first point, 1 at its second.
     pub t: f64,
     /// The point itself.
     pub point: DVec2,
@@ -219,7 +219,7 @@ pub struct Closest {
     pub at: f64,
 }
 
-/// The point of a line nearest to `p`; of equally near ones the first.
+/// Returns the point of a line nearest to `p`; of equally near ones the first.
 ///
 /// `None` if the line has no usable point or `p` is not usable. A single point counts as a segment without
 /// length. Cost: linear.
@@ -231,7 +231,7 @@ pub fn closest_on_polyline(points: &[DVec2], p: DVec2) -> Option<Closest> {
     Some(Closest { index, t, point, distance: Vector::distance(point, p), at })
 }
 
-/// The distance alone of [`closest_on_polyline`], for half its cost.
+/// Returns only the distance of [`closest_on_polyline`], at half its cost.
 ///
 /// ```
 /// use glam::DVec2;
@@ -242,17 +242,17 @@ pub fn distance_to_polyline(points: &[DVec2], p: DVec2) -> Option<f64> {
     nearest_of(points, p).map(|(_, _, point)| Vector::distance(point, p))
 }
 
-/// Segment, place on it and point nearest to `p`.
+/// Returns the nearest segment, the parameter on it and the point nearest to `p`.
 fn nearest_of(points: &[DVec2], p: DVec2) -> Option<(usize, f64, DVec2)> {
     if !p.usable() {
         return None;
     }
     let (index, &only) = points.iter().enumerate().find(|(_, q)| q.usable())?;
     let (mut index, mut t, mut point) = (index, 0.0, only);
-    // Squares, and no lengths yet: this loop is most of many a measurement.
+    // Squares, without roots so far: this loop dominates many measurements.
     let mut nearest = only.distance_squared(p);
     for (k, a, b) in usable_pairs(points) {
-        // The box around a segment is asked first: it takes no division.
+        // The box around a segment is tested first: it takes no division.
         let outside = (a.min(b) - p).max(p - a.max(b)).max(DVec2::ZERO);
         if outside.length_squared() >= nearest {
             continue;
@@ -266,7 +266,7 @@ fn nearest_of(points: &[DVec2], p: DVec2) -> Option<(usize, f64, DVec2)> {
     Some((index, t, point))
 }
 
-/// The segment at an arc length, with the share of it that lies before.
+/// Returns the segment at an arc length, with the share of it that lies before.
 fn segment_at<V: Vector>(points: &[V], at: f64) -> Option<(V, V, f64)> {
     let at = if at.is_nan() { 0.0 } else { at };
     let mut done = 0.0;
@@ -292,32 +292,32 @@ fn point_at_any<V: Vector>(points: &[V], at: f64) -> Option<V> {
     }
 }
 
-/// The point at arc length `at` (clamped to the line; NaN counts as 0); `None` without a usable point.
+/// Returns the point at arc length `at` (clamped to the line; NaN counts as 0); `None` without a usable point.
 pub fn point_at(points: &[DVec2], at: f64) -> Option<DVec2> {
     point_at_any(points, at)
 }
 
-/// [`point_at`] in space.
+/// As [`point_at`], in space.
 pub fn point_at3(points: &[DVec3], at: f64) -> Option<DVec3> {
     point_at_any(points, at)
 }
 
-/// The unit direction of the segment at arc length `at` (clamped; NaN counts as 0).
+/// Returns the unit direction of the segment at arc length `at` (clamped; NaN counts as 0).
 ///
 /// At a corner it is the direction of the segment that begins there. `None` for a line without length.
 pub fn tangent_at(points: &[DVec2], at: f64) -> Option<DVec2> {
     segment_at(points, at).and_then(|(a, b, _)| (b - a).direction())
 }
 
-/// [`tangent_at`] in space.
+/// As [`tangent_at`], in space.
 pub fn tangent_at3(points: &[DVec3], at: f64) -> Option<DVec3> {
     segment_at(points, at).and_then(|(a, b, _)| (b - a).direction())
 }
 
-/// The signed turning angle at each inner point, radians in (-pi, pi], positive to the left.
+/// Returns the signed turning angle at each inner point, radians in (-pi, pi], positive to the left.
 ///
-/// Returns `points.len() - 2` values (none for fewer than 3 points). It is 0 beside a segment without length
-/// and where one of the three points is not usable.
+/// There are `points.len() - 2` values (none for fewer than 3 points). The angle is 0 next to a segment without length
+/// and if one of the three points is not usable.
 pub fn turning_angles(points: &[DVec2]) -> Vec<f64> {
     points
         .windows(3)
@@ -333,8 +333,8 @@ pub fn turning_angles(points: &[DVec2]) -> Vec<f64> {
         .collect()
 }
 
-/// Distance of a point from a line in space, and the share of the line's length at the nearest place, 0 to 1; infinity
-/// and 0 for fewer than two points. Cost: linear.
+/// Returns the distance of a point from a line in space, and the share of the line's length at the nearest point, 0 to
+/// 1; infinity and 0 for fewer than two points. Cost: linear.
 ///
 /// ```
 /// use glam::DVec3;

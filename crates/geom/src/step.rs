@@ -1,9 +1,9 @@
-//! The order in which ways are found.
+//! Order of the steps in a search for shortest paths.
 
 use core::cmp::Ordering;
 
-/// A way and the place to which it leads, for a `BinaryHeap` that gives the shortest first (Dijkstra 1959); of ways that are
-/// equal, that to the lesser place.
+/// A path length with the place that it leads to, for a `BinaryHeap` that pops the shortest first (Dijkstra 1959); of
+/// equal lengths, the one to the lesser place.
 ///
 /// ```
 /// use geom::Step;

@@ -1,8 +1,8 @@
-//! Margin and veins of a blade -> triangles.
+//! Triangulates a blade with its margin and veins.
 //!
 //! The margin is resampled, points along the veins and a hexagonal lattice fill it, and a constrained Delaunay
-//! triangulation joins them. All of it happens in coordinates from 1 to 2, so that sizes from 1e-90 to 1e90
-//! are alike and no number is too small for exact predicates.
+//! triangulation joins them. All of this happens in coordinates from 1 to 2, so that sizes from 1e-90 to 1e90 are
+//! treated alike and no number is too small for exact predicates.
 
 use crate::outline::{crossings_up_to, simple_outline};
 use crate::polygon::{contains, signed_area};
@@ -12,15 +12,15 @@ use base::ops;
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 
-// 20 000 points are some 40 000 triangles: more than any picture of one leaf shows.
+// Most points: 20 000 are some 40 000 triangles, more than any picture of one leaf shows.
 const MAX_POINTS: f64 = 20_000.0;
-// A corner of the margin is kept if it turns by more than this: leaf tips, teeth, the notch of a heart.
+// Turn of the margin above which a corner is kept: leaf tips, teeth, the notch of a heart.
 const SHARP: f64 = 35.0 * ops::PI / 180.0;
-// Kept corners stand at least this share of an edge apart, so that a shaky hand makes no dust of triangles.
+// Least distance of kept corners, as a share of an edge, so that a shaky line does not cause tiny triangles.
 const CORNER_GAP: f64 = 0.3;
-// Points inside keep this share of an edge away from margin and veins: no needles.
+// Least distance of inner points from margin and veins, as a share of an edge: it avoids needle triangles.
 const CLEAR: f64 = 0.55;
-// Points of veins closer than this share of an edge to another vein's join it.
+// Distance, as a share of an edge, below which the points of different veins are merged.
 const JOIN: f64 = 0.4;
 
 /// A triangulated blade.
@@ -42,7 +42,7 @@ pub struct Triangulation {
     pub boundary: Vec<u32>,
 }
 
-/// Why a blade could not be triangulated.
+/// Reason why a blade could not be triangulated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TriangulateError {
@@ -66,15 +66,14 @@ pub enum TriangulateError {
     },
 }
 
-/// Triangles over a blade whose edges are about `edge` long and follow the margin and the veins.
+/// Triangulates a blade with edges about `edge` long that follow the margin and the veins.
 ///
-/// The margin is resampled to steps of about `edge`; corners of more than 35 degrees are kept, and points where
-/// veins end on it are added. Veins become edges as far as they lie inside and cross no vein before them. An
-/// outline that crosses itself is replaced by its [`simple_outline`]; unusable points are dropped. Guaranteed:
-/// the triangles are counter-clockwise, do not overlap, and cover the resampled margin exactly; every point is
-/// a corner of a triangle; at most about 20 000 points (beyond that, `edge` is enlarged). Not guaranteed: the
-/// area of the original outline, whose curves are cut short by chords of length `edge`. The same input gives
-/// the same bits. Cost: n log n.
+/// The margin is resampled to steps of about `edge`; corners of more than 35 degrees are kept, and the ends of veins on
+/// it are added. Veins become edges as far as they lie inside and cross no earlier vein. An outline that crosses itself
+/// is replaced by its [`simple_outline`]; unusable points are dropped. Guaranteed: the triangles are counter-clockwise,
+/// do not overlap, and cover the resampled margin exactly; every point is a corner of a triangle; at most about 20 000
+/// points (beyond that, `edge` is enlarged). Not guaranteed: the area of the original outline, whose curves are
+/// shortened by chords of length `edge`. The same input gives the same bits. Cost: n log n.
 ///
 /// # Errors
 /// [`TriangulateError::BadEdge`] and [`TriangulateError::NoArea`] for such input.
@@ -114,7 +113,7 @@ pub fn triangulate_blade(
     if area < 0.0 {
         margin.reverse();
     }
-    // 1e-9 of the squared size: a line drawn to and fro.
+    // 1e-9 of the squared size: a line that only goes to and fro.
     if margin.len() < 3 || area.abs() < 1e-9 {
         return Err(no_area);
     }
@@ -126,7 +125,7 @@ pub fn triangulate_blade(
     Ok(done)
 }
 
-/// Runs of a vein inside the box from 1 to 2 (whose middle part the blade fills).
+/// Returns the runs of a vein inside the box from 1 to 2 (the blade fills its middle part).
 fn inside_box(vein: &[DVec2]) -> Vec<Vec<DVec2>> {
     let mut runs: Vec<Vec<DVec2>> = vec![];
     for pair in vein.windows(2) {
@@ -159,11 +158,12 @@ fn inside_box(vein: &[DVec2]) -> Vec<Vec<DVec2>> {
     runs
 }
 
-/// The edge length, enlarged until the points it leads to can be afforded. The lattice fills a box of 1 x 1.
+/// Returns the edge length, enlarged until the resulting number of points is within the limit. The lattice fills a box
+/// of 1 x 1.
 fn affordable(margin: &[DVec2], veins: &[Vec<DVec2>], edge: f64) -> f64 {
     let lines = 2.0 * (polyline_length(margin) + veins.iter().map(|v| polyline_length(v)).sum::<f64>());
-    // 1.5e-3: half a million lattice places in the box. From there the loop ends soon; from an edge so small
-    // that it is 0 here it never would.
+    // 1.5e-3: half a million lattice points in the box. From there the loop ends soon; from an edge so small that it is
+    // 0 here it never would.
     let mut edge = edge.max(1.5e-3);
     while signed_area(margin) / (0.75 * edge * edge) + lines / edge > MAX_POINTS {
         edge *= 1.2;
@@ -178,7 +178,7 @@ fn triangulate_unit(
 ) -> Result<Triangulation, TriangulateError> {
     let mut boundary = resampled_margin(margin, veins, edge);
     let mut step = edge;
-    // Chords over a narrow lobe can cross: finer ones follow it better, its own points do so always.
+    // Chords over a narrow lobe can cross: finer ones follow it better, and its own points always do.
     while boundary.len() < 3 || crossings_up_to(&boundary, 1) > 0 || signed_area(&boundary) <= 0.0 {
         step *= 0.5;
         boundary = if step < 0.1 * edge { margin.to_vec() } else { resampled_margin(margin, veins, step) };
@@ -194,7 +194,7 @@ fn triangulate_unit(
     join(points, count, &vein_edges)
 }
 
-/// The margin in steps of about `edge`, with its corners and the ends of veins kept.
+/// Resamples the margin in steps of about `edge`, with its corners and the ends of veins kept.
 fn resampled_margin(margin: &[DVec2], veins: &[Vec<DVec2>], edge: f64) -> Vec<DVec2> {
     let n = margin.len();
     let mut at = Vec::with_capacity(n + 1); // arc length of each corner
@@ -213,7 +213,7 @@ fn resampled_margin(margin: &[DVec2], veins: &[Vec<DVec2>], edge: f64) -> Vec<DV
     }
     let stops = spaced(stops, total, CORNER_GAP * edge);
     let gaps = stops.len().max(1);
-    // Less than four points in all make no blade worth the name; three corners are a triangle.
+    // Fewer than four points do not represent a blade, but three corners are a triangle.
     let fewest = [4, 4, 2][gaps.min(2)] * usize::from(gaps < 3);
     let mut out = vec![];
     for k in 0..gaps {
@@ -228,7 +228,7 @@ fn resampled_margin(margin: &[DVec2], veins: &[Vec<DVec2>], edge: f64) -> Vec<DV
     distinct_closed(&out)
 }
 
-/// The point of a closed line at an arc length, by the arc lengths of its corners.
+/// Returns the point of a closed line at an arc length, by the arc lengths of its corners.
 fn place(closed: &[DVec2], at: &[f64], here: f64) -> DVec2 {
     let k = at.partition_point(|&a| a <= here).clamp(1, closed.len() - 1);
     let length = at[k] - at[k - 1];
@@ -236,25 +236,25 @@ fn place(closed: &[DVec2], at: &[f64], here: f64) -> DVec2 {
     if t >= 1.0 { closed[k] } else { closed[k - 1] + (closed[k] - closed[k - 1]) * t }
 }
 
-/// A place on the margin that must be kept, by arc length.
+/// A point of the margin that must be kept, by arc length.
 #[derive(Clone, Copy)]
 struct Stop {
     at: f64,
-    /// Of two that are too close the higher rank stays.
+    /// Rank: of two that are too close the higher one stays.
     rank: f64,
 }
 
-/// The sharp corners of the margin: turns of single corners, and of dense lines within half an edge.
+/// Finds the sharp corners of the margin: turns of single corners, and of dense lines within half an edge.
 fn corner_stops(margin: &[DVec2], at: &[f64], edge: f64) -> Vec<Stop> {
     let n = margin.len();
     let total = at[n];
     let reach = (0.5 * edge).min(0.2 * total);
     let sharp = 1.0 - ops::cos(SHARP);
-    // Arc length of a corner counted on over the seam, round after round.
+    // Arc length of a corner continued over the seam, round after round.
     let along = |k: usize| at[k % n] + (k / n) as f64 * total;
     let mut stops = vec![];
-    // In the second round there are corners before and after. The window reaches to the farthest corners
-    // within reach, at least the next ones: that of a sparse polygon is its own two sides.
+    // In the second round there are corners before and after. The window extends to the farthest corners within reach,
+    // at least the next ones: for a sparse polygon it is its own two sides.
     let (mut behind, mut ahead) = (0, 0);
     for i in n..2 * n {
         let here = along(i);
@@ -271,20 +271,20 @@ fn corner_stops(margin: &[DVec2], at: &[f64], edge: f64) -> Vec<Stop> {
         };
         let (own, wide) = (corner(i - 1, i + 1), corner(behind, ahead));
         if own > sharp || wide > sharp {
-            // The window's turn tells a tip from a tremor; a corner's own turn decides between equals.
+            // The turn over the window distinguishes a tip from a tremor; a corner's own turn decides between equals.
             stops.push(Stop { at: at[i - n], rank: wide + 0.1 * own });
         }
     }
     stops
 }
 
-/// One minus the cosine of the angle between two directions: grows with the turn, from 0 to 2.
+/// Returns one minus the cosine of the angle between two directions: grows with the turn, from 0 to 2.
 fn bend(a: DVec2, b: DVec2) -> f64 {
     let lengths = (a.length_squared() * b.length_squared()).sqrt();
     if lengths > 0.0 { 1.0 - a.dot(b) / lengths } else { 0.0 }
 }
 
-/// Stops in order, at least `gap` apart (round the seam too), the higher ranks kept.
+/// Returns stops in order, at least `gap` apart (over the seam too), the higher ranks kept.
 fn spaced(mut stops: Vec<Stop>, total: f64, gap: f64) -> Vec<Stop> {
     base::sort_by(&mut stops, |a, b| a.at.total_cmp(&b.at).then(b.rank.total_cmp(&a.rank)));
     let mut kept: Vec<Stop> = Vec::with_capacity(stops.len());
@@ -337,7 +337,7 @@ fn add_veins(points: &mut Vec<DVec2>, count: usize, veins: &[Vec<DVec2>], edge: 
     edges
 }
 
-/// The index of a vein's point: of the margin (ends only), of a vein close by, or new; `None` outside.
+/// Returns the index of a vein's point: of the margin (ends only), of a vein close by, or new; `None` outside.
 fn vein_point(
     points: &mut Vec<DVec2>,
     margin: &[DVec2],
@@ -368,10 +368,10 @@ fn vein_point(
     Some(points.len() - 1)
 }
 
-/// Points of a hexagonal lattice inside the margin and clear of it and of the veins.
+/// Returns the points of a hexagonal lattice inside the margin and clear of it and of the veins.
 ///
-/// Rows know from the margin's crossings what is inside, and each line strikes out the lattice points close
-/// to it, so the cost is linear.
+/// The crossings of each row with the margin give its inside, and each line removes the lattice points close to it, so
+/// the cost is linear.
 fn lattice_points(points: &[DVec2], count: usize, vein_edges: &[[usize; 2]], edge: f64) -> Vec<DVec2> {
     let row_step = edge * 0.75_f64.sqrt();
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -415,7 +415,7 @@ fn lattice_points(points: &[DVec2], count: usize, vein_edges: &[[usize; 2]], edg
         for column in (0..columns).filter(|c| !struck[row * columns + c]) {
             let p = at(row, column);
             if xs.partition_point(|&x| x < p.x) % 2 == 1 {
-                // A hair off the lattice: six points on one circle would need exact arithmetic at every turn.
+                // Slightly off the lattice: six points on one circle would need exact arithmetic everywhere.
                 let k = out.len() as f64;
                 let off = DVec2::new(0.754_877_666 * k, 0.569_840_290 * k).fract() - 0.5;
                 out.push(p + off * (1e-3 * edge));
@@ -433,7 +433,7 @@ fn join(
 ) -> Result<Triangulation, TriangulateError> {
     let fault = TriangulateError::Internal { points: count };
     let vertices: Vec<Point2<f64>> = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
-    // Without the margin first: loading is a third faster, and most of the margin's edges come by themselves.
+    // Without the margin first: loading is a third faster, and most of the margin's edges result without constraints.
     let mut net =
         ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(vertices, vec![], |_| {})
             .map_err(|_unusable_coordinate| fault)?;
@@ -447,7 +447,7 @@ fn join(
         }
     }
     for &[a, b] in vein_edges {
-        // A vein that crosses one before it (or the margin) is left out there, not split.
+        // A vein that crosses an earlier one (or the margin) is left out there, not split.
         net.try_add_constraint(handle(a), handle(b));
     }
     let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX); // at most about 20 000 points
@@ -462,11 +462,11 @@ fn join(
 
 /// Whether a counter-clockwise triangle of the constrained triangulation lies inside the margin.
 ///
-/// One with a point inside does, since no edge crosses the margin. One with all corners on the margin meets
-/// them in the margin's own order if it lies inside, and in the opposite order in a bay outside.
+/// A triangle with an inner point does, since no edge crosses the margin. One with all corners on the margin meets them
+/// in the margin's own order if it lies inside, and in the opposite order in a bay outside.
 fn is_inside([a, b, c]: [usize; 3], count: usize) -> bool {
     let has_inner = a >= count || b >= count || c >= count;
-    // Of three numbers in cyclic order two of the steps go up; in the opposite order one does.
+    // For three numbers in cyclic order two of the steps go up; in the opposite order one does.
     has_inner || [a < b, b < c, c < a].into_iter().filter(|&up| up).count() == 2
 }
 
@@ -479,7 +479,7 @@ mod tests {
         DVec2::new(x, y)
     }
 
-    /// A lens-shaped leaf with its root at the origin and its tip at (0, 1).
+    /// Returns a lens-shaped leaf with its root at the origin and its tip at (0, 1).
     fn leaf(n: u32, wave: f64) -> Vec<DVec2> {
         let side = |t: f64, s: f64| {
             p(s * (0.3 * ops::sin(ops::PI * t) + wave * ops::sin(40.0 * t) * t * (1.0 - t)), t)
@@ -488,7 +488,7 @@ mod tests {
         (0..n).map(|i| side(t(i), 1.0)).chain((1..=n).rev().map(|i| side(t(i), -1.0))).collect()
     }
 
-    /// What every triangulation must be.
+    /// Checks the invariants of a triangulation.
     fn check(t: &Triangulation) {
         let at = |i: u32| t.points[i as usize];
         let mut sides = vec![];
@@ -509,7 +509,7 @@ mod tests {
         let all = sides.len();
         sides.dedup();
         assert_eq!(sides.len(), all, "no side twice in one direction");
-        // A side without its reverse is the margin's, and the other way round.
+        // A side without its reverse belongs to the margin, and vice versa.
         let single = sides.iter().filter(|&&[a, b]| sides.binary_search(&[b, a]).is_err()).count();
         assert_eq!(single, t.boundary.len());
         for (k, &a) in t.boundary.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! What 2-D and 3-D points have in common, and which points are usable.
+//! Common interface of 2-D and 3-D points, and the definition of usable points.
 
 use core::ops::{Add, Mul, Sub};
 use glam::{DVec2, DVec3};
 
-// 1e100: squares (1e200) and sums of many squares stay far below f64's 1.8e308.
+// Largest coordinate, 1e100: squares (1e200) and sums of many squares stay far below f64's 1.8e308.
 const LIMIT: f64 = 1e100;
 
 /// A point or vector of two or three coordinates.
@@ -11,7 +11,7 @@ pub(crate) trait Vector:
     Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
     fn dot(self, other: Self) -> f64;
-    /// Finite and at most 1e100 in every coordinate.
+    /// Whether every coordinate is finite and at most 1e100.
     fn usable(self) -> bool;
     fn length(self) -> f64 {
         self.dot(self).sqrt()
@@ -19,7 +19,7 @@ pub(crate) trait Vector:
     fn distance(self, other: Self) -> f64 {
         (self - other).length()
     }
-    /// The direction, or `None` for a vector without length.
+    /// Returns the direction, or `None` for a vector without length.
     fn direction(self) -> Option<Self> {
         let length = self.length();
         (length > 0.0 && length.is_finite()).then(|| self * (1.0 / length)).filter(|d| d.usable())
@@ -44,7 +44,7 @@ impl Vector for DVec3 {
     }
 }
 
-/// The usable points without repetitions of the one before.
+/// Returns the usable points, each different from the one before.
 pub(crate) fn distinct<V: Vector>(points: &[V]) -> Vec<V> {
     let mut out: Vec<V> = Vec::with_capacity(points.len());
     for &p in points.iter().filter(|p| p.usable()) {

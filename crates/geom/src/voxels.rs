@@ -8,7 +8,7 @@ use crate::cubes;
 #[derive(Clone, Debug)]
 pub struct Voxels {
     cell: f64,
-    /// Places of the cubes: z, y, x.
+    /// Positions of the cubes: z, y, x.
     keys: Vec<[i32; 3]>,
     /// First row of each cube in `order`, and the number of rows at the end.
     start: Vec<usize>,
@@ -20,20 +20,20 @@ pub struct Voxels {
 }
 
 impl Voxels {
-    /// Cubes as fine as 1/256 of the cloud, or coarser until a cube holds `occupancy` points in the mean.
+    /// Makes cubes of 1/256 of the cloud, or coarser until a cube holds `occupancy` points on average.
     pub fn new(points: &[DVec3], occupancy: f64) -> Self {
         let mut cell = (extent(points) / 256.0).max(1e-12);
         loop {
             let keyed = cubes(points, cell);
             let cubes = count(&keyed);
             if keyed.len() as f64 >= occupancy * cubes as f64 || cubes <= 8 {
-                return Self::of(&keyed, cell);
+                return Self::from_keys(&keyed, cell);
             }
             cell *= 1.3;
         }
     }
 
-    /// Cubes of edge `cell`, or larger ones where a box around the points has more than 2^24 lines of such cubes.
+    /// Makes cubes of edge `cell`, or larger ones if a box around the points has more than 2^24 lines of such cubes.
     pub fn with_cell(points: &[DVec3], cell: f64) -> Self {
         let finite = || points.iter().copied().filter(|p| p.is_finite());
         let (low, high) =
@@ -43,10 +43,10 @@ impl Voxels {
         while (size.y / cell + 1.0) * (size.z / cell + 1.0) > 16_777_216.0 {
             cell *= 1.3;
         }
-        Self::of(&cubes(points, cell), cell)
+        Self::from_keys(&cubes(points, cell), cell)
     }
 
-    fn of(keyed: &[([i32; 3], u32)], cell: f64) -> Self {
+    fn from_keys(keyed: &[([i32; 3], u32)], cell: f64) -> Self {
         let mut v = Self {
             cell,
             keys: vec![],
@@ -78,7 +78,7 @@ impl Voxels {
         z as usize * self.wide as usize + y as usize
     }
 
-    /// The cubes of a line along x.
+    /// Returns the cubes of a line along x.
     fn cubes_of(&self, z: i32, y: i32) -> core::ops::Range<usize> {
         if z < 0 || !(0..self.wide).contains(&y) {
             return 0..0;
@@ -88,17 +88,17 @@ impl Voxels {
         first as usize..self.lines.get(line + 1).map_or(self.keys.len(), |&end| end as usize)
     }
 
-    /// Edge of a cube.
+    /// Returns the edge of a cube.
     pub const fn cell(&self) -> f64 {
         self.cell
     }
 
-    /// Place of a cube: z, y, x in cubes from the lowest corner.
+    /// Returns the position of a cube: z, y, x in cubes from the lowest corner.
     pub fn key(&self, cube: usize) -> [i32; 3] {
         self.keys[cube]
     }
 
-    /// Number of occupied cubes.
+    /// Returns the number of occupied cubes.
     pub fn len(&self) -> usize {
         self.keys.len()
     }
@@ -108,12 +108,12 @@ impl Voxels {
         self.keys.is_empty()
     }
 
-    /// Points of a cube.
+    /// Returns the points of a cube.
     pub fn rows(&self, cube: usize) -> &[u32] {
         &self.order[self.start[cube]..self.start[cube + 1]]
     }
 
-    /// Calls `f` with every occupied cube at most `reach` cubes away along each axis, itself too.
+    /// Calls `f` with every occupied cube at most `reach` cubes away along each axis, including itself.
     pub fn near(&self, cube: usize, reach: i32, mut f: impl FnMut(usize)) {
         let [z, y, x] = self.keys[cube];
         for dz in -reach..=reach {
@@ -130,7 +130,7 @@ impl Voxels {
         }
     }
 
-    /// Mean of each cube's points.
+    /// Returns the mean of each cube's points.
     pub fn means(&self, points: &[DVec3]) -> Vec<DVec3> {
         (0..self.len())
             .map(|c| {
@@ -141,7 +141,7 @@ impl Voxels {
     }
 }
 
-/// Edge of the box around the finite points, the longest; 0 without any. Linear.
+/// Returns the longest edge of the box around the finite points; 0 without any. Linear.
 pub fn extent(points: &[DVec3]) -> f64 {
     let (low, high) = points
         .iter()

@@ -1,10 +1,10 @@
-//! Outlines that point away from one place all round it.
+//! Rings of outlines that all point away from a common centre.
 //!
 //! `spokes -> wheels`
 //!
-//! Mean shift on roots finds petals that begin in one place. Where they begin on a ring about a middle that nobody drew,
-//! no bandwidth that is a share of a petal fits: a wide one takes leaves for petals, a narrow one tears the ring. So the
-//! drawing says how far a petal looks for its neighbours, and all must point away from one place.
+//! Mean shift on roots finds petals that begin at one point. If they begin on a ring around an undrawn centre, no
+//! bandwidth that is a share of a petal fits: a wide one takes leaves for petals, a narrow one splits the ring. So the
+//! spacing in the drawing sets how far a petal searches for its neighbours, and all must point away from one centre.
 
 use base::ops;
 use glam::DVec2;
@@ -12,25 +12,25 @@ use glam::DVec2;
 use crate::KdTree2;
 use crate::vector::Vector;
 
-/// Fewer petals could stand on a ring by chance: two pairs of leaves do.
+/// Fewest petals of a ring: fewer could form one by chance, as two pairs of leaves do.
 const FEWEST: usize = 5;
-/// Neighbours on a ring are this many times as far apart as the second nearest is, at most: 1 if they are even.
+/// Largest ratio of the distance between neighbours on a ring to that of the second nearest: 1 if they are even.
 const UNEVEN: f64 = 1.5;
-/// Cosine of the angle between neighbours, at least: of five petals it is 72 degrees, here 100.
+/// Least cosine of the angle between neighbours: five petals have 72 degrees, this allows 100.
 const APART: f64 = -0.17;
-/// A petal's own line passes the middle at most this share of its size aside: 11 degrees from its tip.
+/// Largest distance of a petal's own line from the centre, as a share of its size: 11 degrees from its tip.
 const ASIDE: f64 = 0.2;
-/// The ring's radius over a petal's size, at most: a wider one is a wreath.
+/// Largest radius of the ring relative to a petal's size: a wider one is a wreath.
 const WIDEST: f64 = 0.8;
-/// The widest gap between petals, radians: a fifth of a turn and a half.
+/// Widest gap between petals, radians: a fifth of a turn and a half.
 const GAP: f64 = 1.9;
 
 /// An outline that may be a petal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spoke {
-    /// Where the pen began and ended: at its root or at its tip.
+    /// Point at which the pen began and ended: its root or its tip.
     pub gap: DVec2,
-    /// Its middle.
+    /// Its centre.
     pub middle: DVec2,
     /// Its longest diameter.
     pub size: f64,
@@ -39,14 +39,15 @@ pub struct Spoke {
 /// A ring of petals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wheel {
-    /// Where their lines meet.
+    /// Common point of their lines.
     pub centre: DVec2,
     /// Rows of the spokes, ascending.
     pub spokes: Vec<usize>,
 }
 
-/// The wheels among spokes: 5 or more neighbours that point away from one place, with no gap wider than 109 degrees,
-/// that begin no farther from it than 0.8 of their size. A spoke is of one wheel at most; what is not finite is of none.
+/// Finds the wheels among spokes: 5 or more neighbours that point away from one centre, with no gap wider than 109
+/// degrees, that begin within 0.8 of their size from it. A spoke belongs to at most one wheel; spokes that are not
+/// finite belong to none.
 ///
 /// Cost: `n log n`.
 ///
@@ -70,8 +71,8 @@ pub fn wheels(spokes: &[Spoke]) -> Vec<Wheel> {
     groups.filter_map(|group| wheel(spokes, group)).collect()
 }
 
-/// Groups of outlines that are neighbours: on a ring each has one on either side, so the second nearest tells how far, and
-/// points nearly where they do. Petals of two flowers that touch point at one another.
+/// Groups neighbouring outlines: on a ring each has one on either side, so the second nearest sets the distance of the
+/// search, and neighbours point nearly the same way. Petals of two flowers that touch point at one another.
 fn neighbours(spokes: &[Spoke]) -> Vec<Vec<usize>> {
     let sound = |s: &Spoke| s.gap.usable() && s.middle.usable() && s.size.is_finite();
     let sound: Vec<usize> = (0..spokes.len()).filter(|&i| sound(&spokes[i])).collect();
@@ -102,7 +103,7 @@ fn neighbours(spokes: &[Spoke]) -> Vec<Vec<usize>> {
         let mut next = 0;
         while let Some(&i) = group.get(next) {
             next += 1;
-            // Of what lies in one place none points elsewhere.
+            // Outlines that coincide, or have fewer than two neighbours, set no distance for the search.
             if !(second[i] > 0.0 && second[i].is_finite()) {
                 continue;
             }
@@ -121,7 +122,7 @@ fn neighbours(spokes: &[Spoke]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The wheel that a group is, but for a quarter of it that is something else.
+/// Returns the wheel that a group forms, leaving out at most a quarter of it.
 fn wheel(spokes: &[Spoke], mut group: Vec<usize>) -> Option<Wheel> {
     let whole = group.len();
     let mut centre = meeting(spokes, &group)?;
@@ -142,7 +143,7 @@ fn wheel(spokes: &[Spoke], mut group: Vec<usize>) -> Option<Wheel> {
     let rooted = |&i: &usize| {
         let s = &spokes[i];
         let (out, begun) = (s.middle.distance(centre), s.gap.distance(centre));
-        // A petal that was begun at its tip has its root as far on the other side of its middle.
+        // A petal that was begun at its tip has its root as far on the other side of its centre.
         let foot = if begun < out { begun } else { (2.0 * out - begun).max(0.0) };
         foot < WIDEST * s.size && foot + 0.2 * s.size < out
     };
@@ -153,7 +154,7 @@ fn wheel(spokes: &[Spoke], mut group: Vec<usize>) -> Option<Wheel> {
     (widest < GAP).then_some(Wheel { centre, spokes: group })
 }
 
-/// The widest angle between neighbours among directions, radians: a whole turn of a single one, and of none.
+/// Returns the widest angle between neighbouring directions, radians: a whole turn for a single one or none.
 ///
 /// Cost: `n log n`.
 ///
@@ -169,12 +170,12 @@ pub fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
     angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max)
 }
 
-/// The direction of an outline, from where it was begun, or towards it.
+/// Returns the direction of an outline, away from or towards its start.
 fn along(spoke: &Spoke) -> Option<DVec2> {
     (spoke.middle - spoke.gap).try_normalize()
 }
 
-/// The place that all lines pass nearest by (least squares); `None` where they are alike.
+/// Returns the point nearest to all lines (least squares); `None` if they are parallel.
 fn meeting(spokes: &[Spoke], group: &[usize]) -> Option<DVec2> {
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     let mut right = DVec2::ZERO;
@@ -186,7 +187,7 @@ fn meeting(spokes: &[Spoke], group: &[usize]) -> Option<DVec2> {
         right += across * across.dot(spokes[i].middle);
     }
     let det = xx * yy - xy * xy;
-    // Of n lines all round it is n^2 / 4.
+    // For n lines in all directions it is n^2 / 4.
     (det > 1e-3 * (xx + yy) * (xx + yy))
         .then(|| DVec2::new((yy * right.x - xy * right.y) / det, (xx * right.y - xy * right.x) / det))
 }

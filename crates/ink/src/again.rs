@@ -6,32 +6,35 @@ use base::CancelToken;
 use geom::closest_on_polyline;
 use glam::DVec2;
 
-/// A drawing of more strokes is read as it is: nobody draws one plant with so many lines twice, and pairs are compared.
+/// Most strokes of a drawing that is searched: nobody draws one plant with more lines twice, and pairs are compared.
 const MOST_STROKES: usize = 400;
-/// The two lines are this near on the average, and nowhere farther than that; the sides of a trunk, or the edges of a leaf,
-/// are farther apart.
+/// Largest mean distance of the two lines; the sides of a trunk or the edges of a leaf are farther apart.
 const NEAR: f64 = 0.006;
+/// Largest distance of the two lines anywhere.
 const FAR: f64 = 0.013;
-/// As [`NEAR`] and [`FAR`], as shares of the length: small petals are told apart, too.
+/// [`NEAR`] as a share of the length, which keeps small petals apart.
 const NEAR_SHARE: f64 = 0.02;
+/// [`FAR`] as a share of the length.
 const FAR_SHARE: f64 = 0.045;
-/// Points of a line that are looked at.
+/// Number of points of a line that are compared.
 const LOOKED: usize = 32;
-/// Where both lead the same way, the cosine between them is larger than this; of so many of the steps they do.
+/// Cosine above which two steps lead the same way.
 const ALONG: f64 = 0.8;
+/// Least share of the steps that lead the same way.
 const STEPS_ALONG: f64 = 0.85;
-/// The way along the other line is as long as the line by these shares: it is followed, and not swept to and fro over.
+/// Length of the path along the other line, as a share of the line's: the line follows it and does not sweep to and
+/// fro.
 const AS_LONG: core::ops::Range<f64> = 0.75..1.3;
-/// Ends nearer than this share of the length: a line that may begin anywhere round the other.
+/// Ends nearer than this share of the length close a line, which may then begin anywhere round the other.
 const CLOSED: f64 = 0.1;
 
-/// Rows of strokes that follow another one all the way, each with the row of that one, ascending.
+/// Returns the rows of strokes that follow another one all the way, each with the row of that one, ascending.
 ///
-/// The other is the longer one, or of two alike the earlier one, and follows none itself. Quadratic in strokes up to 400,
-/// beyond nothing is found.
+/// The other is the longer one, or the earlier of two equal ones, and itself follows none. Quadratic in strokes up to
+/// 400; beyond that nothing is found.
 ///
-/// `strokes`: points and length of each; `alike`: whether two may be the same line, by mode and colour. A cancelled run ends
-/// soon, with part of them.
+/// `strokes`: points and length of each; `alike`: whether two may be the same line, by mode and colour. A cancelled run
+/// ends soon, with a partial result.
 pub(crate) fn drawn_again(
     strokes: &[(&[DVec2], f64)],
     alike: impl Fn(usize, usize) -> bool,
@@ -92,7 +95,7 @@ fn follows((points, length): (&[DVec2], f64), (other, whole): (&[DVec2], f64)) -
         steps += 1;
         along += usize::from(own.dot(its).abs() > ALONG * own.length() * its.length());
     }
-    // Drawn again in pieces, each of them follows the same way.
+    // If a line is drawn again in pieces, each piece leads the same way.
     AS_LONG.contains(&(way / length)) && along as f64 >= STEPS_ALONG * steps as f64
 }
 
@@ -126,7 +129,7 @@ mod tests {
             stem.iter().rev().map(|p| *p + DVec2::new(2.0 * ops::sin(p.y / 90.0), 0.0)).collect();
         let piece = stem[8..30].iter().map(|p| *p + DVec2::new(-2.0, 0.0)).collect();
         let lines = [stem, ring(110.0, 700.0, 100.0, 0.3), back, ring(111.0, 699.0, 101.0, 2.5), piece];
-        // The longer one is the line.
+        // The longer one counts as the line.
         assert_eq!(found(&lines), [(0, 2), (1, 3), (4, 2)]);
     }
 
@@ -139,7 +142,7 @@ mod tests {
                 .map(|t| DVec2::new(side * 14.0 * ops::sin(ops::PI * t), 500.0 * t))
                 .collect()
         };
-        // A zigzag over a line, the stalk that a rib goes on from, two petals that meet.
+        // A zigzag over a line, the stalk that continues a rib, two petals that meet.
         let zigzag = (0..=60)
             .map(|i| DVec2::new(if i % 2 == 0 { 96.0 } else { 104.0 }, 8.0 * f64::from(i % 20)))
             .collect();

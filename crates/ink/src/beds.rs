@@ -5,32 +5,37 @@
 use geom::{distance_to_polyline, widest_gap};
 use glam::DVec2;
 
-/// Fewer are told apart by their places alone.
+/// Fewest stems of a bed: fewer are separated by their places alone.
 const FEWEST: usize = 4;
-/// More lines are no bed.
+/// Most lines of a bed.
 const MOST: usize = 600;
-/// A stem is taller than so many of its widths.
+/// A stem is taller than this multiple of its width.
 const UPRIGHT: f64 = 1.2;
-/// Shares of a stem's length: its foot is so far from all other open lines, its head so near to its top, of at least that size.
+/// Distance of a stem's foot from all other open lines, as a share of the stem's length.
 const FREE: f64 = 0.15;
+/// Largest distance of a head from the top of its stem, as a share of the stem's length.
 const AT_TOP: f64 = 0.12;
+/// Least size of a head, as a share of the stem's length.
 const HEAD: f64 = 0.15;
 /// The middle of a head lies beyond this share of its stem.
 const BEYOND: f64 = 0.85;
-/// Two stems nearer to one another than this share of their length, whose heads overlap, are the sides of a trunk.
+/// Two stems nearer to each other than this share of their length, whose heads overlap, are the sides of a trunk.
 const BESIDE: f64 = 0.5;
-/// What touches so many feet bears them: a box, a pot, a branch. Of the stem's length.
+/// Number of feet from which a touching line counts as their bearer: a box, a pot, a branch.
 const COMMON: usize = 3;
+/// Distance within which a line touches a foot, as a share of the stem's length.
 const TOUCHES: f64 = 0.06;
-/// A head reaches so many times its half size around its middle.
+/// A head reaches this multiple of its half size around its middle.
 const REACH: f64 = 1.2;
-/// A line that is no stem is shorter than this share of the shortest one.
+/// Longest open line that is not a stem, as a share of the shortest stem.
 const SHORT: f64 = 0.4;
-/// Of a disc the shorter side over the longer one; sizes of petals over its own; how near to its middle they begin, in radii;
-/// and the widest gap between two of them, radians.
+/// Least ratio of the shorter to the longer side of a disc.
 const ROUND: f64 = 0.75;
+/// Sizes of petals, as multiples of the disc's size.
 const PETAL: core::ops::Range<f64> = 0.5..4.0;
+/// Distance from the disc's middle at which petals begin, in its radii.
 const AT_DISC: f64 = 1.35;
+/// Widest gap between two petals, radians.
 const GAP: f64 = 2.2;
 
 /// One stroke.
@@ -67,19 +72,19 @@ struct Stem {
     length: f64,
 }
 
-/// The stems of a bed.
+/// Stems of a bed.
 pub(super) struct Bed<'a> {
     strokes: &'a [Stroke<'a>],
     stems: Vec<Stem>,
-    /// Petals round one place, which stay together.
+    /// Outlines of petals around one place, which stay together.
     rings: Vec<Vec<usize>>,
 }
 
 impl<'a> Bed<'a> {
-    /// `None` if this is no bed. `wheels`: outlines that point away from one place. Cost: stems by strokes.
-    pub(super) fn of(strokes: &'a [Stroke<'a>], wheels: impl FnOnce() -> Vec<Vec<usize>>) -> Option<Self> {
+    /// Returns `None` if this is not a bed. `wheels`: outlines that point away from one place. Cost: stems by strokes.
+    pub(super) fn find(strokes: &'a [Stroke<'a>], wheels: impl FnOnce() -> Vec<Vec<usize>>) -> Option<Self> {
         let stems = stems(strokes)?;
-        // A ring of petals round a disc says more than the directions of petals.
+        // A ring of petals round a disc is stronger evidence than the directions of petals.
         let mut held = vec![false; strokes.len()];
         let mut all = rings(strokes);
         all.extend(wheels());
@@ -91,14 +96,14 @@ impl<'a> Bed<'a> {
         Some(Self { strokes, stems, rings: all })
     }
 
-    /// Strokes that touch one another as the plants that they are, and whether these are of the bed.
+    /// Splits strokes that touch one another into plants, and says whether these belong to the bed.
     ///
-    /// What lies about the top of a stem is its head, what touches it is its leaf, even if it touches a neighbour's head or stem
-    /// as well.
+    /// A stroke about the top of a stem is its head, and a stroke that touches it is its leaf, even if it also touches
+    /// a neighbour's head or stem.
     pub(super) fn plants(&self, group: &[usize]) -> (Vec<Vec<usize>>, bool) {
         let own: Vec<&Stem> = self.stems.iter().filter(|s| group.contains(&s.stroke)).collect();
         let shortest = own.iter().map(|s| s.length).fold(f64::INFINITY, f64::min);
-        // Other long lines are trunks, limbs or stems with a bearer: of something else.
+        // Other long lines are trunks, limbs or branched stems, which are not part of the bed.
         let is_stem = |k: usize| own.iter().any(|s| s.stroke == k);
         let other = |&k: &usize| {
             let s = &self.strokes[k];
@@ -131,7 +136,7 @@ impl<'a> Bed<'a> {
     }
 }
 
-/// Upright lines with a free foot and a head on its top.
+/// Finds upright lines with a free foot and a head at the top.
 fn stems(strokes: &[Stroke<'_>]) -> Option<Vec<Stem>> {
     if strokes.len() > MOST {
         return None;
@@ -173,7 +178,7 @@ fn stems(strokes: &[Stroke<'_>]) -> Option<Vec<Stem>> {
     Some(stems)
 }
 
-/// Round outlines with others all round them: discs with their petals, those with the most first.
+/// Finds round outlines with others all round them: discs with their petals, those with the most first.
 fn rings(strokes: &[Stroke<'_>]) -> Vec<Vec<usize>> {
     let closed: Vec<usize> = (0..strokes.len()).filter(|&k| strokes[k].closed).collect();
     let is_round = |k: usize| {
@@ -209,15 +214,15 @@ fn stem(strokes: &[Stroke<'_>], k: usize) -> Option<Stem> {
     stands.then(|| Stem { stroke: k, foot, top, length: foot.distance(top) })
 }
 
-/// How far a stroke is from being the head of a stem, or a leaf on it; shares of the stem's length.
+/// Returns how far a stroke is from being the head of a stem or a leaf on it, as a share of the stem's length.
 fn cost(stroke: &Stroke<'_>, stem: &Stem) -> f64 {
-    /// A head comes before a leaf.
+    /// Cost of a leaf, so that a head is preferred.
     const LEAF: f64 = 0.02;
     let as_head = (stroke.middle().distance(stem.top) - 0.5 * REACH * stroke.size()).max(0.0) / stem.length;
     let line = [stem.foot, stem.top];
     let on_stem = stroke.points.iter().filter_map(|p| distance_to_polyline(&line, *p));
     let as_leaf = on_stem.fold(f64::INFINITY, f64::min) / stem.length + LEAF;
-    // Of two stems beside a head the one that it is over.
+    // Where a head lies next to two stems, prefers the stem that it is above.
     let aside = LEAF * (stroke.middle().distance(stem.top) / stem.length).min(0.9);
     as_head.min(as_leaf) + aside
 }
@@ -243,7 +248,7 @@ mod tests {
         Stroke { points, lo, hi, closed, straight: !closed, ground: false }
     }
 
-    /// Flowers of a stem, a disc and six round petals, their feet here.
+    /// Makes flowers on stems, each a disc and six round petals, with their feet at the given places.
     fn flowers(feet: &[DVec2]) -> Vec<Vec<DVec2>> {
         let one = |&foot: &DVec2| {
             let middle = foot + DVec2::new(0.02, 1.0);
@@ -261,13 +266,13 @@ mod tests {
         let behind = (0..4).map(|k| DVec2::new(f64::from(k) + 0.12, 1.0));
         let lines = flowers(&front.chain(behind).collect::<Vec<_>>());
         let strokes: Vec<Stroke<'_>> = lines.iter().map(|l| stroke(l)).collect();
-        let bed = Bed::of(&strokes, Vec::new).expect("eight stems with heads");
+        let bed = Bed::find(&strokes, Vec::new).expect("eight stems with heads");
         let (mut plants, of_bed) = bed.plants(&(0..strokes.len()).collect::<Vec<_>>());
         plants.iter_mut().for_each(|own| own.sort_unstable());
         plants.sort_unstable();
         let want: Vec<Vec<usize>> = (0..8).map(|k| (8 * k..8 * k + 8).collect()).collect();
         assert_eq!((plants, of_bed), (want, true));
-        // What is not among them is as it was.
+        // A stroke that is not among the stems stays as it was.
         assert_eq!(bed.plants(&[1, 2]), (vec![vec![1, 2]], false));
     }
 
@@ -277,7 +282,7 @@ mod tests {
         let side = |x: f64| vec![DVec2::new(x, 0.0), DVec2::new(x, 0.95)];
         let trees: Vec<Vec<DVec2>> =
             (0..4).map(f64::from).flat_map(|x| [side(x - 0.1), side(x + 0.1), crown(x)]).collect();
-        assert!(Bed::of(&trees.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
+        assert!(Bed::find(&trees.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
         let mut potted = flowers(&(0..5).map(|k| DVec2::new(0.7 * f64::from(k), 0.0)).collect::<Vec<_>>());
         potted.push(vec![
             DVec2::new(-0.2, 0.0),
@@ -286,6 +291,6 @@ mod tests {
             DVec2::new(0.0, -0.5),
             DVec2::new(-0.2, 0.0),
         ]);
-        assert!(Bed::of(&potted.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
+        assert!(Bed::find(&potted.iter().map(|l| stroke(l)).collect::<Vec<_>>(), Vec::new).is_none());
     }
 }

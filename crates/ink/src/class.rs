@@ -1,9 +1,9 @@
-//! The words for what a stroke can be.
+//! Classes of strokes, and their words.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What one stroke is. The words of the command line's contract.
+/// The class of one stroke, named by the words of the command line's contract.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
@@ -53,12 +53,12 @@ impl StrokeClass {
         Self::Other,
     ];
 
-    /// Its place in [`ALL`](Self::ALL): the trained model's label number.
+    /// Returns its place in [`ALL`](Self::ALL), the trained model's label number.
     pub const fn place(self) -> usize {
         self as usize
     }
 
-    /// The word in reports, label files and class overrides.
+    /// Returns the word in reports, label files and class overrides.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Blade => "blade",
@@ -76,7 +76,7 @@ impl StrokeClass {
         }
     }
 
-    /// The class of a word.
+    /// Returns the class of a word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.word() == word)
     }

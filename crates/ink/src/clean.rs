@@ -12,24 +12,24 @@ use crate::again::drawn_again;
 use crate::subjects::subjects;
 use crate::{Drawing, StrokeMode, Subjects};
 
-/// Even step of resampled strokes, a share of the drawing's diagonal: the line width of a felt pen on a sheet.
+/// Even step of resampled strokes, as a share of the drawing's diagonal: the line width of a felt pen on a sheet.
 pub(crate) const STEP: f64 = 0.005;
-/// Short strokes are resampled to at least this many steps, so that small leaves keep their form.
+/// Least steps of a resampled stroke, so that small leaves keep their form.
 const MIN_STEPS: f64 = 16.0;
-/// Most points that all strokes together are resampled to (besides `MIN_STEPS` of each): bounds memory.
+/// Most points that all strokes together are resampled to (in addition to `MIN_STEPS` of each): bounds memory.
 const MAX_POINTS: f64 = 400_000.0;
 /// Half window m of Eq 1, in steps: 3 steps reach past the jitter of a mouse, not past a petal's tip.
 const HALF_WINDOW: usize = 3;
-/// Corners sharper than this are kept: cos 60 degrees.
+/// Cosine of the sharpest turn that is smoothed: 60 degrees; sharper corners are kept.
 const CORNER_COS: f64 = 0.5;
-/// Beyond this no difference of two coordinates could overflow.
+/// Largest coordinate: beyond it a difference of two coordinates could overflow.
 const LARGEST: f64 = 1e304;
 /// A sample this many times farther from the middle than nine tenths of all samples is a stray.
 const STRAY: f64 = 1000.0;
-/// Warnings of one kind that are told one by one.
+/// Most warnings of one kind that are reported one by one.
 const TOLD: usize = 20;
 
-/// Where ink coordinates lie in the drawing: `ink = (drawing - origin) * scale`.
+/// Map from the drawing to ink coordinates: `ink = (drawing - origin) * scale`.
 ///
 /// ```
 /// use glam::DVec2;
@@ -46,12 +46,12 @@ pub struct InkMap {
 }
 
 impl InkMap {
-    /// From the drawing's coordinates to ink coordinates.
+    /// Maps a point from the drawing's coordinates to ink coordinates.
     pub fn to_ink(&self, p: DVec2) -> DVec2 {
         (p - self.origin) * self.scale
     }
 
-    /// From ink coordinates to the drawing's.
+    /// Maps a point from ink coordinates to the drawing's.
     pub fn to_drawing(&self, p: DVec2) -> DVec2 {
         p / self.scale + self.origin
     }
@@ -81,6 +81,8 @@ pub struct InkStroke {
     pub mode: StrokeMode,
     /// Its colour as sRGB, if the file has one.
     pub color: Option<[u8; 3]>,
+    /// Width of its pen, ink units, if the file has one.
+    pub width: Option<f64>,
     /// Length of `points`, above 0.
     pub length: f64,
     /// Distance of neighbouring points before smoothing.
@@ -88,8 +90,8 @@ pub struct InkStroke {
     pub(crate) found: Arc<Found>,
 }
 
-/// What was found out of the points of a stroke when it was first asked for. It follows from them: two strokes are equal
-/// whatever is known of them.
+/// Facts about the points of a stroke, found when first asked for. They follow from the points, so two strokes are
+/// equal whatever is already known of them.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     hull: OnceLock<Vec<DVec2>>,
@@ -103,12 +105,12 @@ impl PartialEq for Found {
 }
 
 impl InkStroke {
-    /// The convex hull of its points ([`geom::convex_hull`]), found once.
+    /// Returns the convex hull of its points ([`geom::convex_hull`]), computed once.
     pub fn hull(&self) -> &[DVec2] {
         self.found.hull.get_or_init(|| geom::convex_hull(&self.points))
     }
 
-    /// Its points as a closed outline ([`geom::simple_outline`]), if they are one, found once.
+    /// Returns its points as a closed outline ([`geom::simple_outline`]), if they form one, computed once.
     pub fn outline(&self) -> Option<&[DVec2]> {
         self.found.outline.get_or_init(|| geom::simple_outline(&self.points)).as_deref()
     }
@@ -119,24 +121,34 @@ impl InkStroke {
 pub struct Ink {
     /// The strokes that can be used, in the drawing's order.
     pub strokes: Vec<InkStroke>,
-    /// Indices of the drawing's strokes that cannot (one point, no length, no finite sample), ascending.
+    /// Indices of the drawing's strokes that cannot be used (one point, no length, no finite sample), ascending.
     pub skipped: Vec<u32>,
-    /// How ink coordinates were made from the drawing's.
+    /// Map from the drawing's coordinates to ink coordinates.
     pub map: InkMap,
     /// Which strokes are of one plant.
     pub subjects: Subjects,
 }
 
 impl Ink {
-    /// Other lines on the same sheet as if they were the whole drawing, each with the colour of its stroke: parts of
-    /// strokes, or outlines that several strokes make together. `lines`: points in ink coordinates and the row of a stroke.
+    /// Returns the width of the pen in which most of the drawing was drawn, ink units: the median over its strokes.
+    /// 0 where no stroke has one.
+    pub fn pen_width(&self) -> f64 {
+        let mut widths: Vec<f64> = self.strokes.iter().filter_map(|s| s.width).collect();
+        base::sort_numbers(&mut widths);
+        widths.get(widths.len() / 2).copied().unwrap_or_default()
+    }
+
+    /// Returns other lines on the same sheet as if they were the whole drawing, each with the colour of its stroke:
+    /// parts of strokes, or outlines that several strokes make together. `lines`: points in ink coordinates and the row
+    /// of a stroke.
     ///
-    /// Their indices are their places in `lines`. Lines of rows that are not there have no colour.
+    /// Their indices are their places in `lines`. Lines of rows that do not exist have no colour.
     pub fn with_lines(&self, lines: &[(Vec<DVec2>, usize)]) -> Self {
         let stroke = |(index, (points, row)): (u32, &(Vec<DVec2>, usize))| InkStroke {
             index,
             raw: points.clone(),
             color: self.strokes.get(*row).and_then(|s| s.color),
+            width: self.strokes.get(*row).and_then(|s| s.width),
             ..InkStroke::default()
         };
         let strokes: Vec<InkStroke> = (0_u32..).zip(lines).map(stroke).collect();
@@ -144,9 +156,10 @@ impl Ink {
         Self { strokes, map: self.map, ..Self::default() }.part(&rows)
     }
 
-    /// Some of the strokes, by their rows, as if they were the whole drawing: their box has diagonal 1.
+    /// Returns some of the strokes, by their rows, as if they were the whole drawing: their box has diagonal 1.
     ///
-    /// They keep their indices. Rows that are not there are left out; where the strokes have no extent, nothing is left.
+    /// They keep their indices. Rows that do not exist are left out; where the strokes have no extent, the result is
+    /// empty.
     pub fn part(&self, rows: &[usize]) -> Self {
         let chosen: Vec<&InkStroke> = rows.iter().filter_map(|&k| self.strokes.get(k)).collect();
         let points = chosen.iter().flat_map(|s| &s.raw);
@@ -167,6 +180,7 @@ impl Ink {
                 pressure: s.pressure,
                 mode: s.mode,
                 color: s.color,
+                width: s.width.map(|w| w * scale),
                 ..InkStroke::default()
             })
             .collect();
@@ -193,8 +207,8 @@ pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
     clean_again(drawing, None, &Run::plain(), report)
 }
 
-/// As [`clean`], of a drawing that changed a little: strokes that are as they were, in a box that is as it was, are taken
-/// over from the ink before. The same ink comes out. A cancelled run ends soon, with ink that means nothing.
+/// Cleans a drawing that changed a little as [`clean`] does: unchanged strokes in an unchanged box are taken over from
+/// the previous ink, which gives the same result. A cancelled run ends soon, with meaningless ink.
 pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, run: &Run<'_>, report: &mut Report) -> Ink {
     let mut notes = Notes::default();
     let usable = usable_samples(drawing, &mut notes);
@@ -227,6 +241,7 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, run: &Run<'_>, repor
             pressure: mean_pressure(kept.iter().filter_map(|&k| stroke.samples[k].pressure)),
             mode: stroke.mode,
             color: stroke.color,
+            width: stroke.width.map(|w| w * ink.map.scale),
             length,
             ..InkStroke::default()
         });
@@ -249,7 +264,7 @@ pub fn clean_again(drawing: &Drawing, before: Option<&Ink>, run: &Run<'_>, repor
     ink
 }
 
-/// Resamples and smooths strokes of which `raw` is known. `before`: strokes that were, some of them the same.
+/// Resamples and smooths strokes whose `raw` is known. `before`: the previous strokes, some of them the same.
 fn even(strokes: &mut [InkStroke], before: &[InkStroke], cancel: &CancelToken) {
     for stroke in strokes.iter_mut() {
         stroke.length = polyline_length(&stroke.raw);
@@ -273,7 +288,7 @@ fn even(strokes: &mut [InkStroke], before: &[InkStroke], cancel: &CancelToken) {
     }
 }
 
-/// Sample numbers that can be used, for each stroke: finite, and no strays.
+/// Returns for each stroke the numbers of usable samples: finite, and not strays.
 fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
     let finite = |p: DVec2| p.x.abs() <= LARGEST && p.y.abs() <= LARGEST;
     let mut kept: Vec<Vec<usize>> = Vec::with_capacity(drawing.strokes.len());
@@ -298,7 +313,7 @@ fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
         return kept;
     }
     let middle = DVec2::new(quantile(&mut xs, 0.5), quantile(&mut ys, 0.5));
-    // The larger of both coordinates: squares could overflow, and a stray is one by far.
+    // Takes the larger of both coordinates: squares could overflow, and a stray is far beyond any rounding.
     let far = |p: DVec2| (p - middle).abs().max_element();
     let mut distances: Vec<f64> = places().map(far).collect();
     let limit = quantile(&mut distances, 0.9) * STRAY;
@@ -314,8 +329,8 @@ fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
     kept
 }
 
-/// Whether no sample can be a stray, without a sort: a tenth of all lie in the first third and a tenth in the last third
-/// of the width, or of the height. Whichever side the middle is of, nine tenths then do not lie near it.
+/// Whether no sample can be a stray, without a sort: a tenth of all lie in the first third and a tenth in the last
+/// third of the width, or of the height. On whichever side the middle lies, nine tenths are then not near it.
 fn no_strays(drawing: &Drawing, kept: &[Vec<usize>]) -> bool {
     let places = || kept.iter().zip(&drawing.strokes).flat_map(|(k, s)| k.iter().map(|&i| s.samples[i].at));
     let (mut lo, mut hi, mut all) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0_usize);
@@ -330,13 +345,13 @@ fn no_strays(drawing: &Drawing, kept: &[Vec<usize>]) -> bool {
             *other += usize::from(p[axis] > hi[axis] - third[axis]);
         }
     }
-    // A hair more than the tenth beyond the ninth of ten.
+    // Slightly more than the tenth beyond the quantile of nine tenths.
     let enough = all / 10 + 3;
     let wide = |axis: usize| third[axis] > 0.1 * third.max_element();
     (0..2).any(|axis| wide(axis) && low[axis] >= enough && high[axis] >= enough)
 }
 
-/// The map that puts the lower left corner at the origin and makes the diagonal 1; `None` without an extent.
+/// Returns the map that puts the lower left corner at the origin and makes the diagonal 1; `None` without an extent.
 fn ink_map(drawing: &Drawing, kept: &[Vec<usize>]) -> Option<InkMap> {
     let mut lo = DVec2::INFINITY;
     let mut hi = DVec2::NEG_INFINITY;
@@ -356,7 +371,7 @@ fn mean_pressure(values: impl Iterator<Item = f64>) -> Option<f64> {
     (n > 0.0).then(|| sum / n)
 }
 
-/// The value that a share `q` of the values lies below. `values` is not empty.
+/// Returns the quantile `q` of the values. `values` is not empty.
 fn quantile(values: &mut [f64], q: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "q is within 0 and 1")]
     #[expect(clippy::cast_precision_loss, reason = "a rank need not be exact beyond 2^53 samples")]
@@ -365,7 +380,7 @@ fn quantile(values: &mut [f64], q: f64) -> f64 {
     values[rank]
 }
 
-/// Even steps of at most `step` along a polyline of length `length`, both ends kept.
+/// Takes even steps of at most `step` along a polyline of length `length`, both ends kept.
 fn resample(raw: &[DVec2], length: f64, step: f64) -> Vec<DVec2> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by MAX_POINTS")]
     let steps = (length / step - 1e-6).ceil().clamp(1.0, MAX_POINTS) as usize;
@@ -385,7 +400,7 @@ fn resample(raw: &[DVec2], length: f64, step: f64) -> Vec<DVec2> {
     points
 }
 
-/// Eq 1 between the corners: the ends of the stroke and corners above 60 degrees stay where they are.
+/// Applies Eq 1 between the corners: the ends of the stroke and corners above 60 degrees stay in place.
 fn smooth(points: &[DVec2], step: f64) -> Vec<DVec2> {
     // The weight falls to 1/e at two steps: c = (2 step)^2.
     let c = 4.0 * step * step;
@@ -393,7 +408,7 @@ fn smooth(points: &[DVec2], step: f64) -> Vec<DVec2> {
     let corners = corners(points);
     for pair in corners.windows(2) {
         for i in pair[0] + 1..pair[1] {
-            // The window is cut alike on both sides at a corner: a one-sided mean would pull the line short.
+            // The window is cut equally on both sides at a corner: a one-sided mean would shorten the line.
             let m = HALF_WINDOW.min(i - pair[0]).min(pair[1] - i);
             let (mut sum, mut weights) = (DVec2::ZERO, 0.0);
             for p in &points[i - m..=i + m] {
@@ -409,7 +424,7 @@ fn smooth(points: &[DVec2], step: f64) -> Vec<DVec2> {
     out
 }
 
-/// First and last point and the sharpest point of every corner above 60 degrees, ascending.
+/// Returns the first and last point and the sharpest point of every corner above 60 degrees, ascending.
 fn corners(points: &[DVec2]) -> Vec<usize> {
     let last = points.len() - 1;
     let mut found = vec![0];
@@ -431,7 +446,7 @@ fn corners(points: &[DVec2]) -> Vec<usize> {
     found
 }
 
-/// What cleaning left out, told in few words however much it is.
+/// Samples and strokes that cleaning left out, reported briefly however many they are.
 #[derive(Debug, Default)]
 struct Notes {
     broken: Vec<(u32, usize)>,

@@ -1,4 +1,4 @@
-//! What the pen left on the sheet.
+//! Strokes as the pen left them on the sheet.
 
 use std::sync::Arc;
 
@@ -6,13 +6,13 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// In which mode a stroke was drawn (He and Cheng 2021, section 4.1).
+/// Mode in which a stroke was drawn (He and Cheng 2021, section 4.1).
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum StrokeMode {
-    /// A part of the plant: what it is, is found out.
+    /// A part of the plant: the stroke is classified.
     #[default]
     Parts,
     /// A contour to be filled with twigs.
@@ -24,7 +24,7 @@ pub enum StrokeMode {
 /// One point of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InkSample {
-    /// Any unit, y up. May be anything the file said, even NaN: cleaning deals with it.
+    /// Position in any unit, y up. May be any number in the file, even NaN: cleaning deals with it.
     pub at: DVec2,
     /// Milliseconds since the stroke or the drawing began, if known.
     pub time_ms: Option<f64>,
@@ -41,18 +41,18 @@ impl From<DVec2> for InkSample {
 /// One movement of the pen on the sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stroke {
-    /// The pen's way.
+    /// Samples along the pen's path.
     pub samples: Vec<InkSample>,
-    /// The mode that it was drawn in.
+    /// The mode in which it was drawn.
     pub mode: StrokeMode,
     /// Its colour as sRGB, if the file has one.
     pub color: Option<[u8; 3]>,
-    /// How wide the pen is, in the drawing's unit, above 0; `None` for the pen that every sheet has. It says how the line
-    /// looks, and nothing of the plant: how thick wood is follows from what it bears.
+    /// Width of the pen, in the drawing's unit, above 0; `None` for the default pen of the sheet. It affects only how
+    /// the line looks: how thick wood is follows from what it bears.
     pub width: Option<f64>,
     /// The name of its layer in [`Drawing::layers`]; `None` for the sheet itself, which lies below all layers.
     pub layer: Option<Arc<str>>,
-    /// Its layer is hidden: it is not part of the plant.
+    /// Whether its layer is hidden, so that it is not part of the plant.
     pub hidden: bool,
     /// Its name in the file (an SVG id), for messages.
     pub id: Option<String>,
@@ -81,16 +81,16 @@ pub struct Drawing {
 pub struct Layer {
     /// Its name, unique in the drawing, 1 to 200 characters.
     pub name: Arc<str>,
-    /// What lies on it is not seen and not part of the plant. Default false.
+    /// Whether its strokes are invisible and not part of the plant. Default false.
     #[serde(default)]
     pub hidden: bool,
-    /// What lies on it stays as it is. Default false.
+    /// Whether its strokes are protected from changes. Default false.
     #[serde(default)]
     pub locked: bool,
 }
 
 impl Drawing {
-    /// A drawing in `parts` mode from bare polylines, y up.
+    /// Makes a drawing in `parts` mode from bare polylines, y up.
     pub fn from_polylines(name: impl Into<String>, lines: &[Vec<DVec2>]) -> Self {
         let strokes = lines
             .iter()

@@ -1,8 +1,7 @@
-//! A stroke that was drawn, changed by hand: `Stroke -> Stroke`. Mode, colour and name stay.
+//! Edits of a stroke by hand: `Stroke -> Stroke`. Mode, colour and name stay.
 //!
-//! Points that come between two samples get their times and pressures from between theirs. Nothing is guaranteed of
-//! samples that are not finite but that no function panics; a result may overflow where the numbers are near the
-//! largest ones.
+//! Points added between two samples get interpolated times and pressures. For samples that are not finite, the only
+//! guarantee is that no function panics; a result may overflow where the numbers are near the largest ones.
 
 use base::ops;
 use geom::{closest_on_polyline, distance_to_polyline};
@@ -12,27 +11,27 @@ use serde::{Deserialize, Serialize};
 
 use crate::{InkSample, Stroke};
 
-/// A pull bends a line in at least so many pieces on either side.
+/// Least pieces that the pulled part of a line has on either side.
 const PULL_PIECES: f64 = 12.0;
-/// A rubber cuts to this share of its radius.
+/// Step of a cut by the rubber, as a share of its radius.
 const RUB_STEP: f64 = 0.25;
 /// Most pieces that one piece of a line is cut into.
 const MOST_PIECES: f64 = 1000.0;
-/// A line is smoothed in so many even steps.
+/// Number of even steps in which a line is smoothed.
 const SMOOTH_STEPS: u32 = 400;
-/// Eq 1 reaches over so many of them on either side: 2 % of the line.
+/// Steps that Eq 1 reaches on either side: 2 % of the line.
 const SMOOTH_WINDOW: usize = 8;
-/// Ends nearer than this share of the diagonal of its box close a line.
+/// A line is closed if its ends are nearer than this share of the diagonal of its box.
 const CLOSED: f64 = 0.1;
 
-/// Turned and scaled about a point.
+/// A rotation and scaling about a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrokeTurn {
-    /// What stays where it is, the drawing's unit.
+    /// Fixed point, in the drawing's unit.
     #[schemars(with = "[f64; 2]")]
     pub about: DVec2,
-    /// Counter-clockwise, degrees.
+    /// Rotation counter-clockwise, degrees.
     pub angle_deg: f64,
     /// Factors of size along x and y before the turn; a negative one mirrors.
     #[schemars(with = "[f64; 2]")]
@@ -40,8 +39,8 @@ pub struct StrokeTurn {
 }
 
 impl StrokeTurn {
-    /// The stroke turned and scaled. Linear in samples.
-    pub fn of(&self, stroke: &Stroke) -> Stroke {
+    /// Returns the stroke turned and scaled. Linear in samples.
+    pub fn apply(&self, stroke: &Stroke) -> Stroke {
         let (sin, cos) = ops::sin_cos(self.angle_deg.to_radians());
         let turned = |p: DVec2| {
             let q = (p - self.about) * self.scale;
@@ -53,24 +52,24 @@ impl StrokeTurn {
     }
 }
 
-/// A line bent by pulling at it.
+/// A bend of a line by a pull.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrokePull {
-    /// Where it was taken hold of; the nearest point of the line counts. The drawing's unit.
+    /// Point of the grip; the nearest point of the line counts. The drawing's unit.
     #[schemars(with = "[f64; 2]")]
     pub at: DVec2,
-    /// How far it was pulled.
+    /// Vector of the pull.
     #[schemars(with = "[f64; 2]")]
     pub by: DVec2,
-    /// How far along the line the pull reaches, above 0.
+    /// Reach of the pull along the line, above 0.
     pub reach: f64,
 }
 
 impl StrokePull {
-    /// The stroke bent: what was held moves by the whole way, what lies `u` reaches along the line from it by
-    /// (1 - u^2)^2 of it, what lies farther not at all. A line that closes is bent across its seam. Linear in samples.
-    pub fn of(&self, stroke: &Stroke) -> Stroke {
+    /// Returns the bent stroke: the held point moves by the whole pull, a point `u` reaches along the line from it by
+    /// (1 - u^2)^2 of it, and points farther away stay. A line that closes is bent across its seam. Linear in samples.
+    pub fn apply(&self, stroke: &Stroke) -> Stroke {
         let points = positions(stroke);
         let Some(held) = closest_on_polyline(&points, self.at) else { return stroke.clone() };
         let total = geom::polyline_length(&points);
@@ -97,8 +96,8 @@ impl StrokePull {
     }
 }
 
-/// The stroke smoothed once more by Eq 1 (He and Cheng 2021), which reaches over 2 % of its length on either side,
-/// in 400 even steps. Both ends of an open line stay; one that closes stays closed. Linear in samples.
+/// Returns the stroke smoothed once more by Eq 1 (He and Cheng 2021), which reaches over 2 % of its length on either
+/// side, in 400 even steps. Both ends of an open line stay; a line that closes stays closed. Linear in samples.
 pub fn smoothed(stroke: &Stroke) -> Stroke {
     let total = geom::polyline_length(&positions(stroke));
     if !(total > 0.0 && total.is_finite()) {
@@ -109,7 +108,7 @@ pub fn smoothed(stroke: &Stroke) -> Stroke {
     let reach = SMOOTH_WINDOW as f64 * total / f64::from(SMOOTH_STEPS);
     let c = reach * reach / 2.0;
     if closes(&line) {
-        // The last point is the first one again.
+        // The last point repeats the first.
         line.pop();
         line = geom::smooth_gaussian_closed(&line, SMOOTH_WINDOW, c);
         line.push(line[0]);
@@ -120,7 +119,7 @@ pub fn smoothed(stroke: &Stroke) -> Stroke {
     Stroke { samples: even, ..stroke.clone() }
 }
 
-/// Samples at even distances along a line of this length, the first and the last among them.
+/// Returns samples at even distances along a line of this length, including the first and the last.
 fn evenly(samples: &[InkSample], total: f64) -> Vec<InkSample> {
     let mut even = Vec::with_capacity(SMOOTH_STEPS as usize + 1);
     let (mut done, mut k) = (0.0, 0);
@@ -141,7 +140,8 @@ fn evenly(samples: &[InkSample], total: f64) -> Vec<InkSample> {
     even
 }
 
-/// The two parts of a stroke before and after its point nearest to `at`; `None` if one of them would have no length.
+/// Returns the two parts of a stroke before and after its point nearest to `at`; `None` if one of them would have no
+/// length.
 pub fn cut(stroke: &Stroke, at: DVec2) -> Option<[Stroke; 2]> {
     let points = positions(stroke);
     let found = closest_on_polyline(&points, at)?;
@@ -157,8 +157,9 @@ pub fn cut(stroke: &Stroke, at: DVec2) -> Option<[Stroke; 2]> {
     Some([before, after].map(|samples| Stroke { samples, ..stroke.clone() }))
 }
 
-/// One stroke of several: beginning with the first, again and again the one goes on whose end is nearest to either end of
-/// what there is. Mode, colour and name are the first one's; times are not known. Quadratic in strokes.
+/// Joins several strokes into one, which begins with the first and repeatedly continues with the stroke whose end is
+/// nearest to either end of the result. Mode, colour and name are the first one's; times are unknown. Quadratic in
+/// strokes.
 pub fn joined(strokes: &[&Stroke]) -> Option<Stroke> {
     let mut rest: Vec<&Stroke> = strokes.iter().copied().filter(|s| !s.samples.is_empty()).collect();
     let &first = rest.first()?;
@@ -188,9 +189,11 @@ pub fn joined(strokes: &[&Stroke]) -> Option<Stroke> {
     Some(Stroke { samples: line, ..first.clone() })
 }
 
-/// What a round rubber of this radius, led along `path`, leaves of a stroke; `None` if it touches nothing.
+/// Returns the parts of a stroke that a round rubber of this radius, moved along `path`, leaves; `None` if it touches
+/// nothing.
 ///
-/// A piece that is shorter than the radius goes, too. Cost: samples times the points of the path, for samples near it.
+/// A piece that is shorter than the radius is removed, too. Cost: samples times the points of the path, for samples
+/// near it.
 pub fn rubbed(stroke: &Stroke, path: &[DVec2], radius: f64) -> Option<Vec<Stroke>> {
     let usable = radius > 0.0 && radius.is_finite();
     let points = positions(stroke);
@@ -225,7 +228,7 @@ fn positions(stroke: &Stroke) -> Vec<DVec2> {
     stroke.samples.iter().map(|s| s.at).collect()
 }
 
-/// The part of a path, from the first to the last of its pieces, that comes near a box.
+/// Returns the part of a path, from the first to the last of its pieces, that comes near a box.
 fn near_box(path: &[DVec2], (lo, hi): (DVec2, DVec2), radius: f64) -> Vec<DVec2> {
     let apart = |a: DVec2, b: DVec2| (a.min(b) - hi).max(lo - a.max(b)).max_element() > radius;
     let near: Vec<usize> = match path {
@@ -246,7 +249,7 @@ fn closes(points: &[DVec2]) -> bool {
     points.len() > 3 && ends.is_some_and(|(a, b)| a.distance(*b) < CLOSED * lo.distance(hi))
 }
 
-/// Arc length at each sample.
+/// Returns the arc length at each sample.
 fn along(samples: &[InkSample]) -> impl Iterator<Item = f64> {
     let mut done = 0.0;
     samples.iter().enumerate().map(move |(i, s)| {
@@ -266,8 +269,8 @@ fn mix(a: &InkSample, b: &InkSample, t: f64) -> InkSample {
     }
 }
 
-/// The samples and others between them, so that each piece is at most as long as `step` says of the arc lengths at its
-/// ends; it is asked once for each piece, in their order.
+/// Inserts samples, so that each piece is at most as long as `step` returns for the arc lengths at its ends; `step` is
+/// called once for each piece, in their order.
 fn finer(samples: &[InkSample], mut step: impl FnMut(f64, f64) -> f64) -> Vec<InkSample> {
     let mut fine = Vec::with_capacity(samples.len());
     let mut done = 0.0;
@@ -300,7 +303,7 @@ mod tests {
     #[test]
     fn a_turn_keeps_what_it_is_about() {
         let turn = StrokeTurn { about: DVec2::new(1.0, 1.0), angle_deg: 90.0, scale: DVec2::splat(2.0) };
-        let turned = positions(&turn.of(&line(&[[1.0, 1.0], [2.0, 1.0]])));
+        let turned = positions(&turn.apply(&line(&[[1.0, 1.0], [2.0, 1.0]])));
         assert!(turned[0].distance(DVec2::new(1.0, 1.0)) < 1e-12);
         assert!(turned[1].distance(DVec2::new(1.0, 3.0)) < 1e-12, "{turned:?}");
     }
@@ -309,14 +312,14 @@ mod tests {
     fn a_pull_moves_what_is_held_and_leaves_what_is_far() {
         let stroke = line(&[[0.0, 0.0], [100.0, 0.0]]);
         let pull = StrokePull { at: DVec2::new(50.0, 3.0), by: DVec2::new(0.0, 10.0), reach: 20.0 };
-        let bent = pull.of(&stroke);
+        let bent = pull.apply(&stroke);
         let points = positions(&bent);
         let top = points.iter().map(|p| p.y).fold(0.0, f64::max);
         assert!((top - 10.0).abs() < 0.2, "{top}");
         for p in &points {
             assert!((p.x - 50.0).abs() < 20.0 || p.y == 0.0, "{p}");
         }
-        // No corner: what is next to one another moves alike.
+        // No corner appears: neighbouring points move alike.
         let bend = geom::turning_angles(&points).into_iter().map(f64::abs).fold(0.0, f64::max);
         assert!(bend < 0.3, "{bend}");
         assert_eq!(bent.color, stroke.color);
@@ -325,7 +328,7 @@ mod tests {
     #[test]
     fn a_ring_is_pulled_across_its_seam() {
         let pull = StrokePull { at: DVec2::new(100.0, 0.0), by: DVec2::new(50.0, 0.0), reach: 60.0 };
-        let points = positions(&pull.of(&ring(64)));
+        let points = positions(&pull.apply(&ring(64)));
         let (first, last) = (points[0], points[points.len() - 1]);
         assert!(first.distance(last) < 1e-9, "it stays closed: {first} {last}");
         assert!((first.x - 150.0).abs() < 1e-9);
@@ -341,7 +344,7 @@ mod tests {
         let rough = |s: &Stroke| positions(s).iter().map(|p| p.y.abs()).sum::<f64>() / s.samples.len() as f64;
         let once = smoothed(&stroke);
         assert!(rough(&once) < 0.5 * rough(&stroke), "{} {}", rough(&once), rough(&stroke));
-        // However densely it was sampled, each time helps, and it does not grow.
+        // However densely the line was sampled, each smoothing helps, and the line does not grow.
         let wave = |k: i32| [f64::from(k) / 10.0, 3.0 * ops::sin(f64::from(k) / 50.0)];
         let dense = line(&(0..6000).map(wave).collect::<Vec<_>>());
         let mut last = dense.clone();
@@ -364,7 +367,7 @@ mod tests {
         let hatching = line(&(0..30).map(legs).collect::<Vec<_>>());
         let (first, last) = (hatching.samples[0].at, hatching.samples[29].at);
         let pull = StrokePull { at: first, by: DVec2::NEG_X * 9.0, reach: 60.0 };
-        assert_eq!(pull.of(&hatching).samples.last().unwrap().at, last, "its end is far along the line");
+        assert_eq!(pull.apply(&hatching).samples.last().unwrap().at, last, "its end is far along the line");
         let smooth = smoothed(&hatching);
         assert_eq!((smooth.samples[0].at, smooth.samples.last().unwrap().at), (first, last));
     }
@@ -411,9 +414,9 @@ mod tests {
         let nan = line(&[[f64::NAN, 0.0], [1.0, f64::INFINITY], [2.0, 2.0]]);
         for stroke in [Stroke::default(), line(&[[1.0, 1.0]]), line(&[[1.0, 1.0], [1.0, 1.0]]), nan] {
             let pull = StrokePull { at: DVec2::ZERO, by: DVec2::X, reach: 0.0 };
-            let _ = (pull.of(&stroke), smoothed(&stroke), cut(&stroke, DVec2::ZERO));
+            let _ = (pull.apply(&stroke), smoothed(&stroke), cut(&stroke, DVec2::ZERO));
             let _ = (rubbed(&stroke, &[DVec2::ZERO], 1.0), joined(&[&stroke, &stroke]));
-            let _ = StrokeTurn { about: DVec2::NAN, angle_deg: f64::NAN, scale: DVec2::X }.of(&stroke);
+            let _ = StrokeTurn { about: DVec2::NAN, angle_deg: f64::NAN, scale: DVec2::X }.apply(&stroke);
         }
         assert!(joined(&[]).is_none());
     }

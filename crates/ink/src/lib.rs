@@ -1,17 +1,17 @@
-//! What the pen drew, and what each stroke is (He and Cheng 2021, sections 3 and 4.1).
+//! Drawings, and the class of each stroke (He and Cheng 2021, sections 3 and 4.1).
 //!
 //! `Drawing -> Ink (clean strokes) -> classes`
 //!
 //! | step | module | paper |
 //! |---|---|---|
-//! | strokes as they were drawn | `drawing` | |
-//! | what drawing programs paint, as plain strokes | `normal` | |
-//! | turned, pulled, smoothed, cut, joined, rubbed out in part | `edit` | |
+//! | strokes as drawn | `drawing` | |
+//! | shapes of drawing programs, as plain strokes | `normal` | |
+//! | strokes turned, pulled, smoothed, cut, joined, partly erased | `edit` | |
 //! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
-//! | which strokes are of one plant | `subjects` | |
-//! | what a stroke can be, and what each one is | `class`, `classify` | section 4.1 |
+//! | which strokes form one plant | `subjects` | |
+//! | the classes, and the class of each stroke | `class`, `classify` | section 4.1 |
 //!
-//! The feature `training` adds what trains the classifier; programs that make plants do without it.
+//! The feature `training` adds the code that trains the classifier; programs that make plants do without it.
 
 mod again;
 mod beds;

@@ -1,29 +1,30 @@
-//! Which strokes are of one plant: a drawing of several is taken apart before any stroke is judged.
+//! Subjects: the strokes of each plant. A drawing of several plants is split before any stroke is judged.
 //!
 //! `clean strokes -> Subjects`
 //!
-//! What touches belongs together, and so do petals all round one place, what stands above one another, what is enclosed,
-//! and what is near relative to its size. What stands beside one another on the ground, each with something of its own,
-//! are several plants. Lines by themselves are no plants: they are grass, or belong to the plant beside them. Distances
-//! are shares of the sizes of what they lie between, so neither the sheet nor the order of drawing matters.
+//! Strokes that touch belong together, and so do petals all round one place, strokes above one another, enclosed
+//! strokes, and strokes that are near relative to their size. Groups that stand next to one another on the ground, each
+//! with something of its own, are several plants. Lines by themselves are not plants: they are grass, or belong to the
+//! plant next to them. Distances are shares of the sizes of what they lie between, so neither the sheet nor the order
+//! of drawing matters.
 
 use crate::beds::{Bed, Stroke};
 use geom::{Spoke, convex_hull, signed_area, wheels};
 use glam::DVec2;
 
-/// A drawing of more strokes is one plant: nobody draws a row of plants with so many.
+/// Most strokes of a drawing that is split: nobody draws a row of plants with more.
 const MOST_STROKES: usize = 600;
-/// More groups of strokes that touch are no few plants.
+/// Most groups of touching strokes in a drawing that is split.
 const MOST_GROUPS: usize = 160;
 /// Strokes nearer than this share of the drawing's height touch.
 const TOUCH: f64 = 0.02;
-/// Feet within this share of the height of each other stand on one ground.
+/// A group stands on the ground if its foot is within this share of the drawing's height above the lowest point.
 const LEVEL: f64 = 0.2;
-/// So is one whose hull covers this share of the square of its length; a half circle has 0.16.
+/// A stroke whose hull covers this share of the square of its length is closed, too; a half circle has 0.16.
 const FULL: f64 = 0.13;
-/// As [`FULL`], of an arch.
+/// [`FULL`] for an arch.
 const ARCHED: f64 = 0.04;
-/// What hangs in the air farther from all else than this share of its own size does not belong to it.
+/// A group in the air that is farther from all else than this share of its own size does not belong to it.
 const CLEAR: f64 = 0.5;
 /// A stroke is closed if its ends are nearer than this share of its length.
 const CLOSED: f64 = 0.22;
@@ -31,23 +32,24 @@ const CLOSED: f64 = 0.22;
 /// The plants of a drawing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Subjects {
-    /// Rows of [`Ink::strokes`](crate::Ink::strokes) of each plant, ascending; plants from left to right. Never empty
+    /// Rows of [`Ink::strokes`](crate::Ink::strokes) of each plant, ascending; plants from left to right. Not empty
     /// where there are strokes.
     pub plants: Vec<Vec<usize>>,
     /// Rows of the ground that several plants stand on.
     pub ground: Vec<usize>,
-    /// Rows of strokes that only follow another one all the way, each with the row of that one: of no plant themselves.
+    /// Rows of strokes that only follow another one all the way, each with the row of that one: they belong to no
+    /// plant.
     pub again: Vec<(usize, usize)>,
 }
 
 impl Subjects {
-    /// All strokes are of one plant.
+    /// Makes one plant of all strokes.
     fn one(count: usize) -> Self {
         let all: Vec<usize> = (0..count).collect();
         Self { plants: if count > 0 { vec![all] } else { Vec::new() }, ..Self::default() }
     }
 
-    /// What was drawn again is left to the lines that it follows.
+    /// Leaves out repeated strokes, in favour of the lines that they follow.
     pub(crate) fn without(mut self, again: Vec<(usize, usize)>) -> Self {
         let other = |row: &usize| again.binary_search_by_key(row, |a| a.0).is_err();
         self.plants.iter_mut().for_each(|rows| rows.retain(other));
@@ -57,13 +59,13 @@ impl Subjects {
         self
     }
 
-    /// The drawing is not read as it stands: it shows several plants, or lines that were drawn again.
+    /// Whether the drawing has to be split: it shows several plants, or lines that were drawn again.
     pub fn is_parted(&self) -> bool {
         self.plants.len() > 1 || !self.again.is_empty()
     }
 }
 
-/// Takes a drawing apart into its plants. Linear in points up to 600 strokes and 160 groups; beyond, it is one plant.
+/// Splits a drawing into its plants. Linear in points up to 600 strokes and 160 groups; beyond, it is one plant.
 ///
 /// `strokes`: points and length of each.
 pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
@@ -99,13 +101,13 @@ pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
 struct Line {
     lo: DVec2,
     hi: DVec2,
-    /// Every few points, both ends among them.
+    /// Every few points, including both ends.
     points: Vec<DVec2>,
-    /// It encloses something by itself.
+    /// Whether it encloses an area by itself.
     closed: bool,
-    /// It is rather straight.
+    /// Whether it is rather straight.
     straight: bool,
-    /// It is a thin blade that stands, drawn as an outline.
+    /// Whether it is a thin upright blade, drawn as an outline.
     slender: bool,
     length: f64,
 }
@@ -116,7 +118,7 @@ struct Group {
     strokes: Vec<usize>,
     lo: DVec2,
     hi: DVec2,
-    /// A plant of a bed: with none other it is one.
+    /// Whether it is one plant of a bed, which joins no other.
     of_bed: bool,
 }
 
@@ -149,7 +151,7 @@ impl Sheet {
         self.hi.y - self.lo.y
     }
 
-    /// Lines along the foot of the whole drawing.
+    /// Returns the lines along the foot of the whole drawing.
     fn grounds(&self) -> Vec<usize> {
         let (wide, high) = (self.hi.x - self.lo.x, self.height());
         let flat = |l: &Line| {
@@ -159,7 +161,7 @@ impl Sheet {
         (0..self.lines.len()).filter(|&k| flat(&self.lines[k])).collect()
     }
 
-    /// Takes groups apart in which several plants of a bed touch one another.
+    /// Splits groups in which several plants of a bed touch one another.
     fn part_beds(&self, groups: &mut Vec<Group>, ground: &[usize]) {
         let strokes = self.lines.iter().enumerate().map(|(k, l)| Stroke {
             points: &l.points,
@@ -170,7 +172,7 @@ impl Sheet {
             ground: ground.contains(&k),
         });
         let strokes: Vec<Stroke<'_>> = strokes.collect();
-        let Some(bed) = Bed::of(&strokes, || self.wheels()) else { return };
+        let Some(bed) = Bed::find(&strokes, || self.wheels()) else { return };
         *groups = core::mem::take(groups)
             .into_iter()
             .flat_map(|group| {
@@ -180,7 +182,7 @@ impl Sheet {
             .collect();
     }
 
-    /// Groups of strokes that touch one another.
+    /// Returns groups of strokes that touch one another.
     fn touching(&self, ground: &[usize]) -> Vec<Group> {
         let reach = TOUCH * self.height().max(0.05);
         let mut cells: Vec<((i64, i64), usize, DVec2)> = Vec::new();
@@ -190,7 +192,7 @@ impl Sheet {
             (cell(p.x), cell(p.y))
         };
         for (k, line) in self.lines.iter().enumerate().filter(|(k, _)| !ground.contains(k)) {
-            // Between two points there are others of the stroke that may touch.
+            // Points of the stroke between two kept ones may touch.
             for w in line.points.windows(2) {
                 let n = steps(w[0].distance(w[1]) / (0.7 * reach));
                 cells.extend((0..n).map(|i| {
@@ -230,7 +232,7 @@ impl Sheet {
         }
     }
 
-    /// Outlines all round one place.
+    /// Returns outlines all round one place.
     fn wheels(&self) -> Vec<Vec<usize>> {
         let closed: Vec<usize> = (0..self.lines.len()).filter(|&k| self.lines[k].closed).collect();
         let spoke = |&k: &usize| {
@@ -251,10 +253,10 @@ impl Sheet {
         Group { strokes, lo, hi, of_bed: false }
     }
 
-    /// Joins what belongs together, the nearest first.
+    /// Joins groups that belong together, the nearest first.
     fn gather(&self, groups: &mut Vec<Group>) {
         let cost = |a: &Group, b: &Group| self.belongs(a, b).unwrap_or(f64::INFINITY);
-        // Row a holds what it costs to join a with each earlier group.
+        // Row a holds the cost of joining a with each earlier group.
         let mut costs: Vec<Vec<f64>> =
             (0..groups.len()).map(|a| (0..a).map(|b| cost(&groups[a], &groups[b])).collect()).collect();
         loop {
@@ -266,7 +268,7 @@ impl Sheet {
                     }
                 }
             }
-            // The later group goes, the earlier one grows.
+            // The later group is merged into the earlier one.
             let Some((_, a, b)) = best else { break };
             let other = groups.remove(a);
             costs.remove(a);
@@ -287,7 +289,7 @@ impl Sheet {
         self.tufts(groups);
     }
 
-    /// Lines by themselves are grass: neighbours are one tuft, and where there is nothing else, all are.
+    /// Treats lines by themselves as grass: neighbours form one tuft, and where there is nothing else, all do.
     fn tufts(&self, groups: &mut Vec<Group>) {
         if groups.iter().all(|g| self.bare(g)) {
             let strokes = groups.iter().flat_map(|g| g.strokes.iter().copied()).collect();
@@ -309,12 +311,12 @@ impl Sheet {
         }
     }
 
-    /// How far two groups are from being one plant, where they are; the lower the surer.
+    /// Returns how far two groups are from being one plant; lower is surer, and `None` means two plants.
     fn belongs(&self, a: &Group, b: &Group) -> Option<f64> {
         let (small, large) = if a.size() < b.size() { (a, b) } else { (b, a) };
         let gap = self.gap(small, large, 0.5 * large.size())?;
         let (stand_a, stand_b) = (self.stands(small), self.stands(large));
-        // Rows of a bed stand over one another.
+        // Rows of a bed stand above one another.
         if a.of_bed && b.of_bed && !(stand_a && stand_b) {
             return None;
         }
@@ -325,7 +327,7 @@ impl Sheet {
         if enclosed > 0.7 {
             return Some(0.2 * gap / small.size());
         }
-        // What hangs in the air clearly apart, as the sun does.
+        // A group in the air that is clearly apart, as the sun is.
         let clear = gap > CLEAR * small.size() && gap > 3.0 * TOUCH * self.height() && !stand_a;
         // Above one another.
         let apart = (small.lo.y - large.hi.y).max(large.lo.y - small.hi.y).max(0.0);
@@ -334,7 +336,7 @@ impl Sheet {
         if over > 0.5 && !both && near && !(clear && !bare[0] && !bare[1]) {
             return Some(gap / small.height().max(large.height()));
         }
-        // Side by side on the ground, but one reaches into the other below the lower one's top.
+        // Next to each other on the ground, but one reaches into the other below the lower one's top.
         if both {
             let top = small.hi.y.min(large.hi.y);
             if self.overlap_below(small, large, top) > 0.4 {
@@ -344,20 +346,20 @@ impl Sheet {
         // A line with arms may be half of a cactus.
         let plain = |l: &Line| l.length < 1.6 * l.lo.distance(l.hi);
         let few = |g: &Group| g.strokes.len() <= 2 && g.strokes.iter().all(|&k| plain(&self.lines[k]));
-        // Single lines are grass together, or belong to the plant beside them.
+        // Single lines are grass together, or belong to the plant next to them.
         match bare {
             [true, true] if gap < 0.8 * small.size() => return Some(0.1 + gap / small.size()),
             [true, false] if few(small) && gap < 0.3 * small.size() => return Some(0.4 + gap / small.size()),
             [false, true] if few(large) && gap < 0.15 * large.size() => {
                 return Some(0.4 + gap / small.size());
             }
-            // Limbs of one plant that is drawn in lines.
+            // Limbs of one plant drawn in lines.
             [false, false] if self.lines_only(a) && self.lines_only(b) && gap < 0.35 * small.height() => {
                 return Some(0.5 + gap / small.size());
             }
             _ => {}
         }
-        // What hangs in the air belongs to what it is nearest to.
+        // A group in the air belongs to the nearest one.
         if !stand_a && !clear && gap < 0.3 * large.size() {
             return Some(0.6 + gap / large.size());
         }
@@ -373,17 +375,17 @@ impl Sheet {
         group.strokes.len()
     }
 
-    /// It reaches down to the ground of the drawing.
+    /// Whether it reaches down to the ground of the drawing.
     fn stands(&self, group: &Group) -> bool {
         group.lo.y < self.lo.y + LEVEL * self.height()
     }
 
-    /// Nothing in it encloses anything.
+    /// Whether nothing in it encloses an area.
     fn lines_only(&self, group: &Group) -> bool {
         group.strokes.iter().all(|&k| !self.lines[k].closed)
     }
 
-    /// Nothing but single lines that stand beside one another, or one or two lines.
+    /// Whether it has nothing but single lines that stand next to one another, or one or two lines.
     fn bare(&self, group: &Group) -> bool {
         let lines = || group.strokes.iter().map(|&k| &self.lines[k]);
         let rooted = |l: &Line| (l.straight || l.slender) && l.lo.y < group.lo.y + 0.4 * group.height();
@@ -391,7 +393,7 @@ impl Sheet {
             || lines().all(|l| rooted(l) && (!l.closed || l.slender))
     }
 
-    /// The least distance of two groups, if it is below `most`.
+    /// Returns the least distance of two groups, if it is below `most`.
     fn gap(&self, a: &Group, b: &Group, most: f64) -> Option<f64> {
         let apart = (a.lo - b.hi).max(b.lo - a.hi).max(DVec2::ZERO).length();
         if apart > most {
@@ -415,7 +417,7 @@ impl Sheet {
         (least <= most).then_some(least)
     }
 
-    /// As [`overlap`], of what lies below a height.
+    /// Returns the [`overlap`] below a height.
     fn overlap_below(&self, a: &Group, b: &Group, top: f64) -> f64 {
         let part = |g: &Group| {
             let points = g.strokes.iter().flat_map(|&k| &self.lines[k].points).filter(|p| p.y <= top);
@@ -456,7 +458,7 @@ impl Line {
     }
 }
 
-/// The share of the narrower one's width that lies over or under the other.
+/// Returns the share of the narrower one's width that lies over or under the other.
 fn overlap(a: &Group, b: &Group) -> f64 {
     shared((a.lo.x, a.hi.x), (b.lo.x, b.hi.x))
 }
@@ -467,7 +469,7 @@ fn shared(a: (f64, f64), b: (f64, f64)) -> f64 {
     if least > 1e-6 { common / least } else { f64::from(u8::from(common >= 0.0)) }
 }
 
-/// The share of the smaller box that lies in the larger one.
+/// Returns the share of the smaller box that lies in the larger one.
 fn inside(small: &Group, large: &Group) -> f64 {
     let side = |a: (f64, f64), b: (f64, f64)| {
         let own = (a.1 - a.0).max(1e-6);

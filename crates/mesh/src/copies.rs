@@ -1,26 +1,26 @@
-//! Meshes that stand in many places.
+//! Meshes with many places.
 
 use glam::{DQuat, DVec3};
 
 use crate::{MaterialId, Part, TriMesh};
 
-/// Where a copy stands.
+/// Place of a copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CopyPlace {
-    /// Of the mesh's origin, metres.
+    /// Position of the mesh's origin, metres.
     pub at: DVec3,
-    /// How it is turned.
+    /// Rotation.
     pub turn: DQuat,
-    /// How much larger it is.
+    /// Scale factor.
     pub scale: f64,
-    /// By what its colour is multiplied, linear RGB.
+    /// Factor of its colour, linear RGB.
     pub color: [f32; 3],
 }
 
-/// A mesh once, and all the places where it stands.
+/// A mesh, stored once, and the places of all its copies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Copies {
-    /// Name of the part that they are of.
+    /// Name of the part that the copies form.
     pub name: String,
     /// Its material.
     pub material: MaterialId,
@@ -31,7 +31,7 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// All copies as one part, as programs without instances need them.
+    /// Returns all copies as one part, for programs without instances.
     pub fn flattened(&self) -> Part {
         let mut mesh = TriMesh::default();
         for place in &self.places {

@@ -1,4 +1,4 @@
-//! Triangle meshes and materials: what every maker's plant ends as, and what files and pictures are made of.
+//! Triangle meshes and materials: the result of every maker, and the source of files and pictures.
 //!
 //! `plant -> skin -> Model -> formats | render`
 //!
@@ -10,7 +10,7 @@ mod material;
 mod rig;
 mod trimesh;
 
-pub use cloud::PointCloud;
+pub use cloud::{PointClass, PointCloud};
 pub use copies::{Copies, CopyPlace};
 pub use material::{AlphaMode, Impostor, Maps, Material, MaterialId, MaterialKind, Texture};
 pub use rig::{Hold, Joint, Rig};

@@ -1,4 +1,4 @@
-//! What a surface looks like.
+//! Appearance of surfaces.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ base::define_id! {
     pub struct MaterialId;
 }
 
-/// What a material stands for; files carry it in the material's name.
+/// Kind of surface; files carry it in the material's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MaterialKind {
     /// Woody surface.
@@ -33,7 +33,7 @@ pub enum MaterialKind {
 }
 
 impl MaterialKind {
-    /// The word used in names and reports.
+    /// Returns the word for names and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Bark => "bark",
@@ -62,8 +62,8 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Square pictures of `size` pixels a side, RGBA bytes, row by row in a square of `cells` by `cells`, which is 1 or more;
-    /// pictures beyond that are left out, and what no picture fills is 0.
+    /// Joins square pictures of `size` pixels a side, RGBA bytes, row by row in a square of `cells` by `cells`, which
+    /// is 1 or more; further pictures are left out, and empty cells are 0.
     ///
     /// ```
     /// let (red, blue) = ([255, 0, 0, 255], [0, 0, 255, 255]);
@@ -85,28 +85,28 @@ impl Texture {
     }
 }
 
-/// What a surface has beside its colour, each over the texture coordinates of the mesh. Default: none.
+/// Textures of a surface in addition to its colour, each over the texture coordinates of the mesh. Default: none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Maps {
-    /// Normals in the space of the tangent as glTF has them: red along u, green against v, blue outwards; the material's
-    /// tangents are those that `MikkTSpace` computes.
+    /// Normals in the space of the tangent as glTF has them: red along u, green against v, blue outwards; the
+    /// material's tangents are those that `MikkTSpace` computes.
     pub normal: Option<Arc<Texture>>,
-    /// Red: how much of the sky is seen (1 all). Green: multiplied with the roughness. Blue: 0, no metal.
+    /// Red: share of the sky that is visible (1 all). Green: factor of the roughness. Blue: 0, no metal.
     pub orm: Option<Arc<Texture>>,
     /// Grey: height of the relief, 0 its lowest and 255 its highest place.
     pub height: Option<Arc<Texture>>,
-    /// Alpha: multiplied with the translucency.
+    /// Alpha: factor of the translucency.
     pub through: Option<Arc<Texture>>,
 }
 
 impl Maps {
-    /// All that are there, in the order of the fields.
+    /// Returns all textures, in the order of the fields.
     pub fn each(&self) -> impl Iterator<Item = &Arc<Texture>> {
         [&self.normal, &self.orm, &self.height, &self.through].into_iter().flatten()
     }
 }
 
-/// How alpha is read.
+/// Meaning of the alpha channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
@@ -121,7 +121,7 @@ pub enum AlphaMode {
 pub struct Material {
     /// Unique within the model, such as `leaf` or `petal-2`.
     pub name: String,
-    /// What it stands for.
+    /// Kind of surface.
     pub kind: MaterialKind,
     /// Linear RGB base colour, each 0 to 1; multiplied by the texture.
     pub base_color: [f32; 3],
@@ -133,31 +133,31 @@ pub struct Material {
     pub texture: Option<Arc<Texture>>,
     /// Normals, occlusion and roughness, height, translucency.
     pub maps: Maps,
-    /// How the texture's alpha is read.
+    /// Meaning of the texture's alpha.
     pub alpha: AlphaMode,
-    /// Seen from both sides (blades).
+    /// Visible from both sides (blades).
     pub double_sided: bool,
     /// Its textures are views of a whole plant from many sides.
     pub impostor: Option<Impostor>,
 }
 
-/// Views of a plant from all sides above the ground, in a square of `frames` by `frames` pictures: the one in column i and row j
-/// is seen from the direction of (x, y) = (2 i / (frames - 1) - 1, 2 j / (frames - 1) - 1) on the half octahedron
-/// ((x + y) / 2, 1 - |x + y| / 2 - |x - y| / 2, (x - y) / 2). Each shows the sphere around `centre`, without perspective, up
-/// upwards. Normals are those seen from there: red to the right, green up, blue to the viewer. The alpha of the normals is the
-/// depth: 0 behind the sphere, 1 before it.
+/// Views of a plant from all sides above the ground, in a square of `frames` by `frames` pictures: the one in column
+/// i and row j is seen from the direction of (x, y) = (2 i / (frames - 1) - 1, 2 j / (frames - 1) - 1) on the half
+/// octahedron ((x + y) / 2, 1 - |x + y| / 2 - |x - y| / 2, (x - y) / 2). Each shows the sphere around `centre`,
+/// without perspective, with the vertical upwards. Normals are in the frame of the view: red to the right, green up,
+/// blue to the viewer. The alpha of the normals is the depth: 0 at the back of the sphere, 1 at its front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impostor {
     /// Pictures along a side, 2 or more.
     pub frames: u32,
-    /// Of the sphere, metres.
+    /// Centre of the sphere, metres.
     pub centre: [f32; 3],
-    /// Of the sphere, metres.
+    /// Radius of the sphere, metres.
     pub radius_m: f32,
 }
 
 impl Material {
-    /// A plain, matt, one-sided material.
+    /// Returns a plain, matt, one-sided material.
     pub fn plain(name: impl Into<String>, kind: MaterialKind, base_color: [f32; 3]) -> Self {
         Self {
             name: name.into(),

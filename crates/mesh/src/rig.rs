@@ -4,39 +4,40 @@ use glam::{DQuat, DVec3};
 
 use crate::Model;
 
-/// A joint: a place that turns and moves, and what is held by it.
+/// A joint: a place that rotates and moves, together with the vertices bound to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Its name.
     pub name: String,
-    /// Where it is at rest, metres. It is not turned then.
+    /// Place at rest, metres. Its rotation is then the identity.
     pub at: DVec3,
 }
 
-/// What holds a vertex: at most four joints, by their rows, each with a share; shares add up to 1.
+/// Binding of a vertex: at most four joints, by their rows, each with a share; shares add up to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    /// Rows of joints; of no matter where the share is 0.
+    /// Rows of joints; ignored where the share is 0.
     pub joints: [u16; 4],
     /// Their shares, 0 to 1.
     pub shares: [f32; 4],
 }
 
-/// Joints of a model and how they move, in a loop.
+/// Joints of a model and their looping animation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rig {
-    /// All joints. None hangs on another: each move is that of the joint alone.
+    /// All joints. No joint is the child of another: each moves by itself.
     pub joints: Vec<Joint>,
-    /// Of each part of the model, what holds each vertex.
+    /// Binding of each vertex, for each part of the model.
     pub holds: Vec<Vec<Hold>>,
-    /// Seconds of the keys, from 0, increasing; at the last all is as at the first.
+    /// Seconds of the keys, from 0, increasing; the last key is equal to the first.
     pub seconds: Vec<f32>,
-    /// Of each joint at each key, its turn, and how far it is from its place at rest, metres.
+    /// Rotation and offset from the place at rest in metres, for each joint at each key.
     pub moves: Vec<Vec<(DQuat, DVec3)>>,
 }
 
 impl Rig {
-    /// Whether it fits a model: a hold for each vertex, joints that are there, shares that add up, a move for each key.
+    /// Returns whether the rig fits a model: it binds each vertex, its joints exist, its shares add up, and it has a
+    /// move for each key.
     pub fn fits(&self, model: &Model) -> bool {
         let held = |h: &Hold| {
             let there =
@@ -56,7 +57,8 @@ impl Rig {
             && self.joints.iter().all(|j| j.at.is_finite())
     }
 
-    /// Where a vertex that is at `p` at rest is at a key: the mean of what its joints make of it.
+    /// Returns the position at a key of a vertex that is at `p` at rest: the mean of the positions that its joints
+    /// give it.
     pub fn moved(&self, p: DVec3, hold: &Hold, key: usize) -> DVec3 {
         let by = |(joint, share): (&u16, &f32)| {
             let (Some(j), Some((turn, shift))) = (

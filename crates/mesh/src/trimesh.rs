@@ -19,7 +19,7 @@ use crate::{Material, MaterialId};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriMesh {
-    /// Metres.
+    /// Positions, metres.
     pub positions: Vec<[f32; 3]>,
     /// Unit vectors.
     pub normals: Vec<[f32; 3]>,
@@ -27,9 +27,9 @@ pub struct TriMesh {
     pub uvs: Vec<[f32; 2]>,
     /// Linear RGB multiplied with the material's base colour (tint of single organs).
     pub colors: Vec<[f32; 3]>,
-    /// How wind moves the vertex, each 0 to 1: sway of the whole plant, sway of its branch, flutter, phase.
+    /// Effect of the wind on the vertex, each 0 to 1: sway of the whole plant, sway of its branch, flutter, phase.
     pub wind: Vec<[f32; 4]>,
-    /// Metres: the point about which the vertex's branch or organ turns in the wind.
+    /// Point about which the vertex's branch or organ rotates in the wind, metres.
     pub pivots: Vec<[f32; 3]>,
     /// Corner indices.
     pub triangles: Vec<[u32; 3]>,
@@ -46,7 +46,7 @@ pub struct Part {
     pub mesh: TriMesh,
 }
 
-/// Parts and materials: what is written to a file and drawn in a picture.
+/// Parts and materials: the content of a file or a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// Name of the whole, used as the root node's name.
@@ -55,32 +55,33 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Materials that the parts refer to.
     pub materials: Vec<Material>,
-    /// What was taken off all positions so that they fit in single precision; metres, +Y up. Files keep it as a note.
+    /// Offset that was subtracted from all positions so that they fit in single precision; metres, +Y up. Files keep
+    /// it as a note.
     pub offset_m: Option<DVec3>,
 }
 
-/// A model that stands in a scene: scaled, turned, then moved. Several may be the same model: copies.
+/// A model with a place in a scene: scaled, rotated, then moved. Several may refer to the same model: copies.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing<'a> {
     /// Its name in the scene.
     pub name: &'a str,
-    /// What stands there.
+    /// The model.
     pub model: &'a Model,
-    /// Where its origin stands, metres.
+    /// Position of its origin, metres.
     pub position: DVec3,
-    /// How it is turned.
+    /// Its rotation.
     pub turn: DQuat,
-    /// Its size.
+    /// Its scale factor.
     pub scale: f64,
 }
 
 impl<'a> Standing<'a> {
-    /// A model as it was made.
+    /// Returns a model at the place where it was made.
     pub fn home(name: &'a str, model: &'a Model) -> Self {
         Self { name, model, position: DVec3::ZERO, turn: DQuat::IDENTITY, scale: 1.0 }
     }
 
-    /// Whether it stands as it was made.
+    /// Returns whether the model is at the place where it was made.
     pub fn is_home(&self) -> bool {
         self.position == DVec3::ZERO
             && self.turn == DQuat::IDENTITY
@@ -98,39 +99,39 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
-    /// Grows to hold `p`.
+    /// Enlarges the box to hold `p`.
     pub fn include(&mut self, p: DVec3) {
         self.min = self.min.min(p);
         self.max = self.max.max(p);
     }
 
-    /// Nothing was included.
+    /// Returns whether nothing was included.
     pub fn is_empty(&self) -> bool {
         self.min.x > self.max.x
     }
 
-    /// Edge lengths; zero when empty.
+    /// Returns the edge lengths; zero when empty.
     pub fn size(&self) -> DVec3 {
         if self.is_empty() { DVec3::ZERO } else { self.max - self.min }
     }
 
-    /// The middle; the origin when empty.
+    /// Returns the centre; the origin when empty.
     pub fn centre(&self) -> DVec3 {
         if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
     }
 }
 
-/// Something that is wrong with a mesh or a model.
+/// Fault of a mesh or a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {
     /// A coordinate is NaN or infinite.
     #[error("vertex {0} is not finite")]
     NotFinite(usize),
-    /// A triangle names a vertex that is not there.
+    /// A triangle refers to a missing vertex.
     #[error("triangle {0} names a vertex that is not there")]
     Dangling(usize),
     /// A triangle uses one vertex twice.
@@ -145,7 +146,7 @@ pub enum MeshFault {
     /// A weight or phase of the wind is not between 0 and 1.
     #[error("the wind at vertex {0} is not between 0 and 1")]
     Wind(usize),
-    /// A part names a material that is not there.
+    /// A part refers to a missing material.
     #[error("part {0} names a material that is not there")]
     Material(usize),
 }
@@ -172,12 +173,13 @@ impl TriMesh {
         index.expect("more vertices than u32 can name")
     }
 
-    /// Position of a vertex as f64.
+    /// Returns the position of a vertex as f64.
     pub fn position(&self, index: u32) -> DVec3 {
         to_f64(self.positions[index as usize])
     }
 
-    /// Smooth normals: the sum of the adjacent triangles' area-weighted normals. A vertex of no area gets +Y.
+    /// Computes smooth normals: the sum of the adjacent triangles' area-weighted normals. A vertex of no area gets
+    /// +Y.
     pub fn compute_normals(&mut self) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         for &[a, b, c] in &self.triangles {
@@ -203,20 +205,20 @@ impl TriMesh {
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
     }
 
-    /// The box around all positions.
+    /// Returns the box around all positions.
     pub fn bounds(&self) -> Bounds {
         let mut b = Bounds::EMPTY;
         self.positions.iter().for_each(|&p| b.include(to_f64(p)));
         b
     }
 
-    /// The area of all triangles, square metres.
+    /// Returns the area of all triangles, square metres.
     pub fn area(&self) -> f64 {
         let p = |i: u32| self.position(i);
         self.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
     }
 
-    /// Everything that is wrong. Cost: linear.
+    /// Returns all faults. Cost: linear.
     pub fn validate(&self) -> impl Iterator<Item = MeshFault> + '_ {
         let n = self.positions.len();
         let ragged = [
@@ -259,7 +261,7 @@ impl TriMesh {
 impl Digestible for TriMesh {
     fn digest(&self, d: &mut Digest) {
         d.add(&self.positions).add(&self.normals).add(&self.uvs).add(&self.colors).add(&self.triangles);
-        // Only where there is wind: digests of meshes without it stay what they were.
+        // Only if there is wind: digests of meshes without it stay the same.
         if !(self.wind.is_empty() && self.pivots.is_empty()) {
             d.add(&self.wind).add(&self.pivots);
         }
@@ -267,7 +269,7 @@ impl Digestible for TriMesh {
 }
 
 impl Model {
-    /// Bytes of the columns and textures, to know how much is held.
+    /// Returns the bytes of the columns and textures, to measure memory.
     pub fn bytes(&self) -> usize {
         let columns = |m: &TriMesh| {
             size_of_val(&*m.positions)
@@ -283,7 +285,7 @@ impl Model {
             + textures.map(|t| t.pixels.len()).sum::<usize>()
     }
 
-    /// The vertices and triangles of all parts as one, without what else they hold.
+    /// Returns the vertices and triangles of all parts as one mesh, without other columns.
     pub fn triangles(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for part in &self.parts {
@@ -294,17 +296,17 @@ impl Model {
         (vertices, triangles)
     }
 
-    /// Vertices of all parts.
+    /// Returns the number of vertices of all parts.
     pub fn vertex_count(&self) -> usize {
         self.parts.iter().map(|p| p.mesh.positions.len()).sum()
     }
 
-    /// Triangles of all parts.
+    /// Returns the number of triangles of all parts.
     pub fn triangle_count(&self) -> usize {
         self.parts.iter().map(|p| p.mesh.triangles.len()).sum()
     }
 
-    /// The box around all parts.
+    /// Returns the box around all parts.
     pub fn bounds(&self) -> Bounds {
         let mut b = Bounds::EMPTY;
         for part in &self.parts {
@@ -317,12 +319,12 @@ impl Model {
         b
     }
 
-    /// The material of a part.
+    /// Returns the material of a part.
     pub fn material(&self, part: &Part) -> &Material {
         &self.materials[part.material.index()]
     }
 
-    /// Everything that is wrong with any part.
+    /// Returns the faults of all parts.
     pub fn validate(&self) -> impl Iterator<Item = MeshFault> + '_ {
         self.parts.iter().enumerate().flat_map(move |(i, part)| {
             let missing = part.material.index() >= self.materials.len();

@@ -17,25 +17,25 @@ pub struct Blade {
     pub midrib: Vec<DVec2>,
     /// Further veins that the user drew.
     pub veins: Vec<BladeVein>,
-    /// Of a whole shoot in needles or scales, whose veins are its axes: too fine for outlines.
+    /// Needles or scales of a blade that is a whole shoot, too fine for outlines; its veins are the axes of the shoot.
     pub needles: Option<Needles>,
     /// The surface on which the blade lies before it is bent.
     pub lift: Lift,
-    /// How it is bent.
+    /// Bending of the blade.
     pub relief: Relief,
 }
 
-/// A vein of a blade besides its midrib.
+/// A vein of a blade other than its midrib.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BladeVein {
     /// At least 2 points in the plane of the blade, in either direction.
     pub line: Vec<DVec2>,
-    /// Its width beside the usual one, about 0.5 to 2.
+    /// Width relative to the usual one, about 0.5 to 2.
     pub boldness: f64,
 }
 
 impl From<Vec<DVec2>> for BladeVein {
-    /// One of the usual width.
+    /// Makes a vein of the usual width.
     fn from(line: Vec<DVec2>) -> Self {
         Self { line, boldness: 1.0 }
     }
@@ -44,7 +44,7 @@ impl From<Vec<DVec2>> for BladeVein {
 impl Digestible for BladeVein {
     fn digest(&self, d: &mut Digest) {
         d.add(&self.line);
-        // What is as bold as usual says nothing of it.
+        // The usual boldness adds nothing to the digest.
         if self.boldness != 1.0 {
             d.add(&self.boldness);
         }
@@ -67,7 +67,7 @@ pub enum Lift {
     Cone {
         /// The cone and the sheet of it on which this petal lies.
         cone: geom::Cone,
-        /// Which of the two sheets.
+        /// Sheet of the cone on which the petal lies.
         sheet: geom::ConeSheet,
     },
 }
@@ -75,15 +75,15 @@ pub enum Lift {
 /// Bending and hollowing (He and Cheng 2021, Eq 5 and section 6.2), all as shares of the blade's length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relief {
-    /// Quartic coefficient A of Eq 5, positive bends the tip away from the upper side. About -0.2 to 0.2.
+    /// Quartic coefficient A of Eq 5; a positive one bends the tip away from the upper side. About -0.2 to 0.2.
     pub bend_a: f64,
     /// Quadratic coefficient B of Eq 5. About -0.3 to 0.5.
     pub bend_b: f64,
-    /// Depth of the hollow at the middle, H. About 0 to 0.2; negative bulges.
+    /// Depth of the hollow at the centre, H. About 0 to 0.2; negative bulges.
     pub hollow: f64,
     /// Fold along the midrib: slope of the halves, 0 flat, positive lifts the margins (V section).
     pub fold: f64,
-    /// Height of waves along the margin. 0 to about 0.1.
+    /// Amplitude of waves along the margin. 0 to about 0.1.
     pub wave: f64,
     /// Keep lengths along the midrib when bending, instead of keeping the projection (x, y).
     pub keep_length: bool,
@@ -118,7 +118,7 @@ impl Digestible for Blade {
 }
 
 impl Blade {
-    /// A flat blade of length 1 from its right margin, without root and tip.
+    /// Makes a flat blade of length 1 from its right margin, given without root and tip.
     pub fn mirrored(right: &[DVec2], relief: Relief) -> Self {
         let mut outline = vec![DVec2::ZERO];
         outline.extend_from_slice(right);
@@ -128,12 +128,12 @@ impl Blade {
         Self { outline, midrib, veins: Vec::new(), needles: None, lift: Lift::Flat, relief }
     }
 
-    /// Its midrib and its other veins.
+    /// Iterates over the lines of its midrib and its other veins.
     pub fn lines(&self) -> impl Iterator<Item = &Vec<DVec2>> {
         core::iter::once(&self.midrib).chain(self.veins.iter().map(|v| &v.line))
     }
 
-    /// The length from root to tip in the plane, metres.
+    /// Returns the length from root to tip in the plane, metres.
     pub fn length(&self) -> f64 {
         self.midrib.last().map_or(0.0, |tip| tip.length())
     }

@@ -1,12 +1,12 @@
-//! The leaf unrolled into a plane: what a photograph of the pressed leaf would show.
+//! The leaf unrolled into a plane, like a photograph of the pressed leaf.
 
 use geom::SurfacePoint;
 use glam::{DVec2, DVec3};
 
-/// A leaf laid flat: the midrib along +y from the origin, side veins as long as they are.
+/// A leaf laid flat: the midrib along +y from the origin, side veins with their true lengths.
 ///
-/// Each step along a row keeps its length and its part along the midrib. Exact for a leaf that only bends
-/// along the midrib or rolls about it.
+/// Each step along a row keeps its length and its component along the midrib. Exact for a leaf that only bends along
+/// the midrib or rolls about it.
 ///
 /// Guaranteed: as many points as the grid; the margin's points are those of the first and last column. Not
 /// guaranteed: that a badly folded leaf does not overlap itself.
@@ -14,11 +14,11 @@ use glam::{DVec2, DVec3};
 pub struct FlatLeaf {
     /// The points, row after row from the root, each row from left to right, metres.
     pub points: Vec<DVec2>,
-    /// Points a row; the midrib is the middle one.
+    /// Points per row; the midrib is the middle one.
     pub columns: usize,
     /// Rows of points between neighbouring side veins: row `i * steps` is a side vein, the last is the tip.
     pub steps: usize,
-    /// The margin, counter-clockwise, where it is not that of the points; empty for none.
+    /// The margin, counter-clockwise, if it differs from the outline of the points; otherwise empty.
     pub rim: Vec<DVec2>,
     min: DVec2,
     size: DVec2,
@@ -59,7 +59,7 @@ impl FlatLeaf {
         Self { points: flat, columns, steps, rim: Vec::new(), min, size }
     }
 
-    /// The same leaf with a margin of its own, which widens the box around it.
+    /// Returns the same leaf with a margin of its own, which widens the box around it.
     #[must_use]
     pub(crate) fn within(mut self, rim: Vec<DVec2>) -> Self {
         let max = rim.iter().fold(self.min + self.size, |a, &b| a.max(b));
@@ -69,30 +69,30 @@ impl FlatLeaf {
         self
     }
 
-    /// The texture coordinates of a place: the box around the flat leaf is the image, tip at the top.
+    /// Returns the texture coordinates of a point: the box around the flat leaf is the image, tip at the top.
     #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]
     pub fn uv_of(&self, p: DVec2) -> [f32; 2] {
         let p = (p - self.min) / self.size;
         [p.x as f32, (1.0 - p.y) as f32]
     }
 
-    /// [`uv_of`](Self::uv_of) point `k`.
+    /// As [`uv_of`](Self::uv_of), for point `k`.
     pub fn uv(&self, k: usize) -> [f32; 2] {
         self.uv_of(self.points[k])
     }
 
-    /// The lowest corner and the size of the box around the flat leaf, metres.
+    /// Returns the lowest corner and the size of the box around the flat leaf, metres.
     pub fn extent(&self) -> (DVec2, DVec2) {
         (self.min, self.size)
     }
 
-    /// The number of rows of points.
+    /// Returns the number of rows of points.
     pub fn rows(&self) -> usize {
         self.points.len().checked_div(self.columns).unwrap_or(0)
     }
 
-    /// The margin, counter-clockwise: its own, or that of the points from the root, lowest row to the right, up to the tip, down
-    /// on the left.
+    /// Returns the margin, counter-clockwise: its own, or that of the points from the root, lowest row to the right, up
+    /// to the tip, down on the left.
     pub fn outline(&self) -> Vec<DVec2> {
         if !self.rim.is_empty() {
             return self.rim.clone();
@@ -110,12 +110,12 @@ impl FlatLeaf {
         lowest.chain(right).chain(left).chain(back).copied().collect()
     }
 
-    /// The midrib from root to tip.
+    /// Returns the midrib from root to tip.
     pub fn midrib(&self) -> Vec<DVec2> {
         (0..self.rows()).map(|i| self.points[i * self.columns + self.columns / 2]).collect()
     }
 
-    /// The side veins from the lowest up, each from the midrib outwards, left and right in turn.
+    /// Returns the side veins from the lowest up, each from the midrib outwards, left and right in turn.
     pub fn side_veins(&self) -> Vec<Vec<DVec2>> {
         let (n, middle) = (self.columns, self.columns / 2);
         let rows = (0..self.rows().saturating_sub(1)).step_by(self.steps.max(1));

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Blade, Needles, Relief};
 
-/// The shape of a leaf blade, drawn by formula.
+/// The shape of a leaf blade, defined by a formula.
 ///
 /// ```
 /// for form in plant::BladeForm::ALL {
@@ -84,8 +84,8 @@ impl BladeForm {
         Self::Brush,
     ];
 
-    /// The blade: root at the origin, tip at (0, 1), counter-clockwise, flat. A spray is as [`Blade::shoot`] draws it with needles
-    /// of 0.075 and three side shoots on each side, a spruce's.
+    /// Returns the blade: root at the origin, tip at (0, 1), counter-clockwise, flat. A spray is made by
+    /// [`Blade::shoot`] with needles of length 0.075 and three side shoots on each side, as in spruce.
     pub fn blade(self) -> Blade {
         let soft = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
         let stiff = |bend_b, fold| Relief { bend_b, fold, ..Relief::default() };
@@ -114,7 +114,7 @@ impl BladeForm {
     }
 }
 
-/// Right margin with half width `half * v^a (1 - v)^b`, scaled to reach `half`; `n` points, ends left out.
+/// Returns a right margin with half width `half * v^a (1 - v)^b`, scaled to reach `half`; `n` points, ends left out.
 fn beta(half: f64, a: f64, b: f64, n: u32) -> Vec<DVec2> {
     let peak = a / (a + b);
     let top = ops::powf(peak, a) * ops::powf(1.0 - peak, b);
@@ -127,7 +127,7 @@ fn beta(half: f64, a: f64, b: f64, n: u32) -> Vec<DVec2> {
         .collect()
 }
 
-/// Broadest at two thirds.
+/// Returns a right margin that is broadest at two thirds.
 fn obovate() -> Vec<DVec2> {
     let at = |i: u32| {
         let v = f64::from(i) / 9.0;
@@ -136,12 +136,12 @@ fn obovate() -> Vec<DVec2> {
     (1..=8).map(at).collect()
 }
 
-/// A right margin by its points.
+/// Makes a right margin from its points.
 fn margin(points: &[(f64, f64)]) -> Vec<DVec2> {
     points.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
 }
 
-/// Two round ears below the root, a drawn-out tip.
+/// Returns a right margin with a round ear below the root and a drawn-out tip.
 fn cordate() -> Vec<DVec2> {
     margin(&[
         (0.09, -0.065),
@@ -157,7 +157,7 @@ fn cordate() -> Vec<DVec2> {
     ])
 }
 
-/// A triangle with round corners.
+/// Returns the right margin of a triangle with round corners.
 fn deltoid() -> Vec<DVec2> {
     margin(&[
         (0.16, -0.01),
@@ -170,8 +170,8 @@ fn deltoid() -> Vec<DVec2> {
     ])
 }
 
-/// Four round lobes a side between narrow notches, the third the largest, on a wedge that widens upwards from small ears
-/// (Quercus robur).
+/// Returns a right margin of four round lobes between narrow notches, the third the largest, on a wedge that widens
+/// upwards from small ears (Quercus robur).
 fn lobed() -> Vec<DVec2> {
     const LOBES: f64 = 4.0;
     const STEPS: u32 = 56;
@@ -191,8 +191,8 @@ fn lobed() -> Vec<DVec2> {
         .collect()
 }
 
-/// Half of five lobes around the end of the stalk, each drawn out to a point with a tooth or two beside it (Acer
-/// platanoides): two of each side, the middle one is the tip.
+/// Returns the right half of five lobes around the end of the stalk, each drawn out to a point with a tooth or two next
+/// to it (Acer platanoides): two on each side, the middle one is the tip.
 fn palmate() -> Vec<DVec2> {
     margin(&[
         (0.1, -0.06),
@@ -221,7 +221,7 @@ fn palmate() -> Vec<DVec2> {
     ])
 }
 
-/// Half of five blunt lobes on a heart-shaped foot, widest near their ends (Ficus carica).
+/// Returns the right half of five blunt lobes on a heart-shaped foot, widest near their ends (Ficus carica).
 fn fingered() -> Vec<DVec2> {
     margin(&[
         (0.1, -0.06),
@@ -245,7 +245,8 @@ fn fingered() -> Vec<DVec2> {
     ])
 }
 
-/// Half of three pointed lobes with coarse teeth on a heart-shaped foot (Parthenocissus tricuspidata).
+/// Returns the right half of three pointed lobes with coarse teeth on a heart-shaped foot (Parthenocissus
+/// tricuspidata).
 #[expect(clippy::approx_constant, reason = "a place on a margin")]
 fn tricuspid() -> Vec<DVec2> {
     margin(&[
@@ -270,7 +271,7 @@ fn tricuspid() -> Vec<DVec2> {
     ])
 }
 
-/// Five leaflets a side.
+/// Returns a right margin of five leaflets.
 fn pinnate() -> Vec<DVec2> {
     let mut right = Vec::with_capacity(25);
     for i in 0..5 {
@@ -288,7 +289,8 @@ fn pinnate() -> Vec<DVec2> {
     right
 }
 
-/// Eight leaflets a side, the longest below the middle, each half as wide as its place on the midrib is long.
+/// Returns a right margin of eight leaflets, the longest below the middle, each half as wide as its place on the midrib
+/// is long.
 fn feather() -> Vec<DVec2> {
     const LEAFLETS: u32 = 8;
     let mut right = Vec::with_capacity(26);
@@ -308,7 +310,7 @@ fn feather() -> Vec<DVec2> {
     right
 }
 
-/// Straight sides, and a wavy edge that is notched in the middle (Ginkgo biloba).
+/// Returns a right margin with a straight side and half of a wavy edge that is notched in the middle (Ginkgo biloba).
 fn fan() -> Vec<DVec2> {
     margin(&[
         (0.045, 0.1),
@@ -326,7 +328,7 @@ fn fan() -> Vec<DVec2> {
     ])
 }
 
-/// Three needles a side and one in the middle, which is the tip.
+/// Returns three needles of the right side and half of the one in the middle, which is the tip.
 fn tuft() -> Vec<DVec2> {
     let mut right = Vec::with_capacity(6);
     for (degrees, reach) in [(62.0, 0.86), (40.0, 0.94), (19.0, 0.98)] {
@@ -338,7 +340,8 @@ fn tuft() -> Vec<DVec2> {
     right
 }
 
-/// Five needles a side, each from its place on the shoot, and one at the end, which is the tip.
+/// Returns five needles of the right side, each from its place on the shoot, and half of the one at the end, which is
+/// the tip.
 fn brush() -> Vec<DVec2> {
     let mut right = Vec::with_capacity(11);
     for i in 0..5 {
@@ -351,10 +354,10 @@ fn brush() -> Vec<DVec2> {
     right
 }
 
-/// Length of a needle over that of the brush.
+/// Length of a needle relative to that of the brush.
 const BRUSH_NEEDLE: f64 = 0.34;
 
-/// Thin, with a point.
+/// Returns a thin right margin with a point.
 fn needle() -> Vec<DVec2> {
     vec![DVec2::new(0.02, 0.1), DVec2::new(0.024, 0.5), DVec2::new(0.015, 0.85)]
 }

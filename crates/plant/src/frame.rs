@@ -6,7 +6,7 @@ use glam::DVec3;
 /// A local right-handed frame in the plant: `right` x `along` = `normal`, unit vectors at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Where the organ is attached (the root of a blade), metres.
+    /// Point of attachment of the organ (the root of a blade), metres.
     pub origin: DVec3,
     /// Local +x: across.
     pub right: DVec3,
@@ -17,8 +17,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame at `origin` whose y axis is `along` and whose z axis is as near to `towards` as can be.
-    /// Falls back to any right angle when the two are parallel, to +Y when `along` is zero.
+    /// Makes the frame at `origin` whose y axis is `along` and whose z axis is as near to `towards` as possible. Falls
+    /// back to any perpendicular when the two are parallel, to +Y when `along` is zero.
     ///
     /// ```
     /// use glam::DVec3;
@@ -33,7 +33,7 @@ impl Frame {
         Self { origin, right, along, normal: right.cross(along) }
     }
 
-    /// From local to plant coordinates, with the organ's scale.
+    /// Converts local to plant coordinates, with the organ's scale.
     pub fn place(&self, local: DVec3, scale: f64) -> DVec3 {
         self.origin + (self.right * local.x + self.along * local.y + self.normal * local.z) * scale
     }
@@ -43,7 +43,7 @@ impl Frame {
         self.right * local.x + self.along * local.y + self.normal * local.z
     }
 
-    /// From plant to local coordinates (inverse of [`place`](Self::place) with scale 1).
+    /// Converts plant to local coordinates (inverse of [`place`](Self::place) with scale 1).
     pub fn localise(&self, world: DVec3) -> DVec3 {
         let d = world - self.origin;
         DVec3::new(d.dot(self.right), d.dot(self.along), d.dot(self.normal))

@@ -5,7 +5,7 @@ base::define_id! {
     pub struct AxisId;
 }
 base::define_id! {
-    /// One node: a point of an axis where something may be borne.
+    /// One node: a point of an axis that may bear other parts.
     pub struct NodeId;
 }
 base::define_id! {

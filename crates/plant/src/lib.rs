@@ -1,10 +1,10 @@
-//! The multiscale plant: every maker's output, and all that skin, formats and studio read.
+//! The multiscale plant: every maker's output, and the input of skin, formats and studio.
 //!
 //! `maker -> Plant -> skin -> Model`
 //!
-//! Topology (axes, nodes, organs by `u32` handles) stands apart from geometry (columns). Scales follow MTG
-//! (Godin and Caraglio 1998): a plant is decomposed (`/`) into axes, an axis into nodes that succeed one
-//! another (`<`); axes and organs are borne (`+`) by nodes.
+//! Topology (axes, nodes, organs by `u32` handles) is stored apart from geometry (columns). Scales follow MTG (Godin
+//! and Caraglio 1998): a plant is decomposed (`/`) into axes, an axis into nodes that succeed one another (`<`); axes
+//! and organs are borne (`+`) by nodes.
 
 mod blade;
 mod flat;

@@ -1,24 +1,24 @@
-//! Shoots in needles or scales, too fine for outlines: where on the shoot's plane a needle is.
+//! Shoots in needles or scales, too fine for outlines: positions of the needles in the shoot's plane.
 //!
-//! `axes of a blade + Needles -> needles as tapered lines, in the cells of a grid -> which is seen at a place, what all cover`
+//! `axes of a blade + Needles -> needles as tapered lines, in the cells of a grid -> visible needle, total cover`
 
 use base::{Draw, Seed, ops};
 use glam::DVec2;
 
 use crate::{Blade, Needles};
 
-/// What is seen at a place of a shoot.
+/// Visible part of a shoot at a point of its plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeenNeedle {
     /// The wood of an axis.
     Wood,
     /// A needle or a scale.
     Needle {
-        /// From its middle line to its margin, -1 to 1.
+        /// Position from its middle line to its margin, -1 to 1.
         across: f64,
-        /// From its foot to its tip, 0 to 1.
+        /// Position from its foot to its tip, 0 to 1.
         along: f64,
-        /// 0 to 1, its own.
+        /// Shade of the individual needle, 0 to 1.
         shade: f64,
     },
 }
@@ -33,12 +33,12 @@ struct Line {
     wood: bool,
 }
 
-/// The needles of a blade that is a shoot of them, to be found by place: those that pictures of it show.
+/// The needles of a blade that is a shoot, searchable by place: those that pictures of it show.
 ///
 /// ```
 /// use plant::{Blade, NeedleMap, Needles};
 /// let shoot = Blade::shoot(Needles::of_length(0.1), 3, 1.0);
-/// let map = NeedleMap::of(&shoot).expect("needles");
+/// let map = NeedleMap::from_blade(&shoot).expect("needles");
 /// assert!(map.covered() > 0.1 && map.covered() < 0.5);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -47,26 +47,27 @@ pub struct NeedleMap {
     low: DVec2,
     cell: f64,
     columns: usize,
-    /// By cell: what may be seen in it, the lowest first.
+    /// For each cell the lines that may be visible in it, the lowest first.
     cells: Vec<Vec<u32>>,
 }
 
 /// Cells along the length of a shoot.
 const CELLS: f64 = 96.0;
-/// Places along the edge of a cell at which one looks for what is covered: within half a per cent of ten times as many.
+/// Sample points along the edge of a cell for the measured cover: within half a per cent of the result with ten times
+/// as many.
 const LOOKS: u32 = 3;
-/// Half of an axis's thickness over a needle's width.
+/// Half of an axis's thickness relative to a needle's width.
 const AXIS: f64 = 0.75;
 
 impl Line {
-    fn at(&self, p: DVec2) -> Option<SeenNeedle> {
+    fn seen_at(&self, p: DVec2) -> Option<SeenNeedle> {
         let along = self.to - self.from;
         let t = (p - self.from).dot(along) / along.length_squared().max(1e-18);
         if !(-0.02..=1.0).contains(&t) {
             return None;
         }
         let off = along.perp_dot(p - self.from) / along.length().max(1e-9);
-        // A needle is as wide to two thirds of its length, and then drawn to a point.
+        // A needle keeps its width for two thirds of its length, and then tapers to a point.
         let half = if self.wood { self.half } else { self.half * (1.0 - ops::smoothstep(0.55, 1.06, t)) };
         if off.abs() > half {
             return None;
@@ -80,8 +81,8 @@ impl Line {
 }
 
 impl NeedleMap {
-    /// Of a blade; `None` of one that is no shoot in needles. Cost: linear in the needles.
-    pub fn of(blade: &Blade) -> Option<Self> {
+    /// Makes the map of a blade; `None` if it is not a shoot in needles. Cost: linear in the needles.
+    pub fn from_blade(blade: &Blade) -> Option<Self> {
         blade.needles.as_ref().map(|needles| Self::new(blade, needles))
     }
 
@@ -90,7 +91,7 @@ impl NeedleMap {
         for (row, axis) in blade.lines().enumerate() {
             lay(needles, axis, row, blade.length(), &mut lines);
         }
-        // What lies lower is behind: wood, then needles from the sides, then those in front.
+        // Lower lines are behind: wood, then needles from the sides, then those in front.
         let corners = || lines.iter().flat_map(|l| [l.from, l.to]);
         let low = corners().fold(DVec2::INFINITY, DVec2::min) - 1e-3;
         let high = corners().fold(DVec2::NEG_INFINITY, DVec2::max) + 1e-3;
@@ -111,8 +112,8 @@ impl NeedleMap {
         Self { lines, low, cell, columns, cells }
     }
 
-    /// What is seen at a place of the plane.
-    pub fn at(&self, p: DVec2) -> Option<SeenNeedle> {
+    /// Returns the visible part at a point of the plane.
+    pub fn seen_at(&self, p: DVec2) -> Option<SeenNeedle> {
         let q = (p - self.low) / self.cell;
         if !(q.is_finite() && q.x >= 0.0 && q.y >= 0.0 && q.x < self.columns as f64) {
             return None;
@@ -120,11 +121,11 @@ impl NeedleMap {
         let cell = self
             .cells
             .get(ops::whole(q.y.floor()) as usize * self.columns + ops::whole(q.x.floor()) as usize)?;
-        cell.iter().rev().find_map(|&i| self.lines[i as usize].at(p))
+        cell.iter().rev().find_map(|&i| self.lines[i as usize].seen_at(p))
     }
 
-    /// The area of the plane that needles or scales cover, in the square of the blade's unit: wood does not count, and what
-    /// lies behind another counts once. Cost: some milliseconds.
+    /// Returns the area of the plane that needles or scales cover, in the square of the blade's unit: wood does not
+    /// count, and overlaps count once. Cost: some milliseconds.
     pub fn covered(&self) -> f64 {
         let step = self.cell / f64::from(LOOKS);
         let mut seen = 0_u32;
@@ -133,16 +134,16 @@ impl NeedleMap {
                 self.low + DVec2::new((k % self.columns) as f64, (k / self.columns) as f64) * self.cell;
             for (i, j) in (0..LOOKS).flat_map(|i| (0..LOOKS).map(move |j| (i, j))) {
                 let p = corner + DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step;
-                seen += u32::from(matches!(self.at(p), Some(SeenNeedle::Needle { .. })));
+                seen += u32::from(matches!(self.seen_at(p), Some(SeenNeedle::Needle { .. })));
             }
         }
         f64::from(seen) * step * step
     }
 }
 
-/// The needles of one axis, and its wood.
+/// Lays out the needles of one axis, and its wood.
 fn lay(needles: &Needles, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<Line>) {
-    // That of the blade ends where its last needles begin.
+    // The wood of the blade ends where its last needles begin.
     let mut axis = axis.to_vec();
     if row == 0 {
         shorten(&mut axis, 0.9 * needles.length * unit);
@@ -161,7 +162,7 @@ fn lay(needles: &Needles, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<L
         shade: 0.5,
         wood: true,
     }));
-    // From the sides, and in two rows that lie more forward and hide the wood.
+    // From the sides, and in two rows that lean more forward and hide the wood.
     for (layer, share, lean) in [(0_u64, 1.0, 1.0), (1, 0.82, 0.55), (2, 0.6, 0.25)] {
         let seed = Seed::new(row as u64).child(layer);
         let mut walked = 0.35 * spacing;
@@ -170,7 +171,7 @@ fn lay(needles: &Needles, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<L
             let (from, way) = point(axis, walked);
             let chance = |n: u64| seed.child(8 * u64::from(k) + n).stream(Draw::Curl).uniform();
             let side = if (u64::from(k) + layer).is_multiple_of(2) { 1.0 } else { -1.0 };
-            // Towards the tip needles are shorter and close up.
+            // Towards the tip needles become shorter and denser.
             let close =
                 ops::smoothstep(1.0 - 1.2 * needles.length * unit / whole.max(1e-9), 1.0, walked / whole);
             let turn = side * needles.angle * lean * (0.85 + 0.3 * chance(1)) * (1.0 - 0.6 * close);
@@ -184,7 +185,7 @@ fn lay(needles: &Needles, axis: &[DVec2], row: usize, unit: f64, out: &mut Vec<L
     }
 }
 
-/// Takes so much off the end of a line.
+/// Shortens a line at its end by a length.
 fn shorten(line: &mut Vec<DVec2>, mut by: f64) {
     while let [.., a, b] = line[..] {
         let d = a.distance(b);
@@ -197,7 +198,7 @@ fn shorten(line: &mut Vec<DVec2>, mut by: f64) {
     }
 }
 
-/// The place so far along a line, and where it goes there.
+/// Returns the point at a distance along a line, and the direction there.
 fn point(line: &[DVec2], mut walked: f64) -> (DVec2, DVec2) {
     for w in line.windows(2) {
         let d = w[0].distance(w[1]);
@@ -230,7 +231,7 @@ mod tests {
 
     #[test]
     fn what_needles_cover_is_their_own_area_where_they_stand_free() {
-        // One needle of each layer, 0.7 up a bare axis, as wide as to two thirds and then drawn to a point.
+        // One needle of each layer, 0.7 up a bare axis, of constant width for two thirds and then tapering to a point.
         let needles = Needles { length: 0.2, width: 0.02, spacing: 2.0, angle: 0.9 };
         let bare = Blade { veins: vec![], ..shoot() };
         let map = NeedleMap::new(&bare, &needles);
@@ -247,9 +248,9 @@ mod tests {
     fn what_is_covered_is_within_a_per_cent_of_a_finer_look_and_scales_cover_more_of_their_outline() {
         let share = |length: f64, shoots: u32| {
             let blade = Blade::shoot(Needles::of_length(length), shoots, 1.0);
-            let map = NeedleMap::of(&blade).expect("needles");
+            let map = NeedleMap::from_blade(&blade).expect("needles");
             let places = (-600..600).flat_map(|i| (0..1200).map(move |j| (f64::from(i), f64::from(j))));
-            let at = |(x, y): (f64, f64)| map.at(DVec2::new(x + 0.5, y + 0.5) / 1200.0);
+            let at = |(x, y): (f64, f64)| map.seen_at(DVec2::new(x + 0.5, y + 0.5) / 1200.0);
             let seen = places.filter(|&p| matches!(at(p), Some(SeenNeedle::Needle { .. }))).count();
             let fine = seen as f64 / (1200.0 * 1200.0);
             assert!((map.covered() / fine - 1.0).abs() < 0.01, "{length}: {} {fine}", map.covered());
@@ -263,7 +264,7 @@ mod tests {
     fn needles_stand_on_axes_reach_as_far_as_they_are_long_and_leave_sky() {
         let needles = Needles { length: 0.1, width: 0.012, spacing: 0.03, angle: 0.9 };
         let map = NeedleMap::new(&shoot(), &needles);
-        assert!(map.at(DVec2::new(0.0, 0.01)).is_some(), "the foot of the axis is there");
+        assert!(map.seen_at(DVec2::new(0.0, 0.01)).is_some(), "the foot of the axis is there");
         let (mut seen, mut all) = (0, 0);
         for i in -60..60 {
             for j in 0..120 {
@@ -272,7 +273,7 @@ mod tests {
                     .lines()
                     .filter_map(|axis| geom::distance_to_polyline(axis, p))
                     .fold(f64::INFINITY, f64::min);
-                let here = map.at(p).is_some();
+                let here = map.seen_at(p).is_some();
                 assert!(!here || near < 0.115, "{p}: {near}");
                 if near < 0.05 && p.y < 0.9 {
                     all += 1;
@@ -282,13 +283,13 @@ mod tests {
         }
         let share = f64::from(seen) / f64::from(all);
         assert!((0.4..0.95).contains(&share), "{share} of what is near an axis is needle");
-        assert!(map.at(DVec2::new(0.3, 0.05)).is_none() && map.at(DVec2::NAN).is_none());
+        assert!(map.seen_at(DVec2::new(0.3, 0.05)).is_none() && map.seen_at(DVec2::NAN).is_none());
     }
 
     #[test]
     fn a_blade_without_axes_has_no_needles() {
         let bare = Blade { midrib: vec![], veins: vec![], ..shoot() };
         let map = NeedleMap::new(&bare, &Needles { length: 0.1, width: 0.01, spacing: 0.03, angle: 0.9 });
-        assert!(map.at(DVec2::new(0.0, 0.5)).is_none() && map.covered() <= 0.0);
+        assert!(map.seen_at(DVec2::new(0.0, 0.5)).is_none() && map.covered() <= 0.0);
     }
 }

@@ -2,25 +2,25 @@
 
 use base::Digest;
 
-/// The needles of a blade that is a whole shoot of them. Lengths are shares of the blade's.
+/// The needles of a blade that is a whole shoot. Lengths are shares of the blade's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needles {
-    /// Of a needle.
+    /// Length of a needle.
     pub length: f64,
-    /// Of a needle where it is widest.
+    /// Greatest width of a needle.
     pub width: f64,
-    /// From a needle to the next on one side of an axis.
+    /// Distance between neighbouring needles on one side of an axis.
     pub spacing: f64,
-    /// Between a needle and its axis, radians.
+    /// Angle between a needle and its axis, radians.
     pub angle: f64,
 }
 
-/// Below this share of the shoot's length needles are scales.
+/// Length of needles, as a share of the shoot's, below which they are scales.
 const SCALES: f64 = 0.045;
 
 impl Needles {
-    /// Needles of a length over that of the shoot, 0.01 to 0.6; scales if they are short. Scales lie close and overlap,
-    /// needles stand off.
+    /// Makes needles of a length relative to that of the shoot, 0.01 to 0.6; scales if they are short. Scales lie close
+    /// and overlap, needles stand off.
     pub fn of_length(length: f64) -> Self {
         let length = if length.is_finite() { length.clamp(0.01, 0.6) } else { 0.1 };
         if length < SCALES {

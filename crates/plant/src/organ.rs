@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::ids::{FlowerId, NodeId, ShapeId};
 use crate::{Blade, Frame, Sheet, SplineBlade};
 
-/// What an organ is.
+/// Kind of an organ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum OrganKind {
@@ -34,34 +34,34 @@ pub enum OrganKind {
     Anther,
     /// One of the small flowers of a disc.
     Floret,
-    /// A green body, such as a cactus's: what stands for stem and leaves in one.
+    /// A green body, such as a cactus's, which is stem and leaves in one.
     Body,
-    /// The pot that the plant stands in, or its soil: no part of the plant, but what belongs under it.
+    /// The pot that the plant stands in, or its soil: not a part of the plant, but placed under it.
     Pot,
-    /// A fruit that grew together of many, with an eye for each, such as a pineapple.
+    /// A compound fruit with an eye for each of its fruitlets, such as a pineapple.
     Syncarp,
 }
 
-/// What the colour of an organ is, as its maker knows it. Linear RGB.
+/// Colour of an organ, as set by its maker. Linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
-    /// The colour that organs of its kind have, multiplied by this: makers vary it by a tenth.
+    /// The colour of organs of its kind, multiplied by this factor: makers vary it by a tenth.
     Natural([f32; 3]),
-    /// A colour of its own, such as a species' in autumn.
+    /// A colour of its own, such as a species' autumn colour.
     Tinted([f32; 3]),
     /// The colour of the pen that it was drawn with.
     Drawn([f32; 3]),
 }
 
 impl Default for Paint {
-    /// As organs of its kind are.
+    /// Returns the colour of organs of its kind.
     fn default() -> Self {
         Self::Natural([1.0; 3])
     }
 }
 
 impl Paint {
-    /// The colour, or the factor of a natural one.
+    /// Returns the colour, or the factor on a natural one.
     pub const fn rgb(self) -> [f32; 3] {
         match self {
             Self::Natural(c) | Self::Tinted(c) | Self::Drawn(c) => c,
@@ -69,7 +69,7 @@ impl Paint {
     }
 }
 
-/// Colours of the surfaces that are no organs, as the plant's maker knows them. Linear RGB; none: as such surfaces are.
+/// Colours of the surfaces that are not organs, as set by the plant's maker. Linear RGB; `None` for the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlantPaint {
     /// Green stems and stalks.
@@ -82,7 +82,7 @@ pub struct PlantPaint {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
-    /// A leaf or petal: a bent sheet.
+    /// A leaf or petal as a bent sheet.
     Blade(Blade),
     /// A dome around the local z axis: the disc of a flower. Base at z = 0.
     Dome {
@@ -98,10 +98,10 @@ pub enum Shape {
     },
     /// A leaf of measured veins: a smooth surface.
     Spline(Arc<SplineBlade>),
-    /// A blade as a grid of points: of a scan, or a petal at one day.
+    /// A blade as a grid of points: from a scan, or a petal on one day.
     Sheet(Arc<Sheet>),
-    /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed; with a radius
-    /// of 0 at both ends a body that bends ([`is_bent_body`](Self::is_bent_body)).
+    /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed; with a
+    /// radius of 0 at both ends it is a body that bends ([`is_bent_body`](Self::is_bent_body)).
     Strand {
         /// Local points, root first.
         path: Vec<DVec3>,
@@ -112,11 +112,11 @@ pub enum Shape {
     },
 }
 
-/// How much wider than its outline a blade is drawn, at most, to have its area in few triangles.
+/// Largest factor by which a blade is drawn wider than its outline, to preserve its area in few triangles.
 pub const DRAWN_WIDER: f64 = 1.5;
 
 impl Shape {
-    /// How far it reaches from its root, metres at scale 1.
+    /// Returns the distance of its farthest point from its root, metres at scale 1.
     pub fn reach(&self) -> f64 {
         match self {
             Self::Blade(b) => b.length(),
@@ -128,8 +128,8 @@ impl Shape {
         }
     }
 
-    /// The length from root to tip, metres at scale 1: along the midrib in the plane of a flat blade, along the line of
-    /// a strand; none for bodies.
+    /// Returns the length from root to tip, metres at scale 1: along the midrib in the plane of a flat blade, along the
+    /// line of a strand; `None` for bodies.
     pub fn length(&self) -> Option<f64> {
         match self {
             Self::Blade(b) => Some(b.length()),
@@ -140,7 +140,7 @@ impl Shape {
         }
     }
 
-    /// A strand that runs to a point at both ends: a bent fruit or pod.
+    /// Whether this is a strand that tapers to a point at both ends: a bent fruit or pod.
     pub fn is_bent_body(&self) -> bool {
         let pole = |r: Option<&f64>| r.is_some_and(|r| *r <= 0.0);
         match self {
@@ -151,8 +151,8 @@ impl Shape {
         }
     }
 
-    /// Points that its surface lies between, in its own frame at scale 1: a blade's margin, midrib and veins as they are
-    /// bent, `wider` times as wide; of a body the corners of the boxes around its parts.
+    /// Returns points whose convex hull contains the surface, in its own frame at scale 1: a blade's margin, midrib and
+    /// veins as they are bent, `wider` times as wide; of a body the corners of the boxes around its parts.
     pub fn corners(&self, wider: f64) -> Vec<DVec3> {
         let around = |p: DVec3, r: f64| {
             (0..8).map(move |i: u32| {
@@ -190,7 +190,7 @@ impl Shape {
 /// One organ: a shape placed in the plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Organ {
-    /// What it is.
+    /// Its kind.
     pub kind: OrganKind,
     /// The node that bears it; `None` for an organ of a drawing without any axis.
     pub bearer: Option<NodeId>,
@@ -198,7 +198,7 @@ pub struct Organ {
     pub flower: Option<FlowerId>,
     /// Its form.
     pub shape: ShapeId,
-    /// Where it is and which way it looks.
+    /// Its position and orientation.
     pub frame: Frame,
     /// Size relative to the shape, above 0.
     pub scale: f64,
@@ -206,7 +206,7 @@ pub struct Organ {
     pub paint: Paint,
     /// A key that is stable under edits of other parts.
     pub key: u64,
-    /// The stroke it was read from; `None` for what the program placed.
+    /// The stroke it was read from; `None` for organs that the program placed.
     pub source: Option<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Where leaves stand around their axis.
+//! Arrangement of leaves around their axis.
 //!
 //! `rank of the node -> azimuths of its leaves`
 
@@ -18,12 +18,12 @@ use base::{Angle, NotFinite};
 pub struct Divergence(f64);
 
 impl Divergence {
-    /// 360 degrees over the square of the golden ratio: what most spirals come near to (Vogel 1979).
+    /// 360 degrees over the square of the golden ratio, the limit of most spirals (Vogel 1979).
     pub const GOLDEN: Self = Self(2.399_963_229_728_653);
     /// Half a turn: two rows, as in elm and lime.
     pub const HALF: Self = Self(PI);
 
-    /// A divergence in degrees; any finite number, also negative (a spiral to the other side).
+    /// Makes a divergence from degrees; any finite number, also negative (a spiral in the opposite sense).
     ///
     /// # Errors
     /// [`NotFinite`] for NaN and infinities.
@@ -31,8 +31,8 @@ impl Divergence {
         Angle::from_deg(degrees).map(|a| Self(a.radians()))
     }
 
-    /// The classical fraction: `turns` around the axis until `leaves` leaves on, one stands above the first
-    /// (1/3 beech, 2/5 oak and apple, 3/8 poplar and rose, 5/13 willow).
+    /// Makes the classical fraction: `turns` turns around the axis until a leaf, `leaves` leaves on, stands above the
+    /// first (1/3 beech, 2/5 oak and apple, 3/8 poplar and rose, 5/13 willow).
     ///
     /// # Errors
     /// [`NotFinite`] if `leaves` is 0.
@@ -44,7 +44,7 @@ impl Divergence {
         Ok(Self(value * TAU))
     }
 
-    /// Radians.
+    /// Returns the angle in radians.
     pub const fn radians(self) -> f64 {
         self.0
     }
@@ -64,15 +64,15 @@ impl Divergence {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Phyllotaxis {
-    /// One leaf a node, each turned by the divergence from the one before.
+    /// One leaf per node, each turned by the divergence from the one before.
     Spiral(Divergence),
-    /// One leaf a node in two rows: elm, lime, grasses.
+    /// One leaf per node in two rows: elm, lime, grasses.
     Distichous,
-    /// Two leaves a node, all in one plane: many conifers' sprays.
+    /// Two leaves per node, all in one plane: many conifers' sprays.
     Opposite,
-    /// Two leaves a node, each pair at right angles to the next: maple, ash, lilac.
+    /// Two leaves per node, each pair at right angles to the next: maple, ash, lilac.
     Decussate,
-    /// That many leaves a node (0 is read as 1), each whorl turned by half the angle between its leaves.
+    /// This number of leaves per node (0 is read as 1), each whorl turned by half the angle between its leaves.
     Whorled(u32),
 }
 
@@ -83,7 +83,7 @@ impl Default for Phyllotaxis {
 }
 
 impl Phyllotaxis {
-    /// Leaves that stand on one node, 1 or more.
+    /// Returns the number of leaves on one node, 1 or more.
     pub const fn per_node(self) -> u32 {
         match self {
             Self::Spiral(_) | Self::Distichous => 1,
@@ -98,7 +98,7 @@ impl Phyllotaxis {
         }
     }
 
-    /// Azimuth of leaf `leaf` (0 to [`per_node`](Self::per_node) - 1) of node `node` counted from the base,
+    /// Returns the azimuth of leaf `leaf` (0 to [`per_node`](Self::per_node) - 1) of node `node` counted from the base,
     /// radians in \[0, 2 pi).
     ///
     /// ```
@@ -121,7 +121,7 @@ impl Phyllotaxis {
         (within + turned).rem_euclid(TAU)
     }
 
-    /// Azimuths of all leaves of node `node`.
+    /// Returns the azimuths of all leaves of node `node`.
     pub fn azimuths(self, node: u32) -> impl ExactSizeIterator<Item = f64> {
         (0..self.per_node()).map(move |leaf| self.azimuth(node, leaf))
     }

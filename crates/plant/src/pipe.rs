@@ -14,16 +14,16 @@ use crate::{AxisId, AxisKind, OrganKind, Plant};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taper {
-    /// Above 1; at or below 1 the axis does not thin.
+    /// Base of the power, above 1; at or below 1 the axis does not thin.
     pub s: f64,
-    /// Above 0, about 0.3 to 0.5.
+    /// Rate of the thinning, above 0, about 0.3 to 0.5.
     pub alpha: f64,
-    /// 0 or more, about 0 to 1; larger values keep the tip thicker.
+    /// Offset, 0 or more, about 0 to 1; larger values keep the tip thicker.
     pub m: f64,
 }
 
 impl Taper {
-    /// The share of the base radius left at `x`, clamped to 0 to 1. In (0, 1], falling.
+    /// Returns the share of the base radius left at `x`, clamped to 0 to 1. In (0, 1], falling.
     pub fn ratio(&self, x: f64) -> f64 {
         let k = self.alpha.max(0.0) * ops::ln(self.s.max(1.0));
         let m = self.m.max(0.0);
@@ -32,26 +32,26 @@ impl Taper {
     }
 }
 
-/// What sets the radii of a plant.
+/// Settings for the radii of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PipeModel {
     /// The exponent t of `r^t = r_1^t + ... + r_m^t`, clamped to 1 to 4: 2 is Leonardo's rule, herbs 2.5 to 3.
     pub exponent: f64,
     /// Thinning between forks.
     pub taper: Taper,
-    /// No axis becomes thinner than this, metres (unless its bearer is); leaf stalks may have 0.6 of it.
+    /// Least radius of an axis, metres (unless its bearer is thinner); leaf stalks may have 0.6 of it.
     pub min_radius_m: f64,
-    /// An axis whose base radius would exceed this share of its length is thinned to it.
+    /// Largest base radius of an axis as a share of its length; thicker axes are thinned to it.
     pub max_per_length: f64,
-    /// Base radii of axes without a bearer, metres; an axis that is not named gets 1/60 of its length.
+    /// Base radii of axes without a bearer, metres; an axis that is not listed gets 1/60 of its length.
     pub ground: Vec<(AxisId, f64)>,
-    /// Radii that were drawn, one for each node of the axis; they are taken as they are.
+    /// Drawn radii, one for each node of the axis; they are used unchanged.
     pub drawn: Vec<(AxisId, Vec<f64>)>,
 }
 
-/// How much of a shoot an axis of this kind counts as at its own tip.
+/// Returns the weight of an axis of this kind at its own tip, relative to a shoot.
 fn tip_weight(kind: AxisKind) -> f64 {
-    // A leaf needs about a quarter of the pipes of a shoot that goes on.
+    // A leaf needs about a quarter of the pipes of a continuing shoot.
     if kind == AxisKind::Petiole { 0.25 } else { 1.0 }
 }
 
@@ -59,7 +59,7 @@ fn tip_weight(kind: AxisKind) -> f64 {
 struct Carried {
     axis: Vec<f64>,
     above: Vec<f64>,
-    /// What is borne at each node itself.
+    /// Load borne at each node itself.
     here: Vec<f64>,
 }
 
@@ -102,11 +102,11 @@ fn carried(plant: &Plant) -> Carried {
 /// Sets the radius of every node of a sound plant.
 ///
 /// At a fork, `r^t` below is the sum of `r^t` above (Eq 6), shared by the tips carried (leaves count a quarter);
-/// between forks and to the tip an axis thins by Eq 7, as far as its forks have not thinned it already. An axis
-/// without forks follows Eq 7 exactly; one whose load hangs at its end hardly thins.
+/// between forks and to the tip an axis thins by Eq 7, as far as its forks have not thinned it already. An axis without
+/// forks follows Eq 7 exactly; one whose load hangs at its end hardly thins.
 /// Guaranteed: finite, above 0 where the base radii are, falling along every axis that was not drawn, and no axis
-/// thicker at its base than its bearer there. Not guaranteed: Eq 6 where `min_radius_m` or `max_per_length` bite.
-/// Cost: linear in nodes and organs.
+/// thicker at its base than its bearer there. Not guaranteed: Eq 6 where `min_radius_m` or `max_per_length` takes
+/// effect. Cost: linear in nodes and organs.
 ///
 /// ```
 /// use glam::DVec3;
@@ -153,7 +153,7 @@ pub fn pipe_radii(plant: &mut Plant, model: &PipeModel) {
             None => ground[i].unwrap_or(length / 60.0),
             Some(b) => {
                 let below = plant.nodes.radius_m[b.index()];
-                // A root beside the shoot takes half of the collar.
+                // A root next to the shoot takes half of the collar.
                 let share = if kind == AxisKind::Root {
                     0.5
                 } else {
@@ -173,7 +173,7 @@ pub fn pipe_radii(plant: &mut Plant, model: &PipeModel) {
     }
 }
 
-/// Place of each node as a share of its axis's length, and that length.
+/// Returns the position of each node as a share of its axis's length, and that length.
 fn shares_of_length(plant: &Plant, id: AxisId) -> (Vec<f64>, f64) {
     let points = plant.axis_points(id);
     let mut at = Vec::with_capacity(points.len());
@@ -190,7 +190,8 @@ fn shares_of_length(plant: &Plant, id: AxisId) -> (Vec<f64>, f64) {
     (at, sum)
 }
 
-/// The exponent that Eq 7 gets on one axis, 0 to 1: what the forks have not thinned already is left to it.
+/// Returns the factor on the exponent of Eq 7 for one axis, 0 to 1: the thinning that its forks have not produced
+/// already.
 fn thinning_left(
     taper: Taper,
     load: &Carried,
@@ -198,7 +199,7 @@ fn thinning_left(
     places: &[f64],
     t: f64,
 ) -> f64 {
-    // The load of the last 15 % is what the tip holds up.
+    // The load of the last 15 % is the load on the tip.
     let at_end: f64 = rows.clone().zip(places).filter(|(_, x)| **x >= 0.85).map(|(n, _)| load.here[n]).sum();
     let whole = load.above[rows.start].max(1e-12);
     let end_share = (at_end / whole).clamp(0.0, 1.0);
@@ -224,7 +225,7 @@ mod tests {
         PipeModel { exponent, taper, min_radius_m: 0.0, max_per_length: 1.0, ground, drawn: vec![] }
     }
 
-    /// A trunk of 10 nodes with `n` straight children at node 4 and one with its own child at node 7.
+    /// Makes a trunk of 10 nodes with `n` straight children at node 4 and one with its own child at node 7.
     fn tree(n: usize) -> Plant {
         let mut p = Plant::default();
         let line = |a: DVec3, d: DVec3| -> Vec<DVec3> { (0..10).map(|i| a + d * f64::from(i)).collect() };

@@ -1,4 +1,4 @@
-//! How a flat outline becomes a bent sheet: `(x, y) of the outline -> lift -> bend -> hollow, fold, waves -> (x, y, z)`.
+//! Turns a flat outline into a bent sheet: `(x, y) of the outline -> lift -> bend -> hollow, fold, waves -> (x, y, z)`.
 
 use base::ops;
 use glam::{DVec2, DVec3};
@@ -7,9 +7,9 @@ use crate::{Blade, Lift};
 
 /// Rows of the width and length tables: blades are smooth, 32 intervals keep the error below 1e-3 of the length.
 const ROWS: usize = 33;
-/// Pieces of the midrib that distances are measured to: enough for a drawn vein, few enough for each mesh point.
+/// Pieces of the midrib for distances: enough for a drawn vein, few enough for each mesh point.
 const RIB_PIECES: usize = 8;
-/// Waves of the margin from root to tip.
+/// Number of waves of the margin from root to tip.
 const WAVES: f64 = 3.5;
 
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ struct Row {
     rib: f64,
 }
 
-/// A [`Blade`] with the tables that evaluating it needs.
+/// A [`Blade`] with the tables that its evaluation needs.
 ///
 /// ```
 /// use glam::DVec2;
@@ -47,20 +47,20 @@ pub struct BladeSurface<'a> {
     span: f64,
     rows: [Row; ROWS],
     rib: [DVec2; RIB_PIECES + 1],
-    /// With `keep_length`: place along the blade and sag of the bent midrib at each row of `0..=top`.
+    /// With `keep_length`: position along the blade and sag of the bent midrib at each row of `0..=top`.
     bent: Option<Vec<DVec2>>,
     top: f64,
 }
 
 impl Blade {
-    /// The blade ready to be evaluated at many points: tables of its width and lengths are made once.
+    /// Prepares the blade for evaluation at many points: tables of its width and lengths are made once.
     ///
     /// Cost: linear in the points of the outline and midrib.
     pub fn surface(&self) -> BladeSurface<'_> {
         BladeSurface::new(self)
     }
 
-    /// Puts one point of the plane into space (local coordinates, scale 1); [`surface`](Self::surface) for many.
+    /// Maps one point of the plane into space (local coordinates, scale 1); use [`surface`](Self::surface) for many.
     ///
     /// Guaranteed: with `keep_length` off, x and y stay as they are, so the view along z is the drawing.
     /// He and Cheng (2021), Eq 5 and section 6.2.
@@ -115,7 +115,7 @@ impl<'a> BladeSurface<'a> {
         surface
     }
 
-    /// Puts a point of the blade's plane into space, local coordinates at scale 1.
+    /// Maps a point of the blade's plane into space, local coordinates at scale 1.
     ///
     /// Guaranteed: finite for finite blades and points; x and y unchanged unless `keep_length` is set.
     /// He and Cheng (2021), Eq 5 (along minus the normal, x measured along the unit axis) and section 6.2.
@@ -141,7 +141,7 @@ impl<'a> BladeSurface<'a> {
             let arch = 4.0 * xi * (1.0 - xi);
             z -= relief.hollow * self.length * (1.0 - t * t) * arch;
             if relief.wave != 0.0 {
-                // The two margins wave out of step, as real ones do.
+                // The two margins wave out of phase, as real ones do.
                 let phase = if u < row.rib { 0.0 } else { 1.3 };
                 let wave = ops::sin(ops::TAU * WAVES * xi + phase);
                 z += relief.wave * self.length * t * t * arch.sqrt() * wave;
@@ -153,18 +153,18 @@ impl<'a> BladeSurface<'a> {
         plane.extend(z)
     }
 
-    /// [`point`](Self::point) for many.
+    /// As [`point`](Self::point), for many points.
     pub fn points(&self, plane: &[DVec2]) -> Vec<DVec3> {
         plane.iter().map(|&p| self.point(p)).collect()
     }
 
-    /// Place along the blade as a share of its length, 0 to 1.
+    /// Returns the position along the blade as a share of its length, 0 to 1.
     fn share(&self, v: f64) -> f64 {
         if self.length > 0.0 { (v / self.length).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// Eq 5: how far the point at `v` along the blade moves against the normal. Flat behind the root, straight on
-    /// beyond the tip.
+    /// Evaluates Eq 5: the displacement against the normal of the point at `v` along the blade. Flat behind the root,
+    /// straight beyond the tip.
     fn sag(&self, v: f64) -> f64 {
         let (a, b) = (self.blade.relief.bend_a, self.blade.relief.bend_b);
         if self.length <= 0.0 || v <= 0.0 {
@@ -202,7 +202,7 @@ impl<'a> BladeSurface<'a> {
         }
     }
 
-    /// The widest extent of the outline on both sides of the midrib, row by row.
+    /// Measures the greatest extent of the outline on both sides of the midrib, row by row.
     fn measure_width(&mut self) {
         let uv = |p: DVec2| DVec2::new(p.dot(self.across), p.dot(self.along));
         let (low, span) = (self.low, self.span);
@@ -246,7 +246,7 @@ impl<'a> BladeSurface<'a> {
         self.rows = rows;
     }
 
-    /// The midrib in few pieces of equal length.
+    /// Resamples the midrib to few pieces of equal length.
     fn shorten_rib(&mut self) {
         let rib = &self.blade.midrib;
         let total: f64 = rib.windows(2).map(|p| p[0].distance(p[1])).sum();
@@ -276,10 +276,10 @@ impl<'a> BladeSurface<'a> {
         squared.sqrt()
     }
 
-    /// The bent midrib with the length of the one that is not bent: where each row comes to lie, and its sag.
+    /// Returns the bent midrib with the length of the unbent one: the position of each row, and its sag.
     ///
-    /// For a flat blade `v' = integral of sqrt(1 - sag'^2)`; on a lifted one the same with the lift's
-    /// own slope in both lengths.
+    /// For a flat blade `v' = integral of sqrt(1 - sag'^2)`; for a lifted one the same with the lift's own slope in
+    /// both lengths.
     fn bend_midrib(&self) -> Vec<DVec2> {
         const FINE: usize = 4;
         #[expect(clippy::cast_precision_loss, reason = "rows are few")]
@@ -317,7 +317,7 @@ impl<'a> BladeSurface<'a> {
         (p.x, p.y)
     }
 
-    /// The outline's half widths to the left and right of the midrib at a place along the blade, metres.
+    /// Returns the outline's half widths to the left and right of the midrib at a place along the blade, metres.
     ///
     /// `v` is measured from the root along the blade; outside the blade the nearest row counts.
     pub fn half_widths(&self, v: f64) -> (f64, f64) {
@@ -325,13 +325,13 @@ impl<'a> BladeSurface<'a> {
         (row.rib - row.left, row.right - row.rib)
     }
 
-    /// Distance along the blade of the lowest and the highest point of the outline, metres.
+    /// Returns the distance along the blade of the lowest and the highest point of the outline, metres.
     pub fn extent(&self) -> (f64, f64) {
         (self.low, self.row_at(ROWS - 1))
     }
 }
 
-/// Row and fraction of a share of the table.
+/// Returns row and fraction of a share of the table.
 fn cell(share: f64) -> (usize, f64) {
     #[expect(clippy::cast_precision_loss, reason = "rows are few")]
     let x = share.clamp(0.0, 1.0) * (ROWS - 1) as f64;
@@ -350,7 +350,7 @@ fn lifted(lift: Lift, p: DVec2) -> f64 {
     }
 }
 
-/// Rows that no edge crossed take what their nearest neighbour has.
+/// Fills rows that no edge crosses with the values of their nearest neighbour.
 fn fill_gaps(rows: &mut [Row; ROWS]) {
     let mut last = 0.0;
     let known = |r: &Row| r.rib.is_finite();
@@ -376,7 +376,7 @@ mod tests {
     use super::*;
     use crate::Relief;
 
-    /// A blade of length 2 and half width 0.5 * sin-like profile.
+    /// Makes a blade of length 2 and half width 0.5 * sin-like profile.
     fn blade(relief: Relief, lift: Lift) -> Blade {
         let side = |s: f64| {
             (0..=20).map(move |i| {

@@ -1,4 +1,4 @@
-//! The margin of a blade that its surface does not reach, or goes beyond: teeth, lobes of the base.
+//! Margins of a blade that differ from the edge of its surface: teeth, lobes of the base.
 
 use std::collections::BTreeMap;
 
@@ -20,25 +20,25 @@ pub struct Netted {
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// The surface is looked at so much nearer to its middle where it is pinched to a point.
+/// Share of the domain by which a pinched place is moved inwards before it is evaluated.
 pub(crate) const INNER: f64 = 1e-3;
-/// Points of the grid keep this share of a cell from the margin: no needles.
+/// Least distance of grid points from the margin, as a share of a cell, which avoids needle triangles.
 const CLEAR: f64 = 0.3;
 
 impl SplineBlade {
-    /// Directions at a place of the surface: towards the right margin, towards the tip, the upper side. `None` where it is
-    /// pinched.
+    /// Returns the directions at a place of the surface: towards the right margin, towards the tip, to the upper side.
+    /// `None` where the surface is pinched.
     pub fn directions(&self, u: f64, v: f64) -> Option<[DVec3; 3]> {
         let (low, high) = self.surface.v().domain();
-        let at = self.surface.at(u, v + INNER * (0.5 * (low + high) - v));
+        let at = self.surface.point_at(u, v + INNER * (0.5 * (low + high) - v));
         let (across, normal) = (at.du.try_normalize()?, at.normal?);
         Some([across, normal.cross(across), normal])
     }
 
-    /// The blade within its rim, with `steps` parts between marks; `None` without a rim, or where the rim crosses itself laid
-    /// flat: the surface alone is the blade then.
+    /// Triangulates the blade within its rim, with `steps` parts between marks; `None` without a rim, or if the
+    /// flattened rim crosses itself: then the surface alone is the blade.
     ///
-    /// The rim's points are kept, each a corner; between them the grid of the surface. Cost: n log n.
+    /// The rim's points are kept, each as a corner; between them lies the grid of the surface. Cost: n log n.
     pub fn netted(&self, steps: usize) -> Option<Netted> {
         if self.rim.is_empty() {
             return None;
@@ -49,13 +49,13 @@ impl SplineBlade {
         let flat = FlatLeaf::of_grid(&grid, us.len(), steps);
         let rim = self.flat_rim(&flat, &us, &vs);
         let columns = us.len();
-        // A fifth of the way across would be no cell of its own: the mean is, over all cells.
+        // A single cell would depend on its place across the blade, so this takes the median of all cells.
         let cells: Vec<f64> = flat.points.windows(2).map(|w| w[0].distance(w[1])).collect();
         let mut sorted = cells;
         base::sort_numbers(&mut sorted);
         let clear = CLEAR * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         let near = KdTree2::new(&dense(&rim, 0.5 * clear));
-        // Outside the triangulation they are left out; near the rim they are left out here.
+        // Points outside are left out by the triangulation, points near the rim here.
         let inner: Vec<usize> =
             (0..flat.points.len()).filter(|&k| near.nearest(flat.points[k], clear).is_none()).collect();
         let number: BTreeMap<usize, usize> = inner.iter().enumerate().map(|(i, &k)| (k, i)).collect();
@@ -75,7 +75,7 @@ impl SplineBlade {
         for (k, r) in self.rim.iter().enumerate() {
             used[k] = Some(k);
             out.points.push(r.place);
-            out.normals.push(normal_at(&self.surface.at(r.u, r.v), r.u, r.v));
+            out.normals.push(normal_at(&self.surface.point_at(r.u, r.v), r.u, r.v));
             out.flat.push(rim[k]);
         }
         for t in triangles {
@@ -96,7 +96,7 @@ impl SplineBlade {
         Some(out)
     }
 
-    /// The rim laid flat, with the grid of the surface at `us` and `vs`.
+    /// Returns the rim laid flat, with the grid of the surface at `us` and `vs`.
     pub(crate) fn flat_rim(&self, flat: &FlatLeaf, us: &[f64], vs: &[f64]) -> Vec<DVec2> {
         let cell = |at: &[f64], x: f64| {
             let k = at.partition_point(|&a| a <= x).clamp(1, at.len() - 1);
@@ -125,7 +125,7 @@ impl SplineBlade {
     }
 }
 
-/// A closed line with points at most `step` apart.
+/// Returns a closed line with points at most `step` apart.
 fn dense(line: &[DVec2], step: f64) -> Vec<DVec2> {
     let ends = line.iter().skip(1).chain(line.first());
     let parts = |a: DVec2, b: DVec2| {

@@ -1,4 +1,4 @@
-//! Blades that are known as surfaces: splines through measured veins, grids of points.
+//! Blades given as surfaces: splines through measured veins, grids of points.
 
 use base::{Digest, Digestible};
 use geom::{BallBSpline, SplineSurface, SurfacePoint, subdivided};
@@ -11,55 +11,57 @@ use crate::{FlatLeaf, Frame};
 pub struct Vein {
     /// Centre line and radius, from the root, or from the left margin to the right.
     pub curve: BallBSpline,
-    /// Parameters at which marks lie (or count most), at least 2; they split the curve into spans for meshing.
+    /// Parameters of its marks (or of their greatest influence), at least 2; they split the curve into spans for
+    /// meshing.
     pub marks: Vec<f64>,
 }
 
 /// The veins of a blade.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Venation {
-    /// The midrib or the chief veins, then what leaves them.
+    /// The midrib or the chief veins, then the veins that leave them.
     pub veins: Vec<Vein>,
-    /// Veins whose marks stand so close that no point is needed between them.
+    /// Veins whose marks are so dense that no point is needed between them.
     pub fine: Vec<Vein>,
-    /// Along the margin; drawn on request.
+    /// Veins along the margin; drawn on request.
     pub margins: Vec<Vein>,
 }
 
-/// Where a point of a blade is in its texture.
+/// Texture coordinates of a blade.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Chart {
-    /// In the box around the blade laid flat ([`FlatLeaf`]), tip at the top.
+    /// Position in the box around the blade laid flat ([`FlatLeaf`]), tip at the top.
     Unrolled,
-    /// At u and 1 - v, with colours of its own: no texture.
+    /// Position at u and 1 - v, with its own colours: no texture.
     Parameters(VeinShade),
 }
 
 /// Colours by the distance from the nearest vein, linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VeinShade {
-    /// On the veins.
+    /// Colour on the veins.
     pub vein: [f32; 3],
-    /// Between them.
+    /// Colour between the veins.
     pub blade: [f32; 3],
-    /// How far the veins' colour reaches, metres, above 0.
+    /// Distance over which the veins' colour fades, metres, above 0.
     pub reach_m: f64,
 }
 
-/// A place of the margin, and the place of the surface that it lies nearest to.
+/// A point of the margin, with the nearest point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RimPoint {
-    /// Parameters of that place, within the surface's domain.
+    /// Parameter u of the nearest point, within the surface's domain.
     pub u: f64,
-    /// As `u`.
+    /// Parameter v of the nearest point.
     pub v: f64,
-    /// Where the margin is.
+    /// The point of the margin.
     pub place: DVec3,
 }
 
-/// A blade as a spline surface with its veins (Wang et al. 2011, section 2), in its own frame as a [`Blade`](crate::Blade) is.
+/// A blade as a spline surface with its veins (Wang et al. 2011, section 2), in its own frame like a
+/// [`Blade`](crate::Blade).
 ///
-/// u runs from the left margin to the right, v from the root to the tip, so that `du x dv` looks to the upper side.
+/// u runs from the left margin to the right, v from the root to the tip, so that `du x dv` points to the upper side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplineBlade {
     /// The surface.
@@ -68,19 +70,19 @@ pub struct SplineBlade {
     pub middle: f64,
     /// Its veins.
     pub veins: Venation,
-    /// The margin, where it is not the surface's own edge: counter-clockwise seen from the upper side; empty for none.
+    /// The margin, if it is not the surface's own edge: counter-clockwise seen from the upper side; otherwise empty.
     pub rim: Vec<RimPoint>,
     /// Its place in a texture.
     pub chart: Chart,
-    /// Blades with a texture of their own have numbers, from 0; leaves of one number share it.
+    /// Number of the texture, from 0; leaves with the same number share it.
     pub form: u32,
 }
 
-/// A blade as a grid of points, in its own frame as a [`Blade`](crate::Blade) is.
+/// A blade as a grid of points, in its own frame like a [`Blade`](crate::Blade).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Row after row from the root to the tip, each from the right margin to the left: the upper side is seen with
-    /// x to the right.
+    /// Row after row from the root to the tip, each from the right margin to the left: the upper side is seen with x to
+    /// the right.
     pub points: Vec<DVec3>,
     /// Texture coordinate u of each column, at least 2.
     pub across: Vec<f64>,
@@ -90,18 +92,18 @@ pub struct Sheet {
     pub colors: Vec<[f32; 3]>,
     /// Its veins.
     pub veins: Venation,
-    /// The number of a texture of its own, from 0, as that of a [`SplineBlade`], whose numbers they share; its veins are
-    /// painted with it. `None` for none.
+    /// Number of a texture of its own, from 0, in common numbering with those of a [`SplineBlade`]; its veins are
+    /// painted on that texture. `None` if it has none.
     pub form: Option<u32>,
 }
 
 impl Venation {
-    /// Every vein.
+    /// Iterates over all veins.
     pub fn all(&self) -> impl Iterator<Item = &Vein> {
         self.veins.iter().chain(&self.fine).chain(&self.margins)
     }
 
-    /// The veins moved; `place` only turns and shifts.
+    /// Moves the veins; `place` is a rigid motion.
     #[must_use]
     fn moved(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
         for vein in self.veins.iter_mut().chain(&mut self.fine).chain(&mut self.margins) {
@@ -112,26 +114,27 @@ impl Venation {
 }
 
 impl SplineBlade {
-    /// The frame of a blade that was measured in the plant's coordinates, and the blade within it.
+    /// Returns the blade in its own frame, and the frame, of a blade that was measured in the plant's coordinates.
     pub fn framed(self) -> (Self, Frame) {
         let v = self.surface.v().domain();
         let (root, tip) = (self.surface.point(self.middle, v.0), self.surface.point(self.middle, v.1));
-        let normal = self.surface.at(self.middle, 0.5 * (v.0 + v.1)).normal.unwrap_or(DVec3::Z);
+        let normal = self.surface.point_at(self.middle, 0.5 * (v.0 + v.1)).normal.unwrap_or(DVec3::Z);
         let frame = Frame::looking(root, tip - root, normal);
         let surface = self.surface.moved(|p| frame.localise(p));
         let rim = self.rim.into_iter().map(|r| RimPoint { place: frame.localise(r.place), ..r }).collect();
         (Self { surface, rim, veins: self.veins.moved(|p| frame.localise(p)), ..self }, frame)
     }
 
-    /// The parameters of the grid with `steps` parts a span of marks along v: u of the columns, v of the rows.
+    /// Returns the parameters of the grid with `steps` parts per span of marks along v: u of the columns, v of the
+    /// rows.
     ///
-    /// Marks of chief veins that start together stand closer across than along: there are half as many parts.
+    /// Marks of chief veins that start together are denser across than along: they get half as many parts.
     pub fn grid_at(&self, steps: usize) -> (Vec<f64>, Vec<f64>) {
         let across = if self.chart == Chart::Unrolled { steps } else { steps / 2 };
         (subdivided(self.surface.columns_at(), across), subdivided(self.surface.rows_at(), steps))
     }
 
-    /// The blade laid flat, with `steps` parts between marks.
+    /// Lays the blade flat, with `steps` parts between marks.
     pub fn flat(&self, steps: usize) -> FlatLeaf {
         let steps = steps.clamp(1, 64);
         let (us, vs) = self.grid_at(steps);
@@ -140,26 +143,26 @@ impl SplineBlade {
         flat.within(rim)
     }
 
-    /// The points at its marks.
+    /// Returns the points at its marks.
     pub(crate) fn marks(&self) -> Vec<DVec3> {
         let grid = self.surface.grid(self.surface.columns_at(), self.surface.rows_at());
         grid.iter().map(|p: &SurfacePoint| p.position).collect()
     }
 
-    /// From the root to the tip, metres, straight.
+    /// Returns the straight distance from the root to the tip, metres.
     pub fn reach(&self) -> f64 {
         let (a, b) = self.surface.v().domain();
         self.surface.point(self.middle, a).distance(self.surface.point(self.middle, b))
     }
 
-    /// Along the midrib, metres.
+    /// Returns the length along the midrib, metres.
     pub fn length(&self) -> f64 {
         let (_, vs) = self.grid_at(4);
         let line: Vec<DVec3> = vs.iter().map(|&v| self.surface.point(self.middle, v)).collect();
         geom::polyline_length3(&line)
     }
 
-    /// The area of one side, metres squared; to about a per cent.
+    /// Returns the area of one side, metres squared; to about a per cent.
     pub fn area_m2(&self) -> f64 {
         if let Some(net) = self.netted(2) {
             return area(&net.points, net.triangles.into_iter());
@@ -179,15 +182,15 @@ impl SplineBlade {
 }
 
 impl Sheet {
-    /// The frame of a sheet that was measured in the plant's coordinates, and the sheet within it. `None` for fewer
-    /// than two rows or columns.
+    /// Returns the sheet in its own frame, and the frame, of a sheet that was measured in the plant's coordinates.
+    /// `None` for fewer than two rows or columns.
     pub fn framed(mut self) -> Option<(Self, Frame)> {
         let (columns, rows) = (self.across.len(), self.along.len());
         if columns < 2 || rows < 2 || self.points.len() != columns * rows {
             return None;
         }
         let at = |i: usize, j: usize| self.points[i * columns + j];
-        // An even number of columns has its middle between two.
+        // The middle of an even number of columns lies between two.
         let middle = |i: usize| 0.5 * (at(i, (columns - 1) / 2) + at(i, columns / 2));
         let (root, tip) = (middle(0), middle(rows - 1));
         let half = rows / 2;
@@ -198,7 +201,7 @@ impl Sheet {
         Some((self, frame))
     }
 
-    /// The two triangles of each cell, counter-clockwise seen from the upper side.
+    /// Iterates over the two triangles of each cell, counter-clockwise seen from the upper side.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         let columns = self.across.len();
         let cell = move |k: usize| {
@@ -209,7 +212,7 @@ impl Sheet {
         (0..cells).flat_map(cell)
     }
 
-    /// From the root to the middle of the last row, metres, straight.
+    /// Returns the straight distance from the root to the middle of the last row, metres.
     pub fn reach(&self) -> f64 {
         let columns = self.across.len();
         self.points.len().checked_sub(columns).map_or(0.0, |last| self.points[last + columns / 2].length())
@@ -223,7 +226,7 @@ impl Sheet {
     }
 }
 
-/// A blade of either kind as points and triangles, for areas: at its marks and at its points.
+/// Returns the area of a blade given as points and triangles.
 pub(crate) fn area(points: &[DVec3], triangles: impl Iterator<Item = [usize; 3]>) -> f64 {
     let of = |t: [usize; 3]| {
         let [a, b, c] = t.map(|k| points[k]);

@@ -1,4 +1,4 @@
-//! Shoots in needles or scales, each as one blade: its veins are their axes, its outline holds their needles.
+//! Shoots in needles or scales, each as one blade: its veins are the axes, its outline encloses the needles.
 
 use base::ops::{self, sin};
 use glam::DVec2;
@@ -6,8 +6,8 @@ use glam::DVec2;
 use crate::{Blade, BladeVein, Needles, Relief};
 
 impl Blade {
-    /// A shoot in needles, of length 1, with `shoots` side shoots on each side (0 to 12), each of which has some of its own
-    /// where they are many. `width`: how much further than usual the side shoots reach.
+    /// Makes a shoot in needles, of length 1, with `shoots` side shoots on each side (0 to 12), each of which has side
+    /// shoots of its own if there are many. `width`: factor on the usual reach of the side shoots.
     pub fn shoot(needles: Needles, shoots: u32, width: f64) -> Self {
         let needle = needles.length;
         let shoots = shoots.min(12);
@@ -25,7 +25,7 @@ impl Blade {
                 axes.push(bent(from.lerp(axis[2], share), way, back * 0.7, 0.4 * length).to_vec());
             }
         }
-        // How far its needles reach to the side, by height.
+        // Reach of the needles to the side, by height.
         const BINS: usize = 14;
         let mut wide = [0.012_f64; BINS];
         for axis in &axes {
@@ -52,7 +52,7 @@ impl Blade {
     }
 }
 
-/// A side shoot: it leaves `way` by an angle and turns towards it.
+/// Returns a side shoot: it leaves the direction `way` by an angle and turns towards it.
 fn bent(from: DVec2, way: DVec2, angle: f64, length: f64) -> [DVec2; 3] {
     let turned = |by: f64| base::turn::direction(-by).rotate(way);
     let middle = from + turned(angle) * (0.5 * length);

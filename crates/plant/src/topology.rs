@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::ids::{AxisId, NodeId, ShapeId};
 use crate::{Flower, Organ, PlantPaint, Shape};
 
-/// What an axis is.
+/// Kind of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum AxisKind {
@@ -22,12 +22,13 @@ pub enum AxisKind {
     Petiole,
     /// Below ground.
     Root,
-    /// Woody and dead: what a stem keeps of a branch that broke off or rotted away, and what grew over it.
+    /// Woody and dead: the remains of a branch that broke off or rotted away, and the wood that grew over it.
     Stub,
 }
 
 impl AxisKind {
-    /// Whether it is a living shoot that others may grow out of: not a leaf's stalk, nor a root, nor what is left of a branch.
+    /// Whether it is a living shoot that others may grow out of: not a leaf's stalk, a root, or the remains of a
+    /// branch.
     pub const fn is_shoot(self) -> bool {
         !matches!(self, Self::Petiole | Self::Root | Self::Stub)
     }
@@ -36,26 +37,26 @@ impl AxisKind {
 /// One axis. Its nodes are consecutive rows, base first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it is.
+    /// Its kind.
     pub kind: AxisKind,
-    /// The node that bears it; `None` for an axis that stands on the ground. The axis's own first node lies at
-    /// the bearer's position.
+    /// The node that bears it; `None` for an axis that stands on the ground. The axis's own first node lies at the
+    /// bearer's position.
     pub bearer: Option<NodeId>,
-    /// 0 for an axis without a bearer, else one more than the order of the bearer's axis.
+    /// Branching order: 0 for an axis without a bearer, otherwise one more than that of the bearer's axis.
     pub order: u32,
-    /// A key that is stable under edits of other parts: what random draws for this axis are derived from.
+    /// A key that is stable under edits of other parts, from which random draws for this axis are derived.
     pub key: u64,
     /// Rows of its nodes.
     pub nodes: Range<u32>,
-    /// The stroke it was read from, by index in the drawing; `None` for what the program grew.
+    /// The stroke it was read from, by index in the drawing; `None` for axes that the program grew.
     pub source: Option<u32>,
-    /// Its colours at even shares of its length, base first, linear RGB; empty for one whose surface tells. Of stems and
-    /// stalks.
+    /// Its colours at even shares of its length, base first, linear RGB; empty if its surface decides. For stems and
+    /// stalks only.
     pub colors: Vec<[f32; 3]>,
 }
 
 impl Axis {
-    /// Handles of its nodes, base first.
+    /// Iterates over the handles of its nodes, base first.
     pub fn node_ids(&self) -> impl DoubleEndedIterator<Item = NodeId> + ExactSizeIterator + use<> {
         (self.nodes.start as usize..self.nodes.end as usize).map(NodeId::new)
     }
@@ -64,16 +65,16 @@ impl Axis {
 /// The node columns, all of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Nodes {
-    /// Metres, +Y up, ground at y = 0.
+    /// Position, metres, +Y up, ground at y = 0.
     pub position: Vec<DVec3>,
-    /// Radius of the axis at the node, metres, 0 or more. Where an axis is borne, its first node has the
-    /// radius of the new axis, not of its bearer.
+    /// Radius of the axis at the node, metres, 0 or more. The first node of a borne axis has the radius of the new
+    /// axis, not of its bearer.
     pub radius_m: Vec<f64>,
     /// The axis that each node belongs to.
     pub axis: Vec<AxisId>,
 }
 
-/// A plant of any maker.
+/// A plant made by any maker.
 ///
 /// ```
 /// use glam::DVec3;
@@ -125,26 +126,27 @@ impl Plant {
         id
     }
 
-    /// The axis of a handle.
+    /// Returns the axis of a handle.
     pub fn axis(&self, id: AxisId) -> &Axis {
         &self.axes[id.index()]
     }
 
-    /// Positions along an axis, base first.
+    /// Returns the positions along an axis, base first.
     pub fn axis_points(&self, id: AxisId) -> &[DVec3] {
         let r = &self.axes[id.index()].nodes;
         &self.nodes.position[r.start as usize..r.end as usize]
     }
 
-    /// Radii along an axis, base first, metres.
+    /// Returns the radii along an axis, base first, metres.
     pub fn axis_radii(&self, id: AxisId) -> &[f64] {
         let r = &self.axes[id.index()].nodes;
         &self.nodes.radius_m[r.start as usize..r.end as usize]
     }
 
-    /// Which axes are `top` or are borne by it, at first or at second hand; none where there is no such axis.
+    /// Returns for each axis whether it is `top` or is borne by it, directly or indirectly; all false if there is no
+    /// such axis.
     ///
-    /// Guaranteed: an end, in a plant that is not sound, too. Cost: linear.
+    /// Guaranteed: it terminates, even for a plant that is not sound. Cost: linear.
     ///
     /// ```
     /// use glam::DVec3;
@@ -166,7 +168,7 @@ impl Plant {
             if known[i].is_some() {
                 continue;
             }
-            // No longer than there are axes: a sound plant has no circle.
+            // No longer than the number of axes: a sound plant has no cycle.
             while let Some(b) = at.filter(|&b| known[b].is_none() && way.len() <= self.axes.len()) {
                 way.push(b);
                 at = bearer(b);
@@ -177,8 +179,8 @@ impl Plant {
         known.into_iter().map(|k| k == Some(true)).collect()
     }
 
-    /// Lowest and highest corner of the box around nodes and organs, roughly: of an organ its root and how far it
-    /// reaches. What is not finite or absurdly far is left out; `None` for nothing at all.
+    /// Returns the lowest and highest corner of the box around nodes and organs, roughly: an organ counts with its root
+    /// and its reach. Positions that are not finite or absurdly far are left out; `None` if nothing remains.
     pub fn extent(&self) -> Option<(DVec3, DVec3)> {
         let organs = self.organs.iter().flat_map(|o| {
             let reach = self.shapes.get(o.shape.index()).map_or(0.0, Shape::reach) * o.scale;
@@ -197,7 +199,7 @@ impl Plant {
         ShapeId::new(self.shapes.len() - 1)
     }
 
-    /// The fingerprint of the whole plant: the same on every platform and for any thread count.
+    /// Returns the fingerprint of the whole plant: the same on every platform and for any thread count.
     pub fn digest_hex(&self) -> String {
         let mut d = Digest::new();
         d.add(self);

@@ -1,8 +1,8 @@
-//! What a sound plant never does.
+//! Invariants of a sound plant.
 
 use crate::{AxisId, NodeId, OrganId, Plant, Shape, ShapeId};
 
-/// Something that is wrong with a plant: always our bug, never the user's.
+/// A fault of a plant: always our bug, never the user's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlantFault {
@@ -15,7 +15,7 @@ pub enum PlantFault {
     /// An axis's node range is out of bounds, overlaps another, or has fewer than 2 nodes.
     #[error("{0}: bad node range")]
     Range(AxisId),
-    /// An axis's bearer is not there, or belongs to the same or a later axis.
+    /// An axis's bearer does not exist, or belongs to the same or a later axis.
     #[error("{0}: the bearer does not come before it")]
     Bearer(AxisId),
     /// An axis's order is not one more than its bearer's.
@@ -24,7 +24,7 @@ pub enum PlantFault {
     /// An axis does not start at its bearer.
     #[error("{0}: does not start at its bearer")]
     Detached(AxisId),
-    /// An organ names a node, shape or flower that is not there.
+    /// An organ names a node, shape or flower that does not exist.
     #[error("{0}: names something that is not there")]
     OrganLink(OrganId),
     /// An organ's frame is not right-handed and orthonormal, or its scale is not above 0.
@@ -33,13 +33,13 @@ pub enum PlantFault {
     /// A shape has too few points, or a coordinate that is not finite.
     #[error("{0}: bad shape")]
     Shape(ShapeId),
-    /// A flower's numbers are not finite, or it names a node that is not there.
+    /// A flower's numbers are not finite, or it names a node that does not exist.
     #[error("flower {0}: bad numbers or bearer")]
     Flower(usize),
 }
 
 impl Plant {
-    /// Everything that is wrong. An empty plant is sound. Cost: linear.
+    /// Iterates over all faults. An empty plant is sound. Cost: linear.
     pub fn validate(&self) -> impl Iterator<Item = PlantFault> + '_ {
         let n = &self.nodes;
         let ragged = n.position.len() != n.radius_m.len() || n.position.len() != n.axis.len();

@@ -1,4 +1,4 @@
-//! What people draw beside their plants: the sun, clouds, birds, a butterfly, a word. It is left out, and said.
+//! Drawn things that are not plants: the sun, clouds, birds, a butterfly, a word. They are left out, and reported.
 //!
 //! A drawing falls into pieces by place alone. A piece is no plant if the model of kinds says so, or if it hangs in the
 //! air and is of a kind that needs ground to stand on: a bush in the sky is a cloud.
@@ -13,24 +13,27 @@ use geom::bounds;
 
 /// The rule that a stroke is of no plant.
 pub const BESIDE_THE_PLANT: &str = "beside-the-plant";
-/// What hangs higher than this share of the drawing's height stands on no ground of its own.
+/// A piece that hangs higher than this share of the drawing's height stands on no ground of its own.
 const HANGS: f64 = 0.25;
-/// What is left out is at most this large beside the largest plant.
+/// Greatest size of a piece that is left out, relative to the largest plant.
 const SMALL: f64 = 0.7;
-/// No plant at least by this share: of what hangs in the air, and of what stands.
+/// Least share of no plant for which a piece that hangs in the air is left out.
 const HANGING: f64 = 0.3;
+/// Least share of no plant for which a piece that stands on the ground is left out.
 const STANDING: f64 = 0.6;
-/// What something is left out for is surely a plant: no plant by less than this.
+/// A piece that stands is surely a plant if its share of no plant is less than this; others are left out next to one.
 const PLANT: f64 = 0.3;
-/// Letters are at most this high beside the largest plant, and at least so many.
+/// Greatest height of a letter relative to the largest plant.
 const LETTER: f64 = 0.3;
+/// Fewest letters of a word.
 const LETTERS: usize = 3;
-/// Between two letters at most this share of the height of the higher one is free, and they overlap by at most that.
+/// Greatest gap between two letters, as a share of the height of the higher one.
 const SPACED: f64 = 0.9;
+/// Greatest overlap of two letters, as a share of the height of the higher one.
 const OVERLAP: f64 = 0.3;
-/// Letters of one word share at least this much of the height of the lower one, and the lower is at least this high beside the
-/// higher: a small letter beside a capital.
+/// Letters of one word share at least this part of the height of the lower one.
 const IN_LINE: f64 = 0.4;
+/// Least height of the lower of two letters relative to the higher: a small letter next to a capital.
 const ALIKE: f64 = 0.3;
 
 /// One piece of a drawing.
@@ -38,7 +41,7 @@ pub(crate) struct Piece<'a> {
     /// Rows of its strokes in the whole drawing.
     pub(crate) rows: &'a [usize],
     pub(crate) shares: &'a Shares,
-    /// The user said what one of its strokes is.
+    /// Whether the user classified one of its strokes.
     pub(crate) named: bool,
 }
 
@@ -49,8 +52,8 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Whether each piece is left out. `as_one`: how well no plant explains some pieces together.
-pub(crate) fn beside(ink: &Ink, pieces: &[Piece<'_>], as_one: impl Fn(&[usize]) -> f64) -> Vec<bool> {
+/// Returns for each piece whether it is left out. `as_one`: the share of no plant for several pieces taken together.
+pub(crate) fn find_left_out(ink: &Ink, pieces: &[Piece<'_>], as_one: impl Fn(&[usize]) -> f64) -> Vec<bool> {
     let boxes: Vec<(DVec2, DVec2)> = pieces.iter().map(|p| box_of(ink, p.rows)).collect();
     let low = boxes.iter().map(|b| b.0.y).fold(f64::INFINITY, f64::min);
     let high = boxes.iter().map(|b| b.1.y).fold(f64::NEG_INFINITY, f64::max);
@@ -80,7 +83,7 @@ pub(crate) fn beside(ink: &Ink, pieces: &[Piece<'_>], as_one: impl Fn(&[usize]) 
     out
 }
 
-/// It grows from the ground, whatever it is drawn beside.
+/// Whether a kind grows from the ground, whatever is drawn next to it.
 const fn needs_ground(kind: Kind) -> bool {
     matches!(
         kind,
@@ -100,7 +103,7 @@ fn box_of(ink: &Ink, rows: &[usize]) -> (DVec2, DVec2) {
     own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
 }
 
-/// Rows of small pieces of like height beside one another: from left to right, as the pieces are.
+/// Finds rows of small pieces of similar height next to one another. `boxes` run from left to right.
 fn words(boxes: &[(DVec2, DVec2)], out: &[bool], most: f64) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     let tall = |k: usize| (boxes[k].1.y - boxes[k].0.y).max(1e-9);
@@ -122,7 +125,7 @@ fn words(boxes: &[(DVec2, DVec2)], out: &[bool], most: f64) -> Vec<Vec<usize>> {
     found
 }
 
-/// Says which strokes were left out, and what becomes of them: nothing.
+/// Reports which strokes were left out and marks them as ignored.
 pub(crate) fn tell(
     ink: &Ink,
     classes: &[Classified],
@@ -134,7 +137,7 @@ pub(crate) fn tell(
         report,
         "left-out",
         { count = count },
-        "{count} stroke(s) beside the plant look like no plant and were left out"
+        "{count} stroke(s) next to the plant do not look like a plant and were left out"
     );
     let reading = |&row: &usize| {
         let said = classes.get(row).copied().unwrap_or_default();
@@ -214,7 +217,7 @@ mod tests {
     fn what_the_user_names_stays_and_so_do_plants() {
         let lines = [tree(), sun()].concat();
         assert_eq!(left(&read(&lines, &[3]).0), [] as [usize; 0]);
-        // Another tree beside it, smaller.
+        // Another, smaller tree next to it.
         let small =
             tree().into_iter().map(|l| l.into_iter().map(|p| p * 0.5 + DVec2::new(9.0, 0.0)).collect());
         let lines = [tree(), small.collect()].concat();

@@ -1,4 +1,4 @@
-//! Who bears what: stems lead to flowers, leaves get their stalks, fruits and roots find their places.
+//! Finds the bearer of each part: stems lead to flowers, leaves get their petioles, fruits and roots their places.
 
 use base::ops;
 use geom::{bounds, contains, point_at, polyline_length};
@@ -24,45 +24,53 @@ use crate::{
 const SESSILE: f64 = 0.02;
 /// As [`SESSILE`], as a share of the leaf's size: large leaves leave a larger gap.
 const SESSILE_SHARE: f64 = 0.08;
-/// Petals that were drawn as lines are at least so many and at most so many; each begins within so many radii of the disc, points
-/// away from its middle by more than this cosine, and reaches at most so many times as far as the usual one.
+/// Fewest petals that were drawn as lines.
 const FEWEST_RAYS: usize = 5;
+/// Most petals that were drawn as lines.
 const MOST_RAYS: usize = 200;
+/// A petal drawn as a line begins within this many radii of the disc's centre.
 const RAY_FOOT: f64 = 1.6;
+/// A petal drawn as a line points away from the disc: the cosine of its angle to the radius is above this.
 const RAY_WAY: f64 = 0.7;
+/// A petal drawn as a line reaches at most this factor farther than the median one.
 const LONG_RAY: f64 = 1.8;
 /// Lines that are a tuft of grass at least: three are a stem with two branches.
 const FEWEST_BLADES: usize = 4;
-/// The ground under a tuft: its ends are this far apart as a share of its length, and it rises by less than that share of
-/// its width.
+/// Straightness of the ground under a tuft: the distance between its ends is more than this share of its length.
 const LEVEL_STRAIGHT: f64 = 0.93;
+/// The ends of the ground under a tuft differ in height by less than this share of its width.
 const LEVEL_RISE: f64 = 0.15;
-/// A nut at the top of a trunk has a radius of less than so many times the trunk's width there; a flower a larger one.
+/// A disc at the top of a trunk is a nut if its radius is less than this factor of the trunk's width there; else a
+/// flower.
 const NUT: f64 = 1.2;
-/// A stamen begins within this share of its flower's reach, and is at most so many times as long as that.
+/// A stamen begins within this share of its flower's reach of the centre.
 const STAMEN_FOOT: f64 = 0.3;
+/// A stamen is at most this factor of its flower's reach long.
 const STAMEN_LENGTH: f64 = 1.3;
-/// Lines over petals are stamens from so many on, where they lead aside from the middles of their petals by more than this share
-/// of the angle between two, on the average: of lines that lead anywhere that is half (*geometry*).
+/// Fewest lines over petals that are stamens.
 const FEWEST_STAMENS: u32 = 3;
+/// Lines over petals are stamens if they lie aside from the middles of their petals by more than this share of the
+/// angle between two, on average: for lines of random direction that is half (*geometry*).
 const ASIDE: f64 = 0.3;
-/// Of a flower seen from the side stamens stand out: they begin this near to its middle, as a share of a petal, lead the way of
-/// one (the cosine), and end within so many times its size.
+/// A stamen that stands out of a flower in profile begins this near to its centre, as a share of a petal.
 const BURST_FOOT: f64 = 0.2;
+/// The cosine of the angle between such a stamen and its petal is above this.
 const BURST_WAY: f64 = 0.94;
+/// Such a stamen ends within this factor of its petal's size.
 const BURST_LONG: f64 = 1.35;
-/// It is shorter than this share of the longest line: that one is the stem.
+/// Stamens are shorter than this share of the longest line: that one is the stem.
 const NO_STEM: f64 = 0.6;
-/// A root lies under the ground on the average by more than the first, and rises over it nowhere by more than the second.
+/// A root lies under the ground by more than this on average.
 const UNDER: f64 = 0.005;
+/// A root rises above the ground nowhere by more than this.
 const OVER: f64 = 0.04;
 /// Roots begin this far from the sides of a trunk's foot, which flares.
 const FLARE: f64 = 0.08;
-/// A stem belongs to a flower up to so many times the reach of its petals from its middle.
+/// A stem belongs to a flower if it ends within this factor of its petals' reach from its centre.
 const BEYOND: f64 = 1.35;
-/// It ends at the flower rather than passing it, where less than this share of it, or of the reach, is left.
+/// A stem ends at a flower rather than passing it if less than this share of the stem, or of the reach, is left.
 const AT_END: f64 = 0.25;
-/// Nearer places are one: less than a step of the pen. *Sampled*.
+/// Places nearer than this are one: less than a step of the pen. *Sampled*.
 const STEP: f64 = 0.004;
 /// A flower nearer to an axis than this sits on it: some two steps of the pen. *Sampled*.
 const ON_AXIS: f64 = 0.012;
@@ -70,11 +78,11 @@ const ON_AXIS: f64 = 0.012;
 const MOST_GRASS: usize = 2_000;
 /// Leaves and flowers farther than this from every axis are borne by none.
 const FAR: f64 = 0.25;
-/// A frond begins within this of the top of a trunk, where others do whose beginning alone says that they are fronds.
+/// A frond begins within this distance of the top of a trunk if others begin so near that they surely are fronds.
 const ROUND_TOP: f64 = 0.1;
 
-/// Lines that fan out from the top of a trunk without a crown are the fronds of a palm; of what is known to be one they may begin
-/// farther from it.
+/// Turns lines that fan out from the top of a trunk without a crown into the fronds of a palm; if the plant is known
+/// to be a palm, they may begin farther away.
 pub(crate) fn fronds(draft: &mut Draft<'_>) {
     let bare = draft.regions.is_empty() && (draft.open_top || !draft.blades.is_empty());
     if draft.bodies.is_empty() || !bare || draft.is_tree() {
@@ -88,7 +96,7 @@ pub(crate) fn fronds(draft: &mut Draft<'_>) {
             Some((top, WELL_SHORT + draft.forest.half_width(r, f64::INFINITY)))
         })
         .collect();
-    // What is known to be a palm has nothing else up there.
+    // A plant known to be a palm has nothing else up there.
     let palm = draft.kind == Some(Kind::Palm);
     let from_top = |line: &Line| {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
@@ -122,13 +130,13 @@ fn into_blades(draft: &mut Draft<'_>, roots: Vec<Option<bool>>) {
     }
 }
 
-/// Of what is taken for a flower, lines all round a disc that point away from it are its petals.
+/// Turns lines all round a disc that point away from it into petals, if the plant is taken for a flower.
 pub(crate) fn rays(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
     if !draft.kind.is_some_and(|k| k.is_like(Kind::Flower)) || draft.lines.len() > MOST_RAYS {
         return;
     }
     for (disc, _) in discs {
-        // Whether a line that points away ends at the disc.
+        // For a line that points away: whether its last point is at the disc.
         let away = |line: &Line| {
             let ends = [line.points[0], line.points[line.points.len() - 1]];
             let last = ends[1].distance(disc.centre) < ends[0].distance(disc.centre);
@@ -150,7 +158,7 @@ pub(crate) fn rays(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
     }
 }
 
-/// Single lines that stand beside one another, with nothing that they bear, are blades of grass.
+/// Turns single lines that stand next to one another and bear nothing into blades of grass.
 pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
     let bare = draft.blades.is_empty()
         && draft.regions.is_empty()
@@ -208,7 +216,8 @@ pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
     }
 }
 
-/// Discs of flowers, and the strokes of those that are nuts at the top of a trunk or fruits in a crown.
+/// Returns the discs of flowers, and the strokes of the discs that are nuts at the top of a trunk or fruits in a
+/// crown.
 pub(crate) fn part_discs(
     draft: &Draft<'_>,
     discs: Vec<(DiscReading, usize)>,
@@ -236,8 +245,8 @@ pub(crate) fn part_discs(
     (flowers, nuts)
 }
 
-/// Takes lines out of petals that lie over them and are no veins of theirs: they begin at the middle of the flower and do not
-/// lead along the petals.
+/// Takes lines out of petals that lie over them and are no veins of theirs: they begin at the middle of the flower and
+/// do not lead along the petals.
 fn over_petals(draft: &mut Draft<'_>, flowers: &[FlowerDraft], veins: &mut Veins) {
     veins.resize(draft.blades.len(), Vec::new());
     for flower in flowers.iter().filter(|f| f.petals.len() >= FEWEST_PETALS) {
@@ -269,7 +278,7 @@ fn over_petals(draft: &mut Draft<'_>, flowers: &[FlowerDraft], veins: &mut Veins
     }
 }
 
-/// Whether a line begins where the petals do, leads the way of one, and ends not far beyond it.
+/// Whether a line begins where the petals do, runs in the direction of one, and ends not far beyond it.
 fn bursting<'a>(draft: &'a Draft<'_>, flower: &'a FlowerDraft) -> impl Fn(&Line) -> bool + 'a {
     let widest = flower.petals.iter().map(|&i| draft.blades[i].size).fold(0.0, f64::max);
     move |line| {
@@ -291,7 +300,7 @@ fn bursting_lines(draft: &Draft<'_>, flower: &FlowerDraft) -> usize {
     draft.lines.iter().filter(|l| bursts(l)).count()
 }
 
-/// Short lines from a flower's centre outwards are its stamens.
+/// Turns short lines from a flower's centre outwards into its stamens.
 pub(crate) fn stamens(
     draft: &mut Draft<'_>,
     flowers: &mut [FlowerDraft],
@@ -315,7 +324,7 @@ pub(crate) fn stamens(
         let apart = flower.petals.iter().map(|&i| roots[i].distance(flower.centre)).fold(0.0, f64::max);
         reach.push((0.75 * petals + 0.5 * apart).max(flower.disc.map_or(0.0, |d| 3.0 * d.radius)));
     }
-    // Both ends lie within the reach of the flower, and so does what lies between.
+    // Both ends lie within the reach of the flower, and so does the line between them.
     let farthest = reach.iter().copied().fold(ROUNDING, f64::max).min(0.3);
     let longest = draft.longest();
     let alone = draft.lines.len() == 1;
@@ -352,7 +361,7 @@ pub(crate) fn stamens(
     }
 }
 
-/// Axes below the ground line, or from the foot of a trunk downwards, are roots.
+/// Marks axes below the ground line, or downwards from the foot of a trunk, as roots.
 pub(crate) fn roots(draft: &mut Draft<'_>) {
     let ground = draft.of_class(StrokeClass::Ground).into_iter().next().map(|k| &draft.ink.strokes[k].points);
     let ground_y = ground.and_then(|g| bounds(g)).map(|(lo, hi)| 0.5 * (lo.y + hi.y));
@@ -459,7 +468,7 @@ pub(crate) fn organs(
     (read, leaves)
 }
 
-/// Which of them lies in front.
+/// Notes which of the blades lies in front.
 fn order(blades: &mut [BladeReading], ink: &Ink) {
     let layers = layers(blades, ink);
     blades.iter_mut().zip(layers).for_each(|(blade, layer)| blade.front = layer);
@@ -482,7 +491,7 @@ fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<VeinReadin
     BladeReading { source: Some(s.index), color: s.color, ..read }
 }
 
-/// A blade with its tip and midrib.
+/// Returns a blade with its tip and midrib.
 fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<VeinReading>) -> BladeReading {
     let far = tip(outline, root);
     let (rib, veins) = choose_midrib(veins, root, far);
@@ -505,8 +514,8 @@ fn ribbed(outline: &[DVec2], root: DVec2, veins: Vec<VeinReading>) -> BladeReadi
     }
 }
 
-/// The stem of a flower: one that passes through its centre, one that ends within it (and is led on to the
-/// centre), or a stalk from the nearest axis.
+/// Finds or makes the stem of a flower: an axis that passes through its centre, one that ends within it (and is led
+/// on to the centre), or a stalk from the nearest axis.
 fn flower_bearer(draft: &mut Draft<'_>, centre: DVec2, reach: f64) -> Option<Attachment> {
     let (at, gap) = draft
         .forest
@@ -533,7 +542,7 @@ fn flower_bearer(draft: &mut Draft<'_>, centre: DVec2, reach: f64) -> Option<Att
     Some(Attachment { axis: stalk, at: draft.forest.length(stalk) })
 }
 
-/// The bearer of a leaf; one that does not touch it gets a stalk.
+/// Finds the bearer of a leaf; a leaf that does not touch it gets a stalk.
 fn leaf_bearer(draft: &mut Draft<'_>, leaf: &BladeReading, size: f64, soil: &Near) -> Option<Attachment> {
     let (at, gap) = draft
         .forest
@@ -563,7 +572,7 @@ fn stalk(draft: &mut Draft<'_>, at: Attachment, to: DVec2, kind: AxisKind) -> Op
     Some(row)
 }
 
-/// Fruits hang from the nearest axis.
+/// Hangs fruits on the nearest axis.
 pub(crate) fn fruits(draft: &mut Draft<'_>, fruits: &mut [FruitReading]) {
     for fruit in fruits {
         let middle = geom::centroid(&fruit.outline);

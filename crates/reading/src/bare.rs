@@ -1,7 +1,8 @@
 //! The wood of a bare tree whose trunk and limbs were drawn by their sides.
 //!
-//! Two sides of a trunk run on into limbs, whose other sides begin in the forks. No two of these lines belong together, but
-//! what lies between them does: it is what a ball finds no way into, without single lines.
+//! Two sides of a trunk run on into limbs, whose other sides begin in the forks. No two of these lines belong
+//! together, but the space between them does: a ball larger than the gaps cannot roll into it. Single lines are not
+//! part of it.
 
 use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
@@ -17,16 +18,17 @@ use crate::{OrganWord, READ_AS, Reading};
 
 /// Wood is wider than twice this share of the diagonal; narrower things are lines.
 const WIDE: f64 = 0.015;
-/// It fills less than this share of the hull of all lines.
+/// Wood fills less than this share of the hull of all lines.
 const FULL: f64 = 0.6;
-/// It stands within this share of the height of the lowest line, and is as tall as that share at least.
+/// Wood begins within this share of the height above the lowest line.
 const STANDS: f64 = 0.1;
+/// Wood is at least this share of the height tall.
 const TALL: f64 = 0.3;
-/// Along less than this share of it nothing was drawn: limbs are open at their tips.
+/// At most this share of its edge is not drawn: limbs are open at their tips.
 const OPEN: f64 = 0.25;
-/// A reading has more than the first share of all lines on the edges of its wood, or covers more than the second of wood that was
-/// drawn all round.
+/// A reading is good as it is if more than this share of all lines runs on the edges of its wood.
 const READ_WELL: f64 = 0.8;
+/// A reading is good as it is if it covers more than this share of wood that was drawn all round.
 const READ: f64 = 0.4;
 /// A line is a twig from where it leaves the wood, if it is longer than this.
 const TWIG: f64 = 0.04;
@@ -34,14 +36,14 @@ const TWIG: f64 = 0.04;
 /// Wood between lines.
 #[derive(Debug)]
 pub(crate) struct BareWood {
-    /// Of the trunk.
+    /// Outline of the trunk.
     outline: Vec<DVec2>,
     trunk: Limb,
 }
 
 impl BareWood {
-    /// Of a drawing whose lines are not on the edges of what a reading made of it.
-    pub(crate) fn of(drawn: &Drawn<'_>, reading: &Reading) -> Option<Self> {
+    /// Finds the wood of a drawing whose lines do not lie on the edges of the wood that a reading made.
+    pub(crate) fn find(drawn: &Drawn<'_>, reading: &Reading) -> Option<Self> {
         if on_edges(drawn.lines, reading) > READ_WELL {
             return None;
         }
@@ -57,7 +59,8 @@ impl BareWood {
         };
         let [smallest, open @ ..] = BALLS;
         let outline = match wood(smallest) {
-            // Limbs that were drawn all round are in its outline: where they were read at all, that is better than their lines.
+            // Limbs that were drawn all round are in the outline of the reading: if they were read at all, that is
+            // better than their lines.
             Some(shut) if fit(&shut, reading) > READ => return None,
             Some(shut) => shut,
             None => open.into_iter().find_map(wood)?,
@@ -68,12 +71,13 @@ impl BareWood {
         Some(Self { outline, trunk })
     }
 
-    /// How much of what the trunk or a reading covers both do, 0 to 1: what is wide above the trunk is the space between limbs.
+    /// Returns how much of the area that the trunk or a reading covers is covered by both, 0 to 1. A wide part above
+    /// the trunk is the space between limbs.
     pub(crate) fn fit(&self, reading: &Reading) -> f64 {
         fit(&self.outline, reading)
     }
 
-    /// Reads the wood as wood, and what leads out of it as twigs.
+    /// Reads the wood as wood, and lines that lead out of it as twigs.
     pub(crate) fn read(self, shaping: &Shaping<'_>, draft: &mut Draft<'_>) {
         let ink = draft.ink;
         let mut source = None;
@@ -98,7 +102,7 @@ impl BareWood {
         draft.bodies.extend(row);
     }
 
-    /// What of a line lies outside of the wood.
+    /// Returns the pieces of a line outside the wood.
     fn twigs(&self, points: &[DVec2]) -> Vec<Vec<DVec2>> {
         let mut found: Vec<Vec<DVec2>> = Vec::new();
         let mut was_out = false;
@@ -123,7 +127,7 @@ fn fit(wood: &Vec<DVec2>, reading: &Reading) -> f64 {
     bounds(&all).map_or(1.0, |(lo, hi)| common(std::slice::from_ref(wood), &made, lo.y..hi.y))
 }
 
-/// The share of lines that run along the edges of the wood that a reading made, 0 to 1.
+/// Returns the share of lines that run along the edges of a reading's wood, 0 to 1.
 fn on_edges(lines: &[&[DVec2]], reading: &Reading) -> f64 {
     let made = made(reading);
     let on_edge = |p: &DVec2| made.iter().any(|ring| nearest_on_ring(ring, *p).1 < NEAR);

@@ -28,10 +28,11 @@ const EDGE_ON: f64 = 0.1;
 const COMES_BACK: f64 = 0.08;
 /// Cutting a stalk off costs less than this share of the gap between the ends, or the gap is a gap.
 const STALK_COST: f64 = 0.8;
-/// A sharp place is the tip if it lies this far out beside the farthest point.
+/// A sharp place is the tip if it lies at least this far out relative to the farthest point.
 const SHARP_REACH: f64 = 0.9;
-/// Cross-sections of a blade, and how many at either end are wild because its outline turns there.
+/// Cross-sections of a blade.
 const SECTIONS: usize = 11;
+/// Cross-sections at either end that are ignored because the outline turns there.
 const WILD: usize = 2;
 /// Each point of a midrib leads on by this share of its length at least.
 const ONWARDS: f64 = 0.02;
@@ -41,9 +42,9 @@ const ONWARDS: f64 = 0.02;
 pub(crate) struct Sheetlet {
     /// Simple, counter-clockwise.
     pub(crate) outline: Vec<DVec2>,
-    /// Where the pen began and ended: most people begin a leaf where it is attached.
+    /// Point where the pen began and ended: most people begin a leaf where it is attached.
     pub(crate) gap: DVec2,
-    /// How far the two ends are apart.
+    /// Distance between the two ends of the stroke.
     pub(crate) gap_width: f64,
     /// The root, where the way it was drawn leaves no doubt (a piece of a corolla).
     pub(crate) root: Option<DVec2>,
@@ -60,7 +61,7 @@ pub(crate) struct Sheetlet {
 }
 
 impl Sheetlet {
-    /// From a closed line; `None` where it has no area to speak of.
+    /// Makes a blade of a closed line; `None` if it has almost no area.
     pub(crate) fn new(line: &[DVec2], stroke: usize) -> Option<Self> {
         let outline = simple_outline(&tidy(line))?;
         let (first, last) = (*line.first()?, *line.last()?);
@@ -88,7 +89,7 @@ impl Sheetlet {
         })
     }
 
-    /// From margin and midrib in one go; `None` where it is nothing of the kind.
+    /// Makes a blade of margin and midrib drawn in one go; `None` if the line is not such a stroke.
     pub(crate) fn with_rib(line: &[DVec2], stroke: usize) -> Option<Self> {
         let margin = first_round(line);
         let blade = Self::new(margin, stroke).filter(|_| margin.len() < line.len())?;
@@ -99,15 +100,15 @@ impl Sheetlet {
             .then(|| Self { rib: Some(rest.to_vec()), ..blade })
     }
 
-    /// See [`lens`].
+    /// Makes a blade of the outline of [`lens`].
     pub(crate) fn lens(line: &[DVec2], stroke: usize, half_width: f64) -> Option<Self> {
         let mut lens = Self::new(&lens(line, half_width)?, stroke)?;
         lens.root = line.first().copied();
         Some(lens)
     }
 
-    /// From a closed line that comes back the way it went: a lens round the middle of both ways, as narrow as a blade may
-    /// be. `None` where its ends do not meet.
+    /// Makes a blade of a closed line that comes back the way it went: a lens round the middle of both ways, as
+    /// narrow as a blade may be. `None` if its ends do not meet.
     pub(crate) fn edge_on(line: &[DVec2], stroke: usize) -> Option<Self> {
         let (first, last) = (*line.first()?, *line.last()?);
         let root = first.midpoint(last);
@@ -131,7 +132,7 @@ impl Sheetlet {
         })
     }
 
-    /// Leads the outline on to a point outside of it, from its nearest point; returns where it begins then.
+    /// Leads the outline on to a point outside it, from its nearest point; returns where it now begins.
     pub(crate) fn claw(&mut self, root: DVec2, foot: DVec2) -> DVec2 {
         let far = |k: &usize| self.outline[*k].distance_squared(root);
         let nearest = (0..self.outline.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
@@ -149,7 +150,7 @@ impl Sheetlet {
         }
     }
 
-    /// The point of the outline nearest to `p`, and its distance.
+    /// Returns the point of the outline nearest to `p`, and its distance.
     pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         nearest_on_ring(&self.outline, p)
     }
@@ -168,27 +169,36 @@ impl Sheetlet {
 /// A leaf or petal drawn as one line is half as wide as this share of its length.
 pub(crate) const LENS: f64 = 0.055;
 
-/// The outline of a frond or grass blade that was drawn as one stroke of the pen: widest at a third, pointed at both ends. `None`
-/// for a line without length.
+/// Returns the outline of a frond or grass blade that was drawn as one stroke of the pen: widest at a third, pointed
+/// at both ends. `None` for a line without length.
 pub(crate) fn lens(line: &[DVec2], half_width: f64) -> Option<Vec<DVec2>> {
     let spine = resample(&simplify(line, 0.002), geom::polyline_length(line) / 16.0);
     let n = spine.len();
     if n <= 2 {
         return None;
     }
-    let side = |i: usize, sign: f64| {
-        let along = (spine[(i + 1).min(n - 1)] - spine[i.saturating_sub(1)]).normalize_or_zero();
+    let half_width_at = |i: usize| {
         #[expect(clippy::cast_precision_loss, reason = "a few dozen points")]
         let t = i as f64 / (n - 1) as f64;
-        let w = half_width * 2.6 * t.sqrt() * (1.0 - t) * (1.0 - 0.25 * t);
-        spine[i] + along.perp() * (sign * w)
+        half_width * 2.6 * t.sqrt() * (1.0 - t) * (1.0 - 0.25 * t)
     };
-    let mut ring: Vec<DVec2> = (0..n).map(|i| side(i, -1.0)).collect();
-    ring.extend((1..n - 1).rev().map(|i| side(i, 1.0)));
-    Some(ring)
+    Some(ring_round(&spine, half_width_at))
 }
 
-/// The point of a closed outline nearest to `p`, and its distance.
+/// Returns the closed line round a spine: along its right side and back along its left one, where points on the spine
+/// itself are not repeated. `half_width_at`: half the width at a row of the spine.
+pub(crate) fn ring_round(spine: &[DVec2], half_width_at: impl Fn(usize) -> f64) -> Vec<DVec2> {
+    let n = spine.len();
+    let side = |i: usize, sign: f64| {
+        let along = (spine[(i + 1).min(n - 1)] - spine[i.saturating_sub(1)]).normalize_or_zero();
+        spine[i] + along.perp() * (sign * half_width_at(i))
+    };
+    let right = (0..n).map(|i| side(i, -1.0));
+    let left = (0..n).rev().filter(|&i| half_width_at(i) > 0.0).map(|i| side(i, 1.0));
+    right.chain(left).collect()
+}
+
+/// Returns the point of a closed outline nearest to `p`, and its distance.
 pub(crate) fn nearest_on_ring(outline: &[DVec2], p: DVec2) -> (DVec2, f64) {
     let open = closest_on_polyline(outline, p);
     let close = match (outline.last(), outline.first()) {
@@ -202,13 +212,13 @@ pub(crate) fn nearest_on_ring(outline: &[DVec2], p: DVec2) -> (DVec2, f64) {
         .map_or((p, f64::INFINITY), |c| (c.point, c.distance))
 }
 
-/// Fewer points where a line is straight: outlines are compared point by point.
+/// Leaves out points where a line is straight: outlines are compared point by point.
 fn tidy(line: &[DVec2]) -> Vec<DVec2> {
     simplify(line, 0.0006)
 }
 
-/// The round of a line that comes back to where it began and goes on for a good way, or that begins a good way before
-/// where it ends; of the two the larger round. All of it where there is none.
+/// Returns the round part of a line that comes back to where it began and goes on for a good way, or that begins a
+/// good way before where it ends; the larger of the two. Returns the whole line if there is none.
 pub(crate) fn first_round(points: &[DVec2]) -> &[DVec2] {
     let n = points.len();
     let size = bounds(points).map_or(0.0, |(lo, hi)| lo.distance(hi));
@@ -269,8 +279,8 @@ pub(crate) fn split_stalks(points: &[DVec2], near: f64) -> (Vec<DVec2>, Vec<Vec<
     (points[i..=j].to_vec(), stalks)
 }
 
-/// The point farthest out: of the sharpest places of the smoothed outline the one farthest from the root; the
-/// farthest point itself where no sharp place is nearly as far.
+/// Returns the tip: the sharp place of the smoothed outline that is farthest from the root, or the farthest point
+/// itself if no sharp place is nearly as far.
 pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
     let Some(farthest) =
         outline.iter().copied().max_by(|a, b| a.distance_squared(root).total_cmp(&b.distance_squared(root)))
@@ -293,7 +303,7 @@ pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
     };
     let mut sharpest: Vec<(f64, usize)> = (0..n).map(|i| (turn(i), i)).filter(|t| t.0 > POINTED).collect();
     base::sort_by(&mut sharpest, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // Of a round petal's far side the middle counts, not a corner that is a little farther away.
+    // On the far side of a round petal the middle counts, not a corner that is a little farther away.
     let out = (geom::centroid(outline) - root).normalize_or_zero();
     let reach = |p: DVec2| 0.5 * (p - root).dot(out) + 0.5 * p.distance(root);
     let farthest = even.iter().copied().max_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(farthest);
@@ -306,7 +316,7 @@ pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
     if reach(sharp) > SHARP_REACH * reach(farthest) { sharp } else { farthest }
 }
 
-/// A midrib from the outline alone: through the middles of its cross-sections, root to tip.
+/// Returns a midrib from the outline alone: through the middles of its cross-sections, root to tip.
 pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
     let mut line = vec![root];
     let sections = medial_axis_width(outline, root, tip, SECTIONS);
@@ -315,7 +325,8 @@ pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DV
     }
     line.push(tip);
     let reach = root.distance(tip);
-    // A wild section (a lobe cut lengthwise) would send the midrib out and back: keep what leads on to the tip.
+    // A wild section (a lobe cut lengthwise) would send the midrib out and back: keep sections that lead on to the
+    // tip.
     let along = (tip - root) / reach.max(1e-12);
     let mut ahead = f64::NEG_INFINITY;
     line.retain(|p| {
@@ -329,7 +340,7 @@ pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DV
     midrib(&line, root, tip)
 }
 
-/// A smooth midrib that begins at the root and ends at the tip.
+/// Returns a smooth midrib that begins at the root and ends at the tip.
 pub(crate) fn midrib(line: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
     let mut whole = vec![root];
     whole.extend(line.iter().copied().filter(|p| p.distance(root) > ROUNDING && p.distance(tip) > ROUNDING));

@@ -21,26 +21,27 @@ const MOST_LIMBS: usize = 24;
 const LIMB_STEP: f64 = 0.012;
 /// A drawn end lies this far from where its limb begins: lines across a foot sag.
 const SLACK: f64 = 0.015;
-/// A part that stands out by less than so many times the body's half width there, or by less than this share of its box, is
-/// a bump and no limb.
+/// A part that stands out by less than this factor of the body's half width there is a bump, not a limb.
 const BUMP: f64 = 1.3;
+/// A part that stands out by less than this share of the body's box is a bump, not a limb.
 const BUMP_LEAST: f64 = 0.07;
-/// An opening is wider than so many cells: less are the steps of the grid (*geometry*).
+/// An opening is wider than this number of cells: smaller ones are the steps of the grid (*geometry*).
 const OPENING_CELLS: f64 = 3.0;
-/// A limb ends in an opening nearer than so many times its half width.
+/// A limb ends in an opening nearer than this factor of its half width.
 const ENDS_AT: f64 = 1.5;
-/// One of its ends lies in an opening nearer than this share of its half width.
+/// One end of a limb lies in an opening nearer than this share of its half width.
 const IN_OPENING: f64 = 0.8;
-/// Where a limb's end is so many times as far as its sides are, the sides are what was measured.
+/// If a limb's end is farther away than its sides by this factor, the width was measured to the sides.
 const SIDES_NEARER: f64 = 1.25;
 /// The opening on which a body stands, in widths of the body; a level one may be wider.
 const FOOT_WIDTH: core::ops::Range<f64> = 0.6..2.2;
-/// It lies in the lowest part of the body, and one that was left open above in the highest: shares of its height.
+/// The opening on which a body stands lies in this lowest share of its height.
 const FOOT_LOW: f64 = 0.35;
+/// The opening of a body that was left open above lies higher than this share of its height.
 const TOP_HIGH: f64 = 0.75;
-/// What stands on a drawn line does so along more than this share of it.
+/// A body stands on a drawn line if the line runs along more than this share of its foot.
 const FOOT_FILLED: f64 = 0.75;
-/// Its middle may lie so many times as high as its ends.
+/// Factor by which the middle of the foot may lie higher than its ends.
 const SAGS: f64 = 2.5;
 /// A body without such an opening stands on the lowest part of this share of its height.
 const LOWEST: f64 = 0.05;
@@ -56,7 +57,7 @@ pub(crate) struct Limb {
     pub(crate) closed_end: bool,
 }
 
-/// The outline of a line with its half width at each point: up its left side, and back.
+/// Returns the outline of a line with its half width at each point: up its left side, and back.
 pub(crate) fn ribbon(points: &[DVec2], half_width: &[f64]) -> Vec<DVec2> {
     let n = points.len();
     let side = |k: usize, s: f64| {
@@ -67,13 +68,13 @@ pub(crate) fn ribbon(points: &[DVec2], half_width: &[f64]) -> Vec<DVec2> {
     left.chain((0..n).rev().map(|k| side(k, -1.0))).collect()
 }
 
-/// The limbs of a body, its trunk first; empty where the outline has no area.
+/// Returns the limbs of a body, its trunk first; empty if the outline has no area.
 ///
-/// `base`: where it stands, if that is known (an arm of a cactus stands on the body).
+/// `base`: where the body stands, if that is known (an arm of a cactus stands on the body).
 pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let Some(mask) = Mask::new(&ring.points) else { return Vec::new() };
     let opened = base.is_none().then(|| mask.without_foot(ring)).flatten();
-    // What ends so low on a drawn foot is a corner of it.
+    // A limb that ends this low on a drawn foot is a corner of it.
     let corner =
         opened.as_ref().map(|_| mask.band(ring).map_or(f64::NEG_INFINITY, |(low, band)| low + SAGS * band));
     let ring = opened.as_ref().unwrap_or(ring);
@@ -124,7 +125,7 @@ pub(crate) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     limbs
 }
 
-/// The cells' way to a smooth line with half widths measured on the drawn lines.
+/// Turns a path of cells into a smooth line with half widths measured on the drawn lines.
 fn finish(
     ring: &Ring,
     mask: &Mask,
@@ -161,7 +162,7 @@ fn finish(
 }
 
 impl Limb {
-    /// One of the limb's ends lies at `opening`.
+    /// Whether one of the limb's ends lies at `opening`.
     fn wide_at(&self, opening: DVec2, cell: f64) -> bool {
         let near = |p: Option<&DVec2>, w: Option<&f64>| {
             p.zip(w).is_some_and(|(p, w)| p.distance(opening) < IN_OPENING * w + OPENING_CELLS * cell)
@@ -169,8 +170,8 @@ impl Limb {
         near(self.points.first(), self.half_width.first()) || near(self.points.last(), self.half_width.last())
     }
 
-    /// At a drawn base line and at a drawn tip the nearest line is the end, not the side: the base goes on as wide
-    /// as it is above, the tip is a dome.
+    /// Corrects the widths at a drawn base line and at a drawn tip, where the nearest line is the end, not the side:
+    /// the base goes on as wide as it is above, the tip is a dome.
     fn mend_widths(&mut self) {
         let total = polyline_length(&self.points);
         let at: Vec<f64> = (0..self.points.len()).map(|i| polyline_length(&self.points[..=i])).collect();
@@ -235,7 +236,7 @@ impl Ord for Reached {
     reason = "cell numbers are small and clamped"
 )]
 impl Mask {
-    /// Fills by winding number, so a line that crosses itself encloses what a person sees enclosed.
+    /// Fills by winding number, so a line that crosses itself encloses the areas that a person sees as enclosed.
     fn new(outline: &[DVec2]) -> Option<Self> {
         let (lo, hi) = bounds(outline)?;
         let cell = (hi - lo).max_element() / CELLS;
@@ -286,7 +287,8 @@ impl Mask {
         })
     }
 
-    /// Where the body stands: the middle of its lowest opening; without one, the middle of its lowest part.
+    /// Returns the place where the body stands: the middle of its lowest opening; without one, the middle of its
+    /// lowest part.
     fn base(&self, ring: &Ring) -> DVec2 {
         let area = self.inside.iter().filter(|i| **i).count() as f64 * self.cell * self.cell;
         let width = 2.0 * area / polyline_length(&ring.points).max(1e-9);
@@ -313,19 +315,20 @@ impl Mask {
         })
     }
 
-    /// The lowest height of a body, and up to how far above it its feet are.
+    /// Returns the lowest height of a body, and the height above it up to which its feet reach.
     fn band(&self, ring: &Ring) -> Option<(f64, f64)> {
         let (lo, hi) = bounds(&ring.points)?;
         Some((lo.y, (LOWEST * (hi.y - lo.y)).max(OPENING_CELLS * self.cell)))
     }
 
-    /// The outline of a body that stands on a drawn line, all along it, open there: so a foot that flares is as wide as it was
-    /// drawn, and its corners are no roots. None of what is open below, or stands on roots apart.
+    /// Returns the outline of a body that stands on a drawn line, open all along that line: so a flared foot is as
+    /// wide as it was drawn, and its corners are no roots. `None` for a body that is open below or stands on separate
+    /// roots.
     fn without_foot(&self, ring: &Ring) -> Option<Ring> {
         let (lo, hi) = bounds(&ring.points)?;
         let (_, band) = self.band(ring)?;
         let low = |p: DVec2| p.y < lo.y + band;
-        // Open there already, however uneven its feet are.
+        // It is open there already, however uneven its feet are.
         let open = |(a, b): (DVec2, DVec2)| {
             a.distance(b) > OPENING_CELLS * self.cell && a.midpoint(b).y < 0.5 * (lo.y + hi.y)
         };
@@ -346,7 +349,7 @@ impl Mask {
         if b.x - a.x < OPENING_CELLS * self.cell || filled < FOOT_FILLED * (b.x - a.x) / self.cell {
             return None;
         }
-        // The way over the top, from the right to the left corner or the other way.
+        // The way over the top, from the right corner to the left one or in reverse.
         let n = ring.points.len();
         let way = |from: usize, to: usize| -> Vec<usize> {
             (0..=(to + n - from) % n).map(|k| (from + k) % n).collect()
@@ -360,7 +363,7 @@ impl Mask {
         Some(Ring { points, parts: ring.parts.clone(), gaps })
     }
 
-    /// The cell in the middle of a wide opening at the body's upper end.
+    /// Returns the cell in the middle of a wide opening at the body's upper end.
     fn top(&self, ring: &Ring, base: DVec2) -> Option<usize> {
         let (lo, hi) = bounds(&ring.points)?;
         let height = hi.y - lo.y;
@@ -375,7 +378,7 @@ impl Mask {
         self.nearest_inside(middle)
     }
 
-    /// Distance to the outside in cells (chamfer 1, sqrt 2: within 8 %).
+    /// Returns the distance to the outside in cells (chamfer 1, sqrt 2: within 8 %).
     fn clearance(&self) -> Vec<f64> {
         let far = (self.nx + self.ny) as f64;
         let mut d: Vec<f64> = self.inside.iter().map(|&i| if i { far } else { 0.0 }).collect();
@@ -396,7 +399,7 @@ impl Mask {
         d
     }
 
-    /// Dijkstra over the inside; `weight` multiplies the length of a step into a cell.
+    /// Finds shortest paths inside (Dijkstra); `weight` multiplies the length of a step into a cell.
     fn flood(&self, root: usize, weight: impl Fn(usize) -> f64) -> Flood {
         let mut flood =
             Flood { cost: vec![f64::INFINITY; self.inside.len()], from: vec![root; self.inside.len()] };
@@ -428,12 +431,13 @@ impl Mask {
         flood
     }
 
-    /// The cell where the next limb ends: the highest end for the trunk, the farthest bare part for the others.
+    /// Returns the cell where the next limb ends: the highest end for the trunk, the farthest bare part for the
+    /// others.
     fn farthest(&self, root: usize, way: &Flood, covered: &[Option<usize>], trunk: bool) -> Option<usize> {
         let base = self.middle(root);
         let score = |c: usize| {
             let p = self.middle(c);
-            // Of two ends alike far away the trunk is the one above the base, an arm the other.
+            // If two ends are equally far away, the trunk takes the one above the base, an arm the other.
             if trunk {
                 p.distance(base) + 0.8 * (p.y - base.y) - 0.4 * (p.x - base.x).abs()
             } else {

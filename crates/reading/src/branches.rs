@@ -1,9 +1,9 @@
 //! The hierarchy of axes, from the longest stroke outwards (He and Cheng 2021, section 4.2).
 //!
-//! A line is borne by the line of the last level that one of its ends comes nearest to, if nearer than a
-//! threshold. Beyond the paper: outlined trunks come first; the threshold is a share of the drawing; lines that
-//! cross a bearer are split there; what touches nothing is led to the nearest axis or stands on its own; two
-//! strokes of one stem are joined; lines that go down from a base are roots.
+//! A line is borne by the line of the last level that one of its ends comes nearest to, if nearer than a threshold.
+//! Beyond the paper: outlined trunks come first; the threshold is a share of the drawing; lines that cross a bearer
+//! are split there; a line that touches nothing is led to the nearest axis or stands on its own; two strokes of one
+//! stem are joined; lines that go down from a base are roots.
 
 use geom::{bounds, closest_on_polyline, distance_to_polyline, point_at, polyline_length};
 use glam::DVec2;
@@ -24,18 +24,19 @@ const OVERSHOOT: f64 = 0.025;
 const THICKEST: f64 = 0.15;
 /// Lines that one end is compared with, nearest first.
 const MOST_CONTACTS: usize = 16;
-/// In a drawing of more lines than this what does not touch is not led anywhere (keeps it linear).
+/// In a drawing of more lines than this a line that touches nothing is not led to an axis (keeps it linear).
 const MOST_LED: usize = 3_000;
 /// Stems are joined at most this often (each costs a pass over the axes).
 const MOST_JOINS: usize = 64;
 /// A base farther than this from its bearer is led to it by a piece of its own: less than a step of the pen. *Sampled*.
 const STEP: f64 = 0.004;
-/// What touches the lowest part of a stem, of this share of its length, begins at its foot.
+/// A line that touches the lowest part of a stem, this share of its length, begins at its foot.
 const FOOT: f64 = 0.04;
 /// A line that goes down by more than this share of its length is a root, or the rest of the stem.
 const DOWN: f64 = 0.3;
-/// What comes nearest to this lowest share of an axis stands beside it; what is as long as this share of it is a stem, too.
+/// A line whose nearest place on an axis is in this lowest share of it stands next to it.
 const NEIGHBOUR: f64 = 0.12;
+/// A line that is as long as this share of the axis is a stem of its own.
 const AS_LONG: f64 = 0.6;
 
 /// A line that will be an axis.
@@ -45,7 +46,7 @@ pub(crate) struct Line {
     pub(crate) source: Option<u32>,
 }
 
-/// What tells a base from a tip.
+/// Points that distinguish the base of a line from its tip.
 #[derive(Clone, Debug)]
 pub(crate) struct Hints {
     /// Points of leaves, flowers and crowns: a stem ends there.
@@ -140,13 +141,13 @@ impl Forest {
         Some(row)
     }
 
-    /// The place on an axis nearest to `p`.
+    /// Returns the place on an axis nearest to `p`.
     pub(crate) fn on(&self, row: usize, p: DVec2) -> Option<Attachment> {
         let c = closest_on_polyline(&self.axes.get(row)?.points, p)?;
         Some(Attachment { axis: row, at: c.at })
     }
 
-    /// Half width of an axis at an arc length; 0 for a line.
+    /// Returns the half width of an axis at an arc length; 0 for a line.
     pub(crate) fn half_width(&self, row: usize, at: f64) -> f64 {
         let axis = &self.axes[row];
         let mut gone = 0.0;
@@ -159,7 +160,7 @@ impl Forest {
         axis.half_width.last().copied().unwrap_or(0.0)
     }
 
-    /// The axis whose surface is nearest to `p` within `r`, the place on it and the distance of its surface.
+    /// Returns the axis whose surface is nearest to `p` within `r`, the place on it and the distance of its surface.
     pub(crate) fn nearest(&self, p: DVec2, r: f64) -> Option<(Attachment, f64)> {
         let row = self.nearest_axis(p, r)?;
         let c = closest_on_polyline(&self.axes[row].points, p)?;
@@ -167,7 +168,7 @@ impl Forest {
         Some((Attachment { axis: row, at: c.at }, surface))
     }
 
-    /// The distance alone of [`Forest::nearest`].
+    /// Returns only the distance of [`Forest::nearest`].
     fn clearance(&self, p: DVec2, r: f64) -> Option<f64> {
         let row = self.nearest_axis(p, r)?;
         if self.axes[row].half_width.is_empty() {
@@ -176,7 +177,7 @@ impl Forest {
         self.nearest(p, r).map(|found| found.1)
     }
 
-    /// The axis with the point whose surface is nearest to `p` within `r`.
+    /// Returns the axis with the point whose surface is nearest to `p` within `r`.
     fn nearest_axis(&self, p: DVec2, r: f64) -> Option<usize> {
         // A thick trunk's middle line is farther away than its surface.
         let thick = self.axes.iter().take(64).any(|a| !a.half_width.is_empty());
@@ -191,12 +192,12 @@ impl Forest {
             });
             best
         };
-        // What is thicker may be nearer than what is found first.
+        // A thicker axis may be nearer than the one that was found first.
         let found = if self.thickest > THICKEST { find(r) } else { self.near.outwards(r, find) };
         found.map(|found| found.1)
     }
 
-    /// Length of an axis.
+    /// Returns the length of an axis.
     pub(crate) fn length(&self, row: usize) -> f64 {
         polyline_length(&self.axes[row].points)
     }
@@ -217,7 +218,7 @@ impl Forest {
         self.near.add_line(row, &points[points.len().saturating_sub(more.len() + 1)..]);
     }
 
-    /// The hierarchy of `lines` on top of what stands already.
+    /// Builds the hierarchy of `lines` on top of the axes that exist already.
     pub(crate) fn grow(&mut self, mut lines: Vec<Line>, hints: &Hints) {
         lines.retain(|l| l.points.len() >= 2 && polyline_length(&l.points) > NO_LENGTH);
         let length: Vec<f64> = lines.iter().map(|l| polyline_length(&l.points)).collect();
@@ -251,7 +252,7 @@ impl Forest {
         self.grow_levels(&lines, &contacts, (&mut frontier, hints), &mut done, &mut row_of, touch);
     }
 
-    /// Level 1 of an outlined trunk: the lines whose ends touch it.
+    /// Adds level 1 of an outlined trunk: the lines whose ends touch it.
     fn attach_to_bodies(
         &mut self,
         lines: &[Line],
@@ -288,7 +289,7 @@ impl Forest {
         touch: f64,
     ) {
         while !frontier.is_empty() {
-            // Of the lines of the last level each new line is borne by the nearest.
+            // The nearest line of the last level bears each new line.
             let mut best: base::LiteMap<usize, (f64, bool, usize)> = base::LiteMap::new();
             for &i in frontier.iter() {
                 for c in &contacts[i] {
@@ -335,8 +336,8 @@ impl Forest {
         Borne::Axis(self.push(points, Vec::new(), Some(Attachment { axis: row, at: at.at }), line.source))
     }
 
-    /// Lines that go down from the foot of `row`: one is the rest of the stem, several are roots, and so is what goes down
-    /// from the ground.
+    /// Adds lines that go down from the foot of `row`: one is the rest of the stem, several are roots, and so is a
+    /// line that goes down from the ground.
     fn below(
         &mut self,
         row: usize,
@@ -379,7 +380,7 @@ impl Forest {
         }
     }
 
-    /// A line that no end leads to: it crosses an axis, is led to the nearest, or stands on its own.
+    /// Adds a line that no end leads to: it crosses an axis, is led to the nearest, or stands on its own.
     fn seed(&mut self, line: &Line, hints: &Hints, touch: f64) -> Option<usize> {
         if self.axes.is_empty() {
             return self.push(standing(&line.points, hints), Vec::new(), None, line.source);
@@ -421,7 +422,7 @@ impl Forest {
         }
     }
 
-    /// The inner point at which a line crosses an axis, if it does.
+    /// Returns the inner point at which a line crosses an axis, if it does.
     fn crossing(&self, points: &[DVec2], near: f64) -> Option<usize> {
         let n = points.len();
         let stride = n.div_ceil(100).max(1);
@@ -442,7 +443,7 @@ fn end(points: &[DVec2], last: bool) -> DVec2 {
     if last { points[points.len() - 1] } else { points[0] }
 }
 
-/// The line with its `last` (or else first) point first.
+/// Returns the line with its `last` (or else first) point first.
 pub(crate) fn oriented(points: &[DVec2], last: bool) -> Vec<DVec2> {
     let mut points = points.to_vec();
     if last {
@@ -451,7 +452,7 @@ pub(crate) fn oriented(points: &[DVec2], last: bool) -> Vec<DVec2> {
     points
 }
 
-/// A line on the ground, base first: the base is in the soil, or away from leaves and flowers, or lower.
+/// Returns a line on the ground, base first: the base is in the soil, or away from leaves and flowers, or lower.
 fn standing(points: &[DVec2], hints: &Hints) -> Vec<DVec2> {
     let near = |index: &Near, last| index.nearest(end(points, last), TOUCH, |_| true).is_some();
     let soil = [near(&hints.soil, false), near(&hints.soil, true)];
@@ -466,7 +467,7 @@ fn standing(points: &[DVec2], hints: &Hints) -> Vec<DVec2> {
     oriented(points, last)
 }
 
-/// For each line the ends of others that touch it, nearest first per line.
+/// For each line finds the ends of other lines that touch it, nearest first.
 fn contacts(lines: &[Line], order: &[usize], touch: f64) -> Vec<Vec<Contact>> {
     let mut near = Near::new(touch);
     for &i in order {
@@ -506,7 +507,7 @@ fn contacts(lines: &[Line], order: &[usize], touch: f64) -> Vec<Vec<Contact>> {
     found
 }
 
-/// The longest first; a line that stands on the ground counts half as much again.
+/// Orders lines by length, the longest first; a line that stands on the ground counts half as much again.
 fn seed_order(lines: &[Line], length: &[f64], order: &[usize], hints: &Hints, floor: f64) -> Vec<usize> {
     let score: Vec<f64> = lines
         .iter()

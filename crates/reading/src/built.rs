@@ -1,4 +1,4 @@
-//! What kind of plant a drawing shows, by what was read in it.
+//! The kind of plant that a drawing shows, judged by the parts that were read.
 
 use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
@@ -9,34 +9,39 @@ use crate::thresholds::FEWEST_PETALS;
 use crate::{AxisReading, Kind, OrganWord, Reading, RegionReading};
 /// A crown over less bare trunk than this share of its height is a bush.
 const BARE: f64 = 0.1;
-/// That share where the trunk has an outline: nobody draws the sides of a trunk that is not to be seen.
+/// That share if the trunk has an outline: nobody draws the sides of a hidden trunk.
 const BARE_OUTLINE: f64 = 0.04;
-/// A conifer is at least this high beside its width, and its upper part on the average at most this wide beside its lower one.
+/// Least height of a conifer relative to its width.
 const POINTED_TALL: f64 = 0.9;
+/// Greatest mean width of the upper part of a conifer relative to its lower part.
 const POINTED_THIN: f64 = 0.45;
-/// Which parts those are, shares of the height.
+/// The upper part, as shares of the height.
 const ABOVE: core::ops::Range<f64> = 0.74..0.92;
+/// The lower part, as shares of the height.
 const BELOW: core::ops::Range<f64> = 0.08..0.35;
-/// Fronds are rooted nearer to the top of their trunk than this share of its length, and are at least 2 of 3 leaves.
+/// Fronds are rooted nearer to the top of their trunk than this share of its length.
 const AT_TOP: f64 = 0.45;
+/// Fronds are at least this fraction of all leaves.
 const MOST: (usize, usize) = (2, 3);
 /// One leaf has more than this share of the area of all: it is the plant.
 const MAIN_LEAF: f64 = 0.75;
-/// Blades of grass are rooted in this lowest share of the drawing, at least 3 of 4, and there are at least so many.
+/// Blades of grass are rooted in this lowest share of the drawing.
 const ROOTED: f64 = 0.35;
+/// At least this fraction of the leaves is rooted there.
 const NEARLY_ALL: (usize, usize) = (3, 4);
+/// Fewest blades of grass.
 const FEWEST_STALKS: usize = 3;
 
 impl Kind {
-    /// What the parts of a reading are together: nothing is asked but what will be built. A drawing of several plants
-    /// has the kind of all of them taken for one.
+    /// Returns the kind that the parts of a reading form together: the kind that will be built. A drawing of several
+    /// plants has the kind of all parts taken as one plant.
     ///
     /// ```
     /// use reading::{Kind, Reading};
-    /// assert_eq!(Kind::of(&Reading::default()), Kind::None);
+    /// assert_eq!(Kind::from_reading(&Reading::default()), Kind::None);
     /// assert_eq!(Kind::from_word("tree"), Some(Kind::Tree));
     /// ```
-    pub fn of(reading: &Reading) -> Self {
+    pub fn from_reading(reading: &Reading) -> Self {
         // A bell or tube is one outline.
         let is_bell = |f: &crate::FlowerReading| f.petals.len() == 1 && f.disc.is_none();
         let petals = |f: &crate::FlowerReading| f.petals.len() >= FEWEST_PETALS || is_bell(f);
@@ -84,7 +89,7 @@ fn drawn_thick(axis: &AxisReading) -> bool {
     !axis.half_width.is_empty()
 }
 
-/// A crown over a trunk is a tree; one on the ground a bush.
+/// Returns the kind of a crown: over a trunk it is a tree, on the ground a bush.
 fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
     let crowns = reading.regions.iter().filter_map(|r| bounds(&r.outline));
     let all = crowns.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
@@ -101,7 +106,7 @@ fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
     if pointed(&crown.outline) { Kind::Conifer } else { Kind::Tree }
 }
 
-/// Much narrower above than below, and higher than wide.
+/// Whether an outline is much narrower above than below, and higher than wide.
 pub(crate) fn pointed(outline: &[DVec2]) -> bool {
     let Some((low, high)) = bounds(outline) else { return false };
     let height = high.y - low.y;
@@ -113,7 +118,7 @@ pub(crate) fn pointed(outline: &[DVec2]) -> bool {
         && mean(ABOVE.start, ABOVE.end) < POINTED_THIN * mean(BELOW.start, BELOW.end)
 }
 
-/// A trunk without a crown: leaves at its top are fronds.
+/// Returns the kind of a trunk without a crown: leaves at its top are fronds.
 fn of_body(reading: &Reading, body: &AxisReading) -> Kind {
     let Some((&foot, &top)) = body.points.first().zip(body.points.last()) else { return Kind::None };
     let high = |l: &&crate::BladeReading| l.root.distance(top) < AT_TOP * foot.distance(top);

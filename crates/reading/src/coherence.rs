@@ -1,8 +1,8 @@
-//! Flowers taken apart whose petals are leaves by the rest of the plant: blades that are alike are of one kind.
+//! Takes flowers apart whose petals the rest of the plant shows to be leaves: similar blades are of one kind.
 //!
-//! A cluster of roots is a flower (He and Cheng 2021, section 4.1). So is the end of a pinnate leaf, where the last leaflets
-//! begin in one place, and the rosette at the foot of a stem. The rest of the plant tells them apart: leaflets are like all the
-//! others, and a rosette lies where a stem begins.
+//! A cluster of roots is a flower (He and Cheng 2021, section 4.1). But so is the end of a pinnate leaf, where the
+//! last leaflets begin in one place, and the rosette at the foot of a stem. The rest of the plant distinguishes them:
+//! leaflets are like all the others, and a rosette lies where a stem begins.
 
 use base::{LiteMap, ops};
 use geom::{closest_on_polyline, distance_to_polyline, polyline_length, signed_area};
@@ -23,13 +23,14 @@ struct CoherenceLimits {
     area: f64,
     /// and their slenderness (width over length, 0 to 1) differs by less than this.
     slenderness: f64,
-    /// Petals are leaves where so many leaves at least are like them,
+    /// Petals are leaves if at least this many leaves are like them,
     fewest_leaves: usize,
     /// and more than this many times all petals that are like them,
     outnumbered: f64,
-    /// unless they stand all round their middle, with no wider angle between two, radians, and nothing like them touches them.
+    /// unless they stand all round their middle, with no wider angle between two, radians, and nothing like them
+    /// touches them.
     ring: f64,
-    /// More than this many times as many leaves decide, however the petals stand.
+    /// More than this factor of leaves to petals decides, however the petals stand.
     far_outnumbered: f64,
     /// Blades touch if their outlines come nearer to one another than this share of their size.
     touching: f64,
@@ -37,7 +38,7 @@ struct CoherenceLimits {
     most_blades: usize,
     /// The middle of a rosette lies within this share of the usual blade of the foot of its stem,
     at_foot: f64,
-    /// and the stem rises above it by so many times that.
+    /// and the stem rises above it by this factor of the usual blade.
     rises: f64,
     /// The foot of that stem is the lowest point of all lines, but for this share of the height of all,
     lowest: f64,
@@ -49,21 +50,22 @@ struct CoherenceLimits {
     on_line: f64,
     /// to both sides (the cosine of the angle between its ways),
     opposite: f64,
-    /// leaves no wider angle free than this, radians,
+    /// leaves no angle wider than this free, radians,
     whorl_ring: f64,
-    /// and there are so many whorls at least: one may be a flower before its stem.
+    /// and there are at least this many whorls: one may be a flower in front of its stem.
     whorls: usize,
-    /// Stamens lie within so many times the usual blade of the middle of their flower,
+    /// Stamens lie within this factor of the usual blade from the centre of their flower,
     stamens: f64,
-    /// and are so many at least.
+    /// and there are at least this many.
     fewest_stamens: usize,
-    /// So many clusters of three blades all round at the ends of lines are trifoliate leaves: few flowers have three petals.
+    /// At least this many clusters of three blades all round at the ends of lines are trifoliate leaves: few flowers
+    /// have three petals.
     trifoliate: usize,
     /// Three blades stand all round with no wider angle between two, radians.
     thirds: f64,
-    /// A palmate leaf has so many leaflets at least,
+    /// A palmate leaf has at least this many leaflets,
     fewest_leaflets: usize,
-    /// leaves more than this many times the usual angle between two of them free
+    /// leaves a gap of more than this factor of the usual angle between two of them
     palmate_gap: f64,
     /// but less than this angle, radians: a flower from the side leaves half a turn free,
     palmate_open: f64,
@@ -71,11 +73,11 @@ struct CoherenceLimits {
     palmate_way: f64,
     /// A petiole leads away from its blade by more than this share of the usual blade,
     petiole: f64,
-    /// ends on it, and begins where the others do, but for this share.
+    /// ends on the blade, and begins where the other petioles do, both within this share.
     petiole_near: f64,
-    /// So many blades at least have one.
+    /// At least this many blades have one.
     fewest_petioles: usize,
-    /// Blades without a stem are a rosette seen from above where more than this many times as many stand round them.
+    /// Blades without a stem are a rosette seen from above if other blades outnumber them by more than this factor.
     rosette: f64,
     /// Points of an outline that are compared with another one.
     places: usize,
@@ -132,8 +134,9 @@ impl Form {
     }
 }
 
-/// Takes flowers apart whose petals are leaves; returns the rows of those blades. Flowers with a disc or stamens stand, and those
-/// that a reader or the structure knows as a whole. Cost: pairs of blades, of at most some hundred.
+/// Takes flowers apart whose petals are leaves; returns the rows of those blades. Flowers with a disc or stamens
+/// stay, and so do those that a reader or the structure knows as a whole. Cost: pairs of blades, at most some hundred
+/// blades.
 pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual: f64) -> Vec<usize> {
     let mut freed = Vec::new();
     let is_sure = |f: &FlowerDraft| f.disc.is_some() || !f.stamens.is_empty() || is_known(draft, f);
@@ -190,8 +193,8 @@ pub(crate) fn dissolve(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, usual:
     freed
 }
 
-/// Whether most of some blades stand each on a line of its own, and these lines begin in one place: leaves on petioles. Petals have
-/// no stalks.
+/// Whether most of the blades stand each on a line of its own, and these lines begin in one place: leaves on
+/// petioles. Petals have no petioles.
 pub(crate) fn has_petioles(draft: &Draft<'_>, blades: &[usize]) -> bool {
     let Some(usual) = base::median(blades.iter().map(|&i| draft.blades[i].size).collect()) else {
         return false;
@@ -210,7 +213,8 @@ pub(crate) fn has_petioles(draft: &Draft<'_>, blades: &[usize]) -> bool {
     stalked >= LIMITS.fewest_petioles && 2 * stalked > blades.len()
 }
 
-/// Where a line begins that ends on the outline of a blade and leads away from it, if it does. `usual`: the size of blades.
+/// Returns where a line begins that ends on the outline of a blade and leads away from it, if it does. `usual`: the
+/// size of blades.
 fn petiole_foot(line: &Line, drawn: &[DVec2], usual: f64) -> Option<DVec2> {
     let off = |p: DVec2| distance_to_polyline(drawn, p).unwrap_or(f64::INFINITY);
     let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
@@ -227,6 +231,12 @@ fn has_stamens(draft: &Draft<'_>, flower: &FlowerDraft, usual: f64) -> bool {
             && polyline_length(&line.points) < usual
     };
     draft.lines.iter().filter(is_stamen).count() >= LIMITS.fewest_stamens
+}
+
+/// Whether the blades stand in a pot without any stem: a house plant whose leaves come from one place.
+pub(crate) fn is_tuft_in_pot(draft: &Draft<'_>, flower: &FlowerDraft) -> bool {
+    let is_sure = flower.disc.is_some() || is_known(draft, flower);
+    !is_sure && draft.lines.is_empty() && draft.class.contains(&ink::StrokeClass::Pot)
 }
 
 fn is_known(draft: &Draft<'_>, flower: &FlowerDraft) -> bool {
@@ -274,7 +284,7 @@ pub(crate) fn stands_along(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool
     ways.iter().any(|a| ways.iter().any(|b| a.dot(*b) < LIMITS.opposite))
 }
 
-/// Whether the blades leave free where a line comes from that ends at their middle, and begins at another line.
+/// Whether the blades leave a gap in the direction of a line that ends at their middle and begins at another line.
 fn is_palmate(draft: &Draft<'_>, flower: &FlowerDraft, usual: f64) -> bool {
     if flower.petals.len() < LIMITS.fewest_leaflets {
         return false;
@@ -304,7 +314,7 @@ fn is_palmate(draft: &Draft<'_>, flower: &FlowerDraft, usual: f64) -> bool {
     is_fan && (0..draft.lines.len()).any(leads_here)
 }
 
-/// Whether most blades that are like these petals are leaves, and nothing else says that these are a flower.
+/// Whether most blades that are like these petals are leaves, and nothing else suggests that these are a flower.
 fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower: &FlowerDraft) -> bool {
     let Some(model) = median_petal(forms, flower) else { return false };
     let alike: Vec<usize> = (0..forms.len()).filter(|&i| forms[model].is_like(&forms[i])).collect();
@@ -322,7 +332,8 @@ fn are_outnumbered(draft: &Draft<'_>, forms: &[Form], is_petal: &[bool], flower:
     are_more(LIMITS.outnumbered) && (are_more(LIMITS.far_outnumbered) || is_open() || is_surrounded())
 }
 
-/// Whether there is no stem, and many more blades stand all round: the youngest leaves in the middle are leaves as well.
+/// Whether there is no stem, and many more blades stand all round: the youngest leaves in the middle are leaves as
+/// well.
 fn is_heart_of_rosette(draft: &Draft<'_>, is_petal: &[bool], flower: &FlowerDraft) -> bool {
     let others = || draft.blades.iter().zip(is_petal).filter(|(_, is_petal)| !**is_petal).map(|(b, _)| b);
     let count = others().count();
@@ -334,7 +345,7 @@ fn is_heart_of_rosette(draft: &Draft<'_>, is_petal: &[bool], flower: &FlowerDraf
         && widest_gap(others().map(|b| (b.middle - flower.centre).normalize_or_zero())) < LIMITS.ring
 }
 
-/// The petal of the median area.
+/// Returns the petal of the median area.
 fn median_petal(forms: &[Form], flower: &FlowerDraft) -> Option<usize> {
     let mut petals = flower.petals.clone();
     base::sort_by(&mut petals, |&a, &b| forms[a].area.total_cmp(&forms[b].area).then(a.cmp(&b)));

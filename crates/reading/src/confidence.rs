@@ -1,39 +1,41 @@
-//! How likely a reading is right: `what speaks for it -> the chance that a person would say the same kind`.
+//! How likely a reading is right: `evidence -> the chance that a person would name the same kind`.
 //!
-//! The share that the model of kinds gives to a kind is no such chance: the model saw most of its drawings again and again, and
-//! is as sure of drawings in a style that it never saw, of which half are read wrong. So a logistic regression over what speaks
-//! for a reading is fitted to drawings by people from which the model learnt nothing. Its coefficients are data
-//! (`data/confidence.csv`), fitted by `cargo xtask train-confidence`.
+//! The share that the model of kinds gives to a kind is no such chance: the model saw most of its drawings again and
+//! again, and is as sure of drawings in a style that it never saw, of which half are read wrongly. So a logistic
+//! regression over the evidence for a reading is fitted to drawings by people from which the model learnt nothing.
+//! Its coefficients are data (`data/confidence.csv`), fitted by `cargo xtask train-confidence`.
 
 use std::sync::OnceLock;
 
 use base::ops;
 
-/// How far what speaks for a reading is trusted.
+/// Limits on how far the evidence for a reading is trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConfidenceLimits {
-    /// The log odds of a share among kinds count at most so far from 0.
+    /// Greatest distance from 0 at which the log odds of a share among kinds count.
     pub share_log_odds_most: f64,
     /// The least share of no plant that counts.
     pub no_plant_least: f64,
-    /// The least confidence in a reading by structure, of which kinds, who learnt from doodles, know nothing: of those of fewer
-    /// strokes than [`many_strokes`](Self::many_strokes) about so many are right.
+    /// Least confidence in a reading by structure. The models of kinds learnt from doodles and know nothing of it:
+    /// about this share of readings of fewer strokes than [`many_strokes`](Self::many_strokes) is right.
     pub by_structure_least: f64,
-    /// The same of drawings of as many strokes or more.
+    /// Least confidence in a reading by structure of as many strokes or more.
     pub by_structure_of_many: f64,
-    /// The least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see: of 60 by people
-    /// whose kind is known 48 are right (`cargo xtask train-confidence`, and `--end`).
+    /// Least confidence in a reading by the arrangement of faces and lines, which the model of kinds does not see: of
+    /// 60 such readings of drawings by people, whose kind is known, 48 are right (`cargo xtask train-confidence`, and
+    /// `--end`).
     pub by_arrangement_least: f64,
-    /// The most confidence in a tangle of bare lines ([`crate::tangled_length`]): of 49 in line art by people one is right.
+    /// Greatest confidence in a tangle of bare lines ([`crate::tangled_length`]): of 49 in line art by people one is
+    /// right.
     pub tangle_most: f64,
-    /// The confidence in a drawing of so many strokes that no kind is weighed against another: both such drawings among the line
-    /// art by people are read wrong.
+    /// Confidence in a drawing of so many strokes that the model compares no kinds: both such drawings among the line
+    /// art by people are read wrongly.
     pub not_weighed: f64,
-    /// A reading of many strokes that explains less of them than this (0 to 1) is a guess at the whole.
+    /// A reading of many strokes that explains less of them than this (0 to 1) is a guess.
     pub explained_least: f64,
-    /// The most confidence in such a guess: of 8 in line art by people none is right.
+    /// Greatest confidence in such a guess: of 8 in line art by people none is right.
     pub guess_most: f64,
-    /// The strokes of a botanical illustration, where a doodle has fewer.
+    /// Number of strokes from which a drawing counts as a botanical illustration; a doodle has fewer.
     pub many_strokes: usize,
 }
 
@@ -51,16 +53,17 @@ pub const CONFIDENCE_LIMITS: ConfidenceLimits = ConfidenceLimits {
     many_strokes: 15,
 };
 
-/// What speaks for and against the reading of one plant.
+/// Evidence for and against the reading of one plant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Evidence {
-    /// The share of its kind among all, by the whole drawing; what the strokes alone were read as weighs more.
+    /// Share of its kind among all, judged by the whole drawing; the kind that the strokes alone gave has a higher
+    /// weight.
     pub share: f64,
     /// How undecided a glance is between words: the entropy of their shares, natural units.
     pub undecided: f64,
     /// The share of no plant, by the model of kinds.
     pub no_plant: f64,
-    /// How many strokes it has.
+    /// Number of strokes.
     pub strokes: usize,
     /// Whether its classes follow from the structure of the drawing.
     pub by_structure: bool,
@@ -68,10 +71,10 @@ pub struct Evidence {
     pub by_arrangement: bool,
     /// Whether most of its axes lead to nothing.
     pub is_tangle: bool,
-    /// Whether it is a tree, palm or bush: kinds of which the model has seen all forms, so that its share counts whatever the
-    /// structure says.
+    /// Whether it is a tree, palm or bush: the model has seen all forms of these kinds, so its share counts whatever
+    /// the structure says.
     pub is_wood: bool,
-    /// How much of a drawing of many strokes it explains: 0 to 1.
+    /// How much of a drawing of many strokes the reading explains: 0 to 1.
     pub explained: f64,
 }
 
@@ -79,14 +82,15 @@ pub struct Evidence {
 pub const EVIDENCE_NAMES: [&str; 4] = ["one", "share", "undecided", "no-plant"];
 
 impl Evidence {
-    /// What is weighed: 1, the log odds of the share, how undecided a glance is, and the logarithm of the share of no plant.
+    /// Returns the weighted numbers: 1, the log odds of the share, how undecided a glance is, and the logarithm of
+    /// the share of no plant.
     pub fn row(&self) -> [f64; EVIDENCE_NAMES.len()] {
         let limits = CONFIDENCE_LIMITS;
         let share = log_odds(self.share, limits.share_log_odds_most);
         [1.0, share, self.undecided, ops::ln(self.no_plant.max(limits.no_plant_least))]
     }
 
-    /// The chance that the kind is right: 0 to 1. The share itself where nothing was fitted.
+    /// Returns the chance that the kind is right: 0 to 1. The share itself if nothing was fitted.
     pub(crate) fn confidence(&self) -> f64 {
         let Some(coefficients) = fitted() else { return self.share };
         let sum: f64 = self.row().iter().zip(coefficients).map(|(x, c)| x * c).sum();
@@ -179,7 +183,7 @@ mod tests {
         assert!(Evidence { by_structure: false, ..own }.confidence() < own.confidence());
         let tangle = Evidence { is_tangle: true, ..own }.confidence();
         assert!(tangle <= CONFIDENCE_LIMITS.tangle_most);
-        // Trees the model knows, and what leaves most of the ink aside is a guess.
+        // The model knows trees, and a reading that leaves out most of the ink is a guess.
         assert!(Evidence { is_wood: true, ..own }.confidence() < own.confidence());
         let guess = Evidence { share: 1.0, by_structure: false, explained: 0.5, ..own };
         assert!(guess.confidence() <= CONFIDENCE_LIMITS.guess_most);

@@ -7,26 +7,30 @@ use glam::DVec2;
 const NO_AREA: f64 = 2e-4;
 /// An outline that fills less of its hull is a scribble, whose hull is the crown.
 const FULL: f64 = 0.4;
-/// The trunk goes on up to where the outline is so many times as wide as its middle width.
+/// The trunk goes on up to where the outline is this factor of its median width wide.
 const TRUNK_WIDTH: f64 = 1.5;
-/// A trunk is narrower than this share of its crown, and the outline becomes wider by more than that factor within six of the
-/// levels: where it is known to be a tree, and where it is not.
+/// Limits of a neck in a known tree: a trunk is narrower than the first share of its crown, and the outline widens by
+/// more than the second factor within six of the levels.
 const NECK_OF_A_TREE: (f64, f64) = (0.6, 1.25);
+/// The same limits where the outline is not known to be a tree.
 const NECK: (f64, f64) = (0.4, 1.7);
-/// A trunk is higher than this share of its width; it and the crown have these shares of the height at least.
+/// A trunk is higher than this share of its width.
 const TRUNK_TALL: f64 = 0.8;
+/// A trunk is higher than this share of the whole height.
 const TRUNK_SHARE: f64 = 0.12;
+/// A crown is higher than this share of the whole height.
 const CROWN_SHARE: f64 = 0.2;
 
-/// The waist of what is known to be a tree lies in these levels of [`LEVELS`]; its trunk goes on up to where it is so many
-/// times as wide as there; and its crown fills this share of its hull, or it is bare branches.
+/// The waist of a known tree lies in these of the [`LEVELS`].
 const WAIST: core::ops::Range<usize> = 3..42;
+/// The trunk of a known tree goes on up to where it is this factor of its waist wide.
 const ABOVE_WAIST: f64 = 1.3;
+/// The crown of a known tree fills more than this share of its hull, or it is bare branches.
 const FULL_CROWN: f64 = 0.65;
 /// Levels of the height at which the width is looked at.
 const LEVELS: usize = 60;
 
-/// The outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
+/// Returns the outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
 pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     let hull = convex_hull(points);
     let hull_area = signed_area(&hull);
@@ -40,8 +44,8 @@ pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     }
 }
 
-/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown. `known`: it is a tree,
-/// so that the neck may be less clear.
+/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown. `known`: it is a
+/// tree, so that the neck may be less clear.
 pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
     let y = trunk_top(outline, known)?;
     let cut = |keep_above: bool| {
@@ -63,7 +67,7 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
     cut(false).zip(cut(true).filter(full))
 }
 
-/// The height at which an outline that is narrow below becomes wide; `known` as in [`neck`].
+/// Returns the height at which an outline that is narrow below becomes wide; `known` as in [`neck`].
 pub(crate) fn trunk_top(outline: &[DVec2], known: bool) -> Option<f64> {
     let (lo, hi) = bounds(outline)?;
     let height = hi.y - lo.y;
@@ -81,7 +85,8 @@ pub(crate) fn trunk_top(outline: &[DVec2], known: bool) -> Option<f64> {
     clear.or_else(|| waist(&width).filter(|w| known && fits(w))).map(|(top, _)| y_of(top))
 }
 
-/// The level at which an outline becomes clearly wider than its lower part, for good, and how wide that is.
+/// Returns the level at which an outline becomes clearly wider than its lower part, for good, and how wide that part
+/// is.
 fn clear_neck(width: &[f64], (thin, wider): (f64, f64)) -> Option<(usize, f64)> {
     let widest = width.iter().copied().fold(0.0, f64::max);
     let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
@@ -93,7 +98,7 @@ fn clear_neck(width: &[f64], (thin, wider): (f64, f64)) -> Option<(usize, f64)> 
     (median < thin * widest && jump).then_some((top, median))
 }
 
-/// As [`clear_neck`], of a trunk that is wide, or whose foot is: over its narrowest level.
+/// Finds the neck of a trunk that is wide, or whose foot is, like [`clear_neck`]: above its narrowest level.
 fn waist(width: &[f64]) -> Option<(usize, f64)> {
     let at = WAIST.min_by(|&a, &b| width[a].total_cmp(&width[b]))?;
     let widest = width[at..].iter().copied().fold(0.0, f64::max);
@@ -105,7 +110,7 @@ pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
     runs_at(outline, y).into_iter().map(|(from, to)| to - from).sum()
 }
 
-/// From where to where a level lies within an outline, from left to right.
+/// Returns the intervals of a level within an outline, from left to right.
 pub(crate) fn runs_at(outline: &[DVec2], y: f64) -> Vec<(f64, f64)> {
     let mut xs: Vec<f64> = outline
         .iter()

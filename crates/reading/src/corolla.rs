@@ -13,22 +13,23 @@ const MOST: usize = 400;
 const OPEN_END: f64 = 0.3;
 /// A corolla whose ends are nearer than this share of its diagonal is closed.
 const SHUT: f64 = 0.12;
-/// The rim of a cup dips no deeper than this share of its reach from its foot, and its points lie farther than the second.
+/// The rim of a cup dips no nearer to its foot than this share of its reach.
 const CUP_DEPTH: f64 = 0.35;
+/// The points of a cup lie farther from its foot than this share of its reach.
 const CUP_TIP: f64 = 0.75;
-/// The cosine of the angle to its axis beyond which nothing but its foot lies: 70 degrees.
+/// The cosine of the angle to the cup's axis beyond which only its foot lies: 70 degrees.
 const CUP_ASIDE: f64 = 0.34;
 /// A piece shorter than this share of the reach is a remnant at an open end.
 const REMNANT: f64 = 0.3;
 /// Ends nearer to the root than this share of the reach are at it.
 const AT_ROOT: f64 = 0.02;
 
-/// What the petals of a corolla stand around.
+/// The thing round which the petals of a corolla stand.
 #[derive(Clone, Debug)]
 pub(crate) enum Core {
     /// A point with a free radius around it: the centre of a flower (with its disc), the top of a trunk.
     Point(DVec2, f64),
-    /// A stem that they stand along.
+    /// A stem along which they stand.
     Line(Vec<DVec2>),
     /// The ground: a row of grass.
     Ground(f64),
@@ -43,7 +44,7 @@ impl Core {
         }
     }
 
-    /// Where a petal whose drawn arc runs from `a` to `b` is rooted.
+    /// Returns the root of a petal whose drawn arc runs from `a` to `b`.
     fn root(&self, a: DVec2, b: DVec2, top: DVec2) -> DVec2 {
         let middle = a.midpoint(b);
         match self {
@@ -52,7 +53,7 @@ impl Core {
                 *c + out * free.min(middle.distance(*c).max(0.2 * top.distance(*c)))
             }
             Self::Line(line) => closest_on_polyline(line, middle).map_or(middle, |c| c.point),
-            // A blade at the open end of the stroke is rooted where it was begun or ended below.
+            // A blade at the open end of the stroke is rooted at its lower end.
             Self::Ground(y) if (a.y - b.y).abs() > OPEN_END * (top.y - y) => {
                 if a.y < b.y {
                     a
@@ -65,7 +66,7 @@ impl Core {
     }
 }
 
-/// How far a stroke turns round `centre`, radians, without sign.
+/// Returns the angle by which a stroke turns round `centre`, radians, without sign.
 pub(crate) fn winding(points: &[DVec2], centre: DVec2) -> f64 {
     points
         .windows(2)
@@ -77,7 +78,7 @@ pub(crate) fn winding(points: &[DVec2], centre: DVec2) -> f64 {
         .abs()
 }
 
-/// How often a stroke comes back to within `near` of `p`; a closed stroke that begins there does so once.
+/// Counts how often a stroke comes back to within `near` of `p`; a closed stroke that begins there does so once.
 pub(crate) fn visits(points: &[DVec2], p: DVec2, near: f64) -> usize {
     let mut inside = false;
     let mut count = 0;
@@ -94,6 +95,13 @@ pub(crate) fn visits(points: &[DVec2], p: DVec2, near: f64) -> usize {
     if count > 1 && there(points.first()) && there(points.last()) { count - 1 } else { count }
 }
 
+/// Turns a closed line so that it begins at its point nearest to a core, and comes back to it.
+pub(crate) fn turned_to_nearest(points: &[DVec2], distance: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
+    let nearest = |&a: &usize, &b: &usize| distance(points[a]).total_cmp(&distance(points[b]));
+    let start = (0..points.len()).min_by(nearest).unwrap_or(0);
+    points[start..].iter().chain(points.get(..=start).unwrap_or_default()).copied().collect()
+}
+
 /// Cuts a stroke where it comes nearest to the core between two petals.
 ///
 /// Every piece becomes one blade with a root at the core. A stroke without a dip is one blade.
@@ -102,14 +110,7 @@ pub(crate) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
     let closed =
         points.first().zip(points.last()).is_some_and(|(a, b)| a.distance(*b) < SHUT * lo.distance(hi));
     // A closed stroke is turned so that it begins at its deepest dip, and comes back to it.
-    let line: Vec<DVec2> = if closed {
-        let start = (0..points.len())
-            .min_by(|&a, &b| core.distance(points[a]).total_cmp(&core.distance(points[b])))
-            .unwrap_or(0);
-        points[start..].iter().chain(&points[..=start]).copied().collect()
-    } else {
-        points.to_vec()
-    };
+    let line = if closed { turned_to_nearest(points, |p| core.distance(p)) } else { points.to_vec() };
     let distance: Vec<f64> = line.iter().map(|&p| core.distance(p)).collect();
     let reach = distance.iter().copied().fold(0.0, f64::max);
     let cuts = dips(&distance, DIP * reach);
@@ -139,16 +140,15 @@ pub(crate) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
     pieces
 }
 
-/// Whether a stroke goes round petals that are seen from the side: from `foot` up one side, over two points or more with a dip
-/// between them, and down the other. Its points are about as far from the foot as one another, unlike those of a ring.
+/// Whether a stroke goes round petals seen in profile: from `foot` up one side, over two points or more with a dip
+/// between them, and down the other. Its points are about equally far from the foot, unlike those of a ring.
 pub(crate) fn is_cup(points: &[DVec2], foot: DVec2) -> bool {
     let first = points.first().zip(points.last()).zip(bounds(points));
     if !first.is_some_and(|((a, b), (lo, hi))| a.distance(*b) < SHUT * lo.distance(hi)) {
         return false;
     }
-    let away = |k: &usize| points[*k].distance(foot);
-    let start = (0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
-    let distance: Vec<f64> = (start..points.len()).chain(0..=start).map(|k| away(&k)).collect();
+    let line = turned_to_nearest(points, |p| p.distance(foot));
+    let distance: Vec<f64> = line.iter().map(|p| p.distance(foot)).collect();
     let reach = distance.iter().copied().fold(0.0, f64::max);
     let cuts = dips(&distance, DIP * reach);
     let between = cuts.get(1..cuts.len().saturating_sub(1)).unwrap_or_default();
@@ -161,7 +161,7 @@ pub(crate) fn is_cup(points: &[DVec2], foot: DVec2) -> bool {
         && cuts.windows(2).all(|w| tip(w) > CUP_TIP * reach)
 }
 
-/// Both ends and every low place with at least `depth` of rise on both sides before the next one.
+/// Returns both ends and every low place with at least `depth` of rise on both sides before the next one.
 pub(crate) fn dips(values: &[f64], depth: f64) -> Vec<usize> {
     let n = values.len();
     if n < 2 {
@@ -190,7 +190,7 @@ pub(crate) fn dips(values: &[f64], depth: f64) -> Vec<usize> {
             }
         }
     }
-    // The way down after the last top ends at its lowest place; what rises a little after it belongs to nobody.
+    // The way down after the last top ends at its lowest place; a small rise after it belongs to no petal.
     let end = if rising { n - 1 } else { low };
     if cuts.last() != Some(&end) {
         cuts.push(end);

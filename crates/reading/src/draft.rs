@@ -1,4 +1,4 @@
-//! The drawing half understood, and the small steps that belong to no other module.
+//! The partly understood drawing, and the small steps that belong to no other module.
 
 use std::cell::RefCell;
 
@@ -20,30 +20,31 @@ use crate::{
     OrganWord, PotReading, Reading, RegionKind, RegionReading, StrokeReading, blade, palette, rings,
 };
 
-/// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
+/// Most regions: nobody draws so many crowns, and each is led to by an axis. Further ones are left out.
 pub(crate) const MOST_REGIONS: usize = 200;
 /// A pot begins within this share of the height from the foot of the drawing.
 const FOOT: f64 = 0.25;
-/// Less than this share of what is no pot lies lower than the middle of a pot.
+/// Less than this share of the ink outside pots lies lower than the middle of a pot.
 const BESIDE_A_POT: f64 = 0.2;
-/// A pot is at most so many times as tall as wide.
+/// Greatest height of a pot relative to its width.
 const TALLEST_POT: f64 = 2.0;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
-/// A thin outline is a petal seen from its edge where two others begin nearer than this share of their size.
+/// A thin outline is a petal seen edge-on if two others begin nearer than this share of their size.
 const BESIDE: f64 = 0.25;
 /// A blade closes where its stroke comes nearer to itself than this share of the gap between its ends.
 const STALK_NEAR: f64 = 0.35;
-/// Ends nearer than this share of the length: a blade that is closed by itself. Ends farther than that: one side of a leaf.
+/// A blade whose ends are nearer than this share of its length is closed.
 const SHUT: f64 = 0.1;
+/// A blade whose ends are farther apart than this share of its length is one side of a leaf.
 const ONE_SIDE: f64 = 0.45;
 /// Gaps between the halves of a fruit, a share of its outline.
 pub(crate) const HALVES_GAPS: f64 = 0.2;
 
-/// Lines are wood where more than so many of those that branch off a branch come to one leaf or fruit.
+/// Lines are wood if more than this number of second-order branches come to one leaf or fruit.
 const TWIGS_PER_ORGAN: usize = 2;
 
-/// A thorn: root and tip, what bears it, its stroke.
+/// A thorn: root and tip, its bearer, its stroke.
 pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
 
 /// A contour before its bearers are known.
@@ -57,7 +58,7 @@ pub(crate) struct RegionDraft {
 }
 
 impl RegionDraft {
-    /// A point well inside, in the upper middle: where a trunk is led to.
+    /// Returns a point well inside, in the upper middle: a trunk is led to it.
     pub(crate) fn heart(&self) -> DVec2 {
         let c = geom::centroid(&self.outline);
         if contains(&self.outline, c) {
@@ -78,7 +79,7 @@ pub(crate) struct FlowerDraft {
     pub(crate) stamens: Vec<Vec<DVec2>>,
 }
 
-/// A stem with leaves, or petals, on its way that were drawn in one go.
+/// A stem with leaves or petals along it that were drawn in one go.
 #[derive(Clone, Debug)]
 pub(crate) struct OneGo {
     /// Each begins and ends on the stem.
@@ -86,16 +87,16 @@ pub(crate) struct OneGo {
     pub(crate) stem: Vec<DVec2>,
 }
 
-/// The drawing half understood.
+/// The partly understood drawing.
 #[derive(Debug)]
 pub(crate) struct Draft<'a> {
     pub(crate) ink: &'a Ink,
     /// Results of strokes that are as they were.
     pub(crate) kept: &'a RefCell<KeptStrokes>,
-    /// What the whole is taken for, if that is known.
+    /// The kind that the whole is taken for, if that is known.
     pub(crate) kind: Option<Kind>,
     pub(crate) class: Vec<StrokeClass>,
-    /// What was said of each stroke before any rule.
+    /// The class of each stroke before any rule.
     pub(crate) said: Vec<Classified>,
     /// The rule that gave a stroke its class.
     pub(crate) rule: Vec<Option<&'static str>>,
@@ -117,25 +118,25 @@ pub(crate) struct Draft<'a> {
     pub(crate) soil: Vec<Vec<DVec2>>,
     /// Sides of trunks that were drawn in one go with a crown, and the crown's stroke.
     pub(crate) sides: Vec<(usize, Vec<DVec2>)>,
-    /// What is left of those strokes.
+    /// The rest of those strokes.
     pub(crate) loops: LiteMap<usize, Vec<DVec2>>,
-    /// Strokes whose class follows from the whole drawing: later rules leave it.
+    /// Strokes whose class follows from the whole drawing: later rules do not change them.
     pub(crate) settled: Vec<bool>,
     /// Outlines that make up one crown.
     pub(crate) united: Vec<usize>,
-    /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
+    /// Lines that were drawn there and back in one go: the pieces of each such stroke.
     pub(crate) legs: LiteMap<usize, Vec<Vec<DVec2>>>,
     /// Petals that stand off their disc: the disc's stroke, and theirs.
     pub(crate) rings: Vec<(usize, Vec<usize>)>,
     /// Strokes that are a stem and leaves.
     pub(crate) one_go: LiteMap<usize, OneGo>,
-    /// Blades that go on behind others: their completed outlines.
+    /// Completed outlines of the blades that go on behind others.
     pub(crate) hidden: LiteMap<usize, Hidden>,
     /// Petals of flowers that are known as a whole, by the strokes of each.
     pub(crate) heads: Vec<Vec<usize>>,
     /// Strokes that are leaves by their venation.
     pub(crate) veined: Vec<usize>,
-    /// Its strokes are the parts of a plant already: none is cut in two.
+    /// The strokes are already parts of a plant: none is cut in two.
     pub(crate) is_cut: bool,
 }
 
@@ -174,7 +175,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Takes what the structure of the drawing says: no later rule changes it.
+    /// Takes over the classes that the structure of the drawing gives: no later rule changes them.
     pub(crate) fn settle(&mut self, structure: &Structure) {
         for (k, class) in structure.classes().iter().enumerate() {
             if let Some(class) = *class {
@@ -190,12 +191,13 @@ impl<'a> Draft<'a> {
         self.veined = structure.leaves().to_vec();
     }
 
-    /// The whole is taken for a tree: what stands is its trunk, and what leaves that are branches.
+    /// Whether the whole is taken for a tree: the line that stands is its trunk, and lines that leave it are
+    /// branches.
     pub(crate) fn is_tree(&self) -> bool {
         self.kind.is_some_and(|k| k.is_like(Kind::Tree))
     }
 
-    /// Strokes of a class that were drawn in parts mode.
+    /// Returns the strokes of a class that were drawn in parts mode.
     pub(crate) fn of_class(&self, class: StrokeClass) -> Vec<usize> {
         (0..self.class.len())
             .filter(|&k| self.class[k] == class && self.ink.strokes[k].mode == StrokeMode::Parts)
@@ -226,7 +228,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// The user's contours, whatever their class.
+    /// Takes over the user's contours, whatever their class.
     pub(crate) fn contours(&mut self) {
         for k in 0..self.ink.strokes.len() {
             let (kind, organ) = match self.ink.strokes[k].mode {
@@ -252,7 +254,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// The height of the ground: the ground line, the foot of the plant, or the sheet's lower edge.
+    /// Returns the height of the ground: the ground line, the foot of the plant, or the sheet's lower edge.
     pub(crate) fn floor(&self) -> f64 {
         let ground = self.of_class(StrokeClass::Ground).into_iter().next();
         if let Some((lo, hi)) = ground.and_then(|k| bounds(&self.ink.strokes[k].points)) {
@@ -264,7 +266,7 @@ impl<'a> Draft<'a> {
         if low.is_finite() { low } else { 0.0 }
     }
 
-    /// Outlines that enclose nothing, because they come back the way they went: petals seen from their edge where two
+    /// Sorts outlines that enclose nothing because they come back the way they went: petals seen edge-on if two
     /// others begin where they do, else lines.
     fn edge_on(&mut self, thin: Vec<usize>) {
         for k in thin {
@@ -286,7 +288,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Blade strokes to outlines; half outlines are joined, stalks become lines.
+    /// Turns blade strokes into outlines; joins half outlines and turns stalks into lines.
     pub(crate) fn blades(&mut self) {
         let ink = self.ink;
         let strokes = self.of_class(StrokeClass::Blade);
@@ -294,7 +296,7 @@ impl<'a> Draft<'a> {
             let s = &ink.strokes[k];
             s.points[0].distance(s.points[s.points.len() - 1]) / s.length
         };
-        // Closed by itself, with or without a stalk; or so open that it may be one side of a leaf.
+        // Closed, with or without a stalk; or so open that it may be one side of a leaf.
         let (mut open, mut thin) = (Vec::new(), Vec::new());
         for k in strokes {
             let s = &ink.strokes[k];
@@ -358,13 +360,13 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Blades with the venation of a leaf are no petals.
+    /// Marks blades with the venation of a leaf as leaves.
     pub(crate) fn veined_leaves(&mut self) {
         let veined = &self.veined;
         self.blades.iter_mut().for_each(|b| b.leaf |= veined.contains(&b.stroke));
     }
 
-    /// Blades drawn in green are leaves where others, or a corolla, were drawn in another colour.
+    /// Marks blades drawn in green as leaves if others, or a corolla, were drawn in another colour.
     pub(crate) fn green_leaves(&mut self) {
         let green = |k: usize| palette::is_green_stroke(&self.ink.strokes[k]);
         let corollas = self.of_class(StrokeClass::Corolla);
@@ -375,7 +377,7 @@ impl<'a> Draft<'a> {
         self.blades.iter_mut().zip(leaves).for_each(|(b, green)| b.leaf |= green);
     }
 
-    /// Large scribbles are the crown where nothing else could be one.
+    /// Turns large scribbles into the crown if nothing else could be one.
     pub(crate) fn scribbled_crowns(&mut self, report: &mut Report) {
         if !self.regions.is_empty() || !self.blades.is_empty() || (!self.bodies.is_empty() && !self.open_top)
         {
@@ -405,7 +407,7 @@ impl<'a> Draft<'a> {
         true
     }
 
-    /// A drawing of which nothing else could be read still gives a plant: from its longest stroke.
+    /// Makes a plant of the longest stroke if nothing else could be read in the drawing.
     pub(crate) fn last_resort(&mut self, discs: &[(DiscReading, usize)], report: &mut Report) {
         let something = !self.lines.is_empty()
             || !self.blades.is_empty()
@@ -422,7 +424,7 @@ impl<'a> Draft<'a> {
         else {
             return;
         };
-        // Inside nothing but soil: what was taken for soil is the plant.
+        // The drawing has nothing but soil: the strokes taken for soil are the plant.
         self.soil.clear();
         let s = &strokes[k];
         let straight = s.points[0].distance(s.points[s.points.len() - 1]) > STRAIGHT * s.length;
@@ -432,12 +434,12 @@ impl<'a> Draft<'a> {
                 report,
                 "scribble-stem",
                 { stroke = s.index },
-                "stroke {stroke} was read as a stem, for want of a better one"
+                "stroke {stroke} was read as a stem, because nothing else fits it"
             );
         }
     }
 
-    /// Stems begin at the pot's rim: what was drawn inside the pot is cut off.
+    /// Cuts off lines that were drawn inside the pot: stems begin at its rim.
     pub(crate) fn trim_at_pots(&mut self) {
         let pots: Vec<&[DVec2]> = self
             .of_class(StrokeClass::Pot)
@@ -480,8 +482,8 @@ impl<'a> Draft<'a> {
         fruits
     }
 
-    /// Where the whole is a fruit or a root: outlines of it that were drawn in several lines. Where nobody said so, but nothing
-    /// else has an inside, halves that close well. The other strokes are left.
+    /// Joins outlines that were drawn in several lines if the whole is a fruit or a root. If the kind is not known
+    /// and nothing else has an inside, joins halves that close well. Leaves the other strokes.
     fn joined_fruits(&mut self, strokes: &mut Vec<usize>, fruits: &mut Vec<FruitReading>) -> Vec<usize> {
         let whole = self.kind.is_some_and(|k| k.is_like(Kind::Fruit));
         let open = |k: &usize| {
@@ -510,7 +512,7 @@ impl<'a> Draft<'a> {
         rest
     }
 
-    /// Where stems begin and end; `flowers`: their centres.
+    /// Returns hints to where stems begin and end; `flowers`: their centres.
     pub(crate) fn hints(&self, flowers: &[DVec2]) -> Hints {
         let mut hints = Hints::default();
         for (i, blade) in self.blades.iter().enumerate() {
@@ -528,7 +530,7 @@ impl<'a> Draft<'a> {
         hints
     }
 
-    /// What a stroke was read as, and what decided its class.
+    /// Returns how a stroke was read, and the source of its class.
     fn stroke(&self, k: usize) -> StrokeReading {
         let (class, said) = (self.class[k], &self.said[k]);
         let (source, confidence) = match self.rule[k] {
@@ -594,8 +596,8 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// What it stands in: strokes of pots above one another are of one pot, and its foot is the foot of the drawing.
-    /// Strokes of pots that stand at the foot of the drawing, those of each pot together: low and high corner, rows.
+    /// Groups the strokes of pots that stand at the foot of the drawing: low and high corner, rows. Strokes above one
+    /// another are of one pot.
     fn pot_groups(&self) -> Vec<(DVec2, DVec2, Vec<usize>)> {
         let heights = self.ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
         let (floor, top) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
@@ -613,8 +615,8 @@ impl<'a> Draft<'a> {
         found
     }
 
-    /// Strokes that the classifier alone takes for pots are lines where no pot can be: much of the plant lies as low as they do,
-    /// or they are no pot's shape.
+    /// Turns strokes that only the classifier takes for pots into lines if no pot can be there: much of the plant
+    /// lies as low as they do, or they do not have the shape of a pot.
     fn doubt_pots(&mut self) {
         let said = self.of_class(StrokeClass::Pot);
         let is_said = |k: &usize| {
@@ -653,14 +655,14 @@ impl<'a> Draft<'a> {
             .collect()
     }
 
-    /// Length of the longest line or axis.
+    /// Returns the length of the longest line or axis.
     pub(crate) fn longest(&self) -> f64 {
         let lines = self.lines.iter().map(|l| polyline_length(&l.points));
         lines.chain((0..self.forest.axes.len()).map(|r| self.forest.length(r))).fold(0.0, f64::max)
     }
 }
 
-/// What a stroke of a blade is by itself. `apart`: its ends are.
+/// Returns the form of a single blade stroke. `apart`: its ends are apart.
 fn closed(points: &[DVec2], apart: bool) -> Drawn {
     if let Some(blade) = Sheetlet::with_rib(points, 0) {
         return Drawn::Blade(blade, Vec::new());
@@ -672,10 +674,10 @@ fn closed(points: &[DVec2], apart: bool) -> Drawn {
     Sheetlet::new(&line, 0).map_or(Drawn::Thin, |blade| Drawn::Blade(blade, stalks))
 }
 
-/// Whether what was drawn by both its sides is the stem of a herb: it bears a flower that is much wider than itself. Blossoms are
-/// small beside the trunk of their tree.
+/// Whether a stem drawn by both its sides is that of a herb: it bears a flower that is much wider than itself.
+/// Blossoms are small compared with the trunk of their tree.
 fn is_stem_of_flowers(flowers: &[FlowerReading], axes: &[AxisReading]) -> bool {
-    /// A flower reaches so many times the usual half width of the stem from its centre.
+    /// Reach of such a flower relative to the usual half width of the stem.
     const WIDER: f64 = 3.0;
     let reach = |f: &FlowerReading| f.petals.iter().map(|p| p.tip.distance(f.centre)).fold(0.0, f64::max);
     let widest = axes.iter().filter_map(|a| base::median(a.half_width.clone())).fold(0.0, f64::max);

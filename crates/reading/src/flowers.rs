@@ -1,4 +1,4 @@
-//! Which blades are petals of one flower, and which are leaves (He and Cheng 2021, section 4.1).
+//! Decides which blades are petals of one flower, and which are leaves (He and Cheng 2021, section 4.1).
 //!
 //! Roots of petals lie together, roots of leaves do not: mean shift on roots, clusters of more than 2 are
 //! flowers. Beyond the paper: a drawn disc gathers its petals; blades are rooted where they touch their bearer
@@ -26,70 +26,77 @@ use crate::{BladeReading, DiscReading, Kind, OrganWord, profile};
 
 /// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
-/// Roots that are clustered by mean shift; more are told apart by cells.
+/// Most roots that are clustered by mean shift; more are separated by cells.
 const MOST_ROOTS: usize = 2_000;
-/// What hangs below a corolla is the trunk of a palm if it is so many times as tall as wide; a petal is less.
+/// A part below a corolla is the trunk of a palm if its height is more than this factor of its width; a petal is less
+/// slender.
 const SLENDER: f64 = 1.6;
-/// A piece of a corolla that is a trunk: as long as this share of the usual piece, pointing down with this cosine, and so many
-/// times as long as wide.
+/// A piece of a corolla that is a trunk is longer than this share of the usual piece.
 const LONGEST: f64 = 0.9;
+/// Such a piece points down: the cosine of its angle to the vertical is above this.
 const DOWN: f64 = 0.9;
+/// The height of such a piece is more than this factor of its width.
 const TRUNK_SLENDER: f64 = 1.8;
-/// It is cut off flat: at this share of its height above its foot it has at least that share of its width in the middle.
+/// A trunk is cut off flat: its foot is measured at this share of its height.
 const CUT_AT: f64 = 0.06;
+/// There it has more than this share of its width at half its height.
 const CUT_OFF: f64 = 0.7;
-/// Fronds in one stroke come this near to the top of their trunk, as a share of the stroke's size; petals in one stroke so
-/// many radii near to the middle of their disc.
+/// Fronds in one stroke come this near to the top of their trunk, as a share of the stroke's size.
 const AT_TRUNK: f64 = 0.12;
+/// Petals in one stroke come within this number of radii of the middle of their disc.
 const AT_DISC: f64 = 1.3;
-/// A corolla touches a stem where it comes nearer than this share of its size. Every so many points are looked at, and a
-/// stem that it stands along is touched by more than one of so many of them, and longer than that share of its size.
+/// A corolla touches a stem if it comes nearer than this share of its size.
 const TOUCHES: f64 = 0.07;
 /// Ends of two lines meet within this share of the first one's length.
 const MEETS: f64 = 0.08;
 /// A line is open if its ends are farther apart than this share of its length.
 const APART: f64 = 0.2;
-/// The cosine of the angle within which what lies ahead of the foot of a cup is its middle.
+/// The cosine of the angle within which the part ahead of the foot of a cup is its middle.
 const AHEAD: f64 = 0.95;
-/// What is nearer to the foot of a cup than this share of its reach is its foot, not its rim; and how far above the dip its front
-/// may reach (*geometry*: the dip itself lies on it).
+/// A point nearer to the foot of a cup than this share of its reach is part of its foot, not of its rim.
 const AT_FOOT: f64 = 0.2;
+/// Greatest distance of a cup's front from the foot relative to the dip, which itself lies on it (*geometry*).
 const ROUNDED: f64 = 1.01;
+/// Step between points of a stem that are compared with a corolla.
 const STRIDE: usize = 6;
+/// A corolla stands along a stem if it touches more than one in this number of the stem's points.
 const ALONG: usize = 3;
+/// Such a stem is longer than this share of the corolla's size.
 const LONG_STEM: f64 = 0.4;
 /// A stroke that turns round its middle by more than this angle is a ring of petals, not a row; all round is 6.3.
 const AROUND: f64 = 4.0;
-/// What stands nearer to its bearer than this share of the usual petal stands on it.
+/// A blade nearer to its bearer than this share of the usual petal stands on it.
 const STANDS: f64 = 0.2;
 /// Fronds begin within this share of their usual length of the top of their trunk.
 const FRONDS: f64 = 0.6;
-/// In front of a stem a flower has at least so many petals, and between neighbours no wider angle than this: leaves at a
-/// node leave two sides free.
+/// Fewest petals of a flower in front of a stem: leaves at a node leave two sides free.
 const WHOLE_RING: usize = 5;
+/// Between neighbouring petals of such a flower no angle is wider than this, radians.
 const CLOSE_RING: f64 = 1.9;
-/// Between petals all round no wider angle than this; half a turn (3.14, *geometry*) is a tuft.
+/// Between petals all round no angle is wider than this, radians; half a turn (3.14, *geometry*) is a tuft.
 const RING: f64 = 2.6;
 /// Petals on a shoot's end begin in one place: nearer than this share of the usual petal.
 const ONE_PLACE: f64 = 0.15;
-/// A rosette has at least so many leaves, each of which comes this near to its middle as a share of its size, and between
-/// neighbours no wider angle than that.
+/// Fewest blades of a rosette.
 const ROSETTE: usize = 4;
+/// Each blade of a rosette comes this near to its middle, as a share of the blade's size.
 const TO_MIDDLE: f64 = 0.25;
+/// Between neighbours of a rosette no angle is wider than this, radians.
 const ROSETTE_GAP: f64 = 2.2;
-/// A petal begun at its tip comes within so many bandwidths of its flower's middle.
+/// A petal begun at its tip comes within this number of bandwidths of its flower's centre.
 const ADOPTED: f64 = 1.2;
-/// The foot of a stem that leads up to a disc: petals are taken for at least this size, and the stem is so many times as tall.
+/// Least size of petals that is assumed at the foot of a stem that leads up to a disc.
 const SMALLEST: f64 = 0.08;
+/// Such a stem rises by more than this factor of the usual petal.
 const LEADS_UP: f64 = 1.2;
-/// Petals of a flower of which no rings are told apart: each is compared with each.
+/// Most petals of a flower whose rings are separated: each is compared with each.
 const MOST_PETALS: usize = 300;
-/// A petal of an inner ring reaches less than this share of the one that it stands in front of, and stands within this share
-/// of that one's half angle.
+/// A petal of an inner ring reaches less than this share of the petal behind it.
 const INNER: f64 = 0.72;
+/// It stands within this share of that petal's half angle.
 const IN_FRONT: f64 = 0.8;
 
-/// Discs of the draft: middle and mean radius of each disc stroke.
+/// Returns the discs of the draft: middle and mean radius of each disc stroke.
 pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {
     let mut discs: Vec<(DiscReading, usize)> = Vec::new();
     for k in draft.of_class(StrokeClass::Disc) {
@@ -116,7 +123,7 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         draft.of_class(StrokeClass::Axis).into_iter().map(|k| ink.strokes[k].points.as_slice()).collect();
     for k in draft.of_class(StrokeClass::Corolla) {
         let mut points = ink.strokes[k].points.clone();
-        // Of grass nothing is a trunk.
+        // A drawing of grass has no trunk.
         let lone = axes.is_empty() && discs.is_empty() && draft.kind != Some(Kind::Grass);
         if draft.bodies.is_empty()
             && lone
@@ -157,14 +164,14 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
     }
 }
 
-/// The corolla and a line that leads from one of its ends to the other, such as the round lower half of a cup under its points:
-/// that line, and both as one.
+/// Finds a line that leads from one end of the corolla to the other, such as the round lower half of a cup under its
+/// points; returns that line, and both as one.
 fn closed_by_another(draft: &Draft<'_>, k: usize) -> Option<(usize, Vec<DVec2>)> {
     let other = draft.of_class(StrokeClass::Other).into_iter();
     other.map(|other| (other, together(draft, k, other))).find_map(|(other, whole)| Some((other, whole?)))
 }
 
-/// Two open strokes that meet at both ends, as one outline.
+/// Returns two open strokes that meet at both ends as one outline.
 pub(crate) fn together(draft: &Draft<'_>, first: usize, second: usize) -> Option<Vec<DVec2>> {
     let line = |k: usize| {
         let s = draft.ink.strokes.get(k)?;
@@ -184,7 +191,7 @@ pub(crate) fn together(draft: &Draft<'_>, first: usize, second: usize) -> Option
     Some([&one.points[..], &points].concat())
 }
 
-/// Between the two points of a cup a third petal stands in front, as high as the dip between them.
+/// Returns a third petal, which stands in front between the two points of a cup, as high as the dip between them.
 fn front_of_cup(points: &[DVec2], foot: DVec2) -> Vec<DVec2> {
     let reach = points.iter().map(|p| p.distance(foot)).fold(0.0, f64::max);
     let middle = points.iter().map(|p| *p - foot).sum::<DVec2>().normalize_or_zero();
@@ -195,12 +202,12 @@ fn front_of_cup(points: &[DVec2], foot: DVec2) -> Vec<DVec2> {
     points.iter().copied().filter(|p| p.distance(foot) <= dip * ROUNDED).collect()
 }
 
-/// A lower part that is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
+/// Whether a lower part is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
 fn slender(outline: &[DVec2]) -> bool {
     bounds(outline).is_some_and(|(lo, hi)| hi.y - lo.y > SLENDER * (hi.x - lo.x))
 }
 
-/// A palm in one stroke: the piece that points straight down, the longest of all, is the trunk.
+/// Takes the trunk out of a palm in one stroke: the longest piece, which points straight down.
 fn trunk_piece(draft: &mut Draft<'_>, pieces: &mut Vec<Sheetlet>) {
     let usual = base::median(pieces.iter().map(|p| p.size).collect()).unwrap_or(0.0);
     let floor = pieces.iter().flat_map(|p| &p.outline).map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -228,7 +235,7 @@ fn trunk_piece(draft: &mut Draft<'_>, pieces: &mut Vec<Sheetlet>) {
     }
 }
 
-/// What the petals of one stroke stand around.
+/// Finds the thing round which the petals of one stroke stand.
 fn core_of(
     draft: &Draft<'_>,
     points: &[DVec2],
@@ -290,7 +297,7 @@ pub(crate) fn gather(
     let n = draft.blades.len();
     let mut flowers: Vec<FlowerDraft> = Vec::new();
     let mut roots: Vec<Option<DVec2>> = draft.blades.iter().map(|b| b.root).collect();
-    // Of no flower: what is surely a leaf, too.
+    // A blade that is surely a leaf belongs to no flower either.
     let mut taken: Vec<bool> = draft.blades.iter().map(|b| b.leaf).collect();
     let usual = base::median(draft.blades.iter().map(|b| b.size).collect()).unwrap_or(0.1);
 
@@ -298,7 +305,7 @@ pub(crate) fn gather(
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     off_disc(draft, &mut flowers, &mut roots, &mut taken);
     on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
-    // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
+    // Petals begin and end at the centre: the pen's own gap is better evidence than a bearer that happens to touch.
     let free: Vec<usize> = (0..n).filter(|&i| !taken[i]).collect();
     let gaps: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].gap).collect();
     for members in clusters(&gaps, BANDWIDTH * usual) {
@@ -316,7 +323,13 @@ pub(crate) fn gather(
     }
     rosettes(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     adopt(draft, usual, &mut flowers, &mut roots, &mut taken);
-    // A drawing of few strokes is still growing: it has no rest that could tell.
+    if let [only] = &flowers[..]
+        && coherence::is_tuft_in_pot(draft, only)
+    {
+        only.petals.iter().for_each(|&i| roots[i] = draft.blades[i].root);
+        flowers.clear();
+    }
+    // A drawing of few strokes is still growing: the rest of its plant cannot decide yet.
     let is_many = draft.ink.strokes.len() >= coherence::FEWEST_STROKES;
     if is_many {
         for i in coherence::dissolve(draft, &mut flowers, usual) {
@@ -337,7 +350,7 @@ pub(crate) fn gather(
     (flowers, roots)
 }
 
-/// Flowers of which the petals are known, and that have no disc.
+/// Gathers flowers whose petals are known and that have no disc.
 fn known_heads(
     draft: &Draft<'_>,
     discs: &[(DiscReading, usize)],
@@ -359,7 +372,7 @@ fn known_heads(
     }
 }
 
-/// Petals whose outline comes near a drawn disc; a disc with none stays a flower of its own.
+/// Gathers petals whose outline comes near a drawn disc; a disc with none stays a flower of its own.
 fn by_disc(
     draft: &Draft<'_>,
     discs: &[(DiscReading, usize)],
@@ -416,7 +429,7 @@ fn by_disc(
     }
 }
 
-/// Petals that stand off their disc are led to it: each by a claw, as narrow as the pen.
+/// Leads petals that stand off their disc to it: each by a claw, as narrow as the pen.
 fn off_disc(
     draft: &mut Draft<'_>,
     flowers: &mut [FlowerDraft],
@@ -446,7 +459,7 @@ fn off_disc(
     }
 }
 
-/// Petals that begin on a ring instead of in one place.
+/// Gathers petals that begin on a ring instead of in one place.
 fn on_rings(
     draft: &Draft<'_>,
     usual: f64,
@@ -490,7 +503,7 @@ fn on_rings(
     }
 }
 
-/// The open top of a trunk is near: what stands round it are fronds.
+/// Whether the open top of a trunk is near: blades that stand round it are fronds.
 fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
     draft.open_top
         && draft.bodies.iter().any(|&r| {
@@ -501,7 +514,8 @@ fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
         })
 }
 
-/// The rule of He and Cheng (2021), more than 2, with what tells leaves on a branch from petals on a stem's end.
+/// Applies the rule of He and Cheng (2021), more than 2 petals, and distinguishes leaves on a branch from petals at a
+/// stem's end.
 fn is_flower(
     draft: &Draft<'_>,
     members: &[usize],
@@ -527,7 +541,7 @@ fn is_flower(
     match bearers.stand(centre, 0.4 * usual) {
         // Fronds on a trunk.
         Stand::Body => false,
-        // Leaves at a node of a stem: only a whole ring of many is a flower in front of it.
+        // Leaves at a node of a stem: only a whole ring of many petals is a flower in front of it.
         Stand::Along => members.len() >= WHOLE_RING && widest < CLOSE_RING,
         // On the ground a tuft of leaves, unless they stand all round.
         Stand::Soil => widest < RING,
@@ -540,7 +554,7 @@ fn is_flower(
     }
 }
 
-/// Rings of petals whose strokes began elsewhere: blades that touch one another round a common middle.
+/// Gathers rings of petals whose strokes began elsewhere: blades that touch one another round a common middle.
 fn rosettes(
     draft: &Draft<'_>,
     usual: f64,
@@ -581,7 +595,7 @@ fn rosettes(
     }
 }
 
-/// A petal that was begun at its tip still touches its flower's centre.
+/// Gives petals that were begun at their tips to the flower whose centre they touch.
 fn adopt(
     draft: &Draft<'_>,
     usual: f64,
@@ -614,7 +628,7 @@ fn adopt(
     }
 }
 
-/// How something stands on what bears it.
+/// How a group of blades stands on its bearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stand {
     Body,
@@ -658,7 +672,7 @@ impl Bearers {
         Self { near, lines, length, soil, ends }
     }
 
-    /// A stem begins near `p` and ends at a drawn disc well above: what stands at its foot are leaves.
+    /// Whether a stem begins near `p` and ends at a drawn disc well above: blades at its foot are leaves.
     fn leads_up(&self, p: DVec2, usual: f64, discs: &[(DiscReading, usize)]) -> bool {
         self.ends.iter().any(|&(a, b)| {
             let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
@@ -682,8 +696,8 @@ impl Bearers {
         if e.at < margin || e.at > length - margin { Stand::End } else { Stand::Along }
     }
 
-    /// Where a single blade is attached: at its gap if that is near a bearer, else where it comes nearest to one,
-    /// else at its gap.
+    /// Returns the attachment of a single blade: at its gap if that is near a bearer, else at its nearest point to
+    /// one, else at its gap.
     fn root_of(&self, blade: &Sheetlet) -> DVec2 {
         let reach = (0.22 * blade.size).clamp(0.015, 0.08);
         let gap = blade.nearest(blade.gap).0;
@@ -701,7 +715,7 @@ impl Bearers {
     }
 }
 
-/// Rings of a flower, 0 outermost: a petal that stands in front of a clearly longer one is of an inner ring.
+/// Returns the ring of each petal, 0 outermost: a petal in front of a clearly longer one is in an inner ring.
 pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, read: &[BladeReading]) -> Vec<u32> {
     let petals: Vec<(f64, f64, f64)> = flower
         .petals
@@ -743,7 +757,7 @@ fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
             groups.entry(c).or_default().push(i);
         }
     } else {
-        // So many roots are told apart by cells of a bandwidth: linear, and coarse as such a drawing is.
+        // This many roots are grouped by cells of a bandwidth: linear, and as coarse as such a drawing is.
         let mut cells: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
         for (i, p) in points.iter().enumerate() {
             #[expect(clippy::cast_possible_truncation, reason = "saturates")]

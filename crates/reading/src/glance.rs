@@ -1,9 +1,9 @@
-//! What a drawing looks like at a glance: `ink -> share of each kind that people were asked to draw`.
+//! How a drawing looks at a glance: `ink -> share of each kind that people were asked to draw`.
 //!
-//! A small convolutional network (`LeCun`, Bottou, Bengio and Haffner 1998) looks at a picture of the drawing; strokes, their
-//! order and their directions do not exist for it. It learnt from pictures of drawings that many people made of a word, which
-//! is what the numbers of [`kind_features`](crate::kind_features) lack most. Its coefficients are data (`data/glance.csv`), learnt by `cargo
-//! xtask train-glance`; `docs/strokes.md` says how, and what it is worth.
+//! A small convolutional network (`LeCun`, Bottou, Bengio and Haffner 1998) looks at a picture of the drawing;
+//! strokes, their order and their directions do not exist for it. It learnt from pictures of drawings that many people
+//! made for a word, which the numbers of [`kind_features`](crate::kind_features) lack most. Its coefficients are data
+//! (`data/glance.csv`), learnt by `cargo xtask train-glance`; `docs/strokes.md` describes how, and how good it is.
 
 mod layers;
 
@@ -20,9 +20,10 @@ use crate::kinds::{log_shares, powers};
 
 /// Cells along each side of a [`Picture`].
 pub const SIDE: usize = 28;
-/// Cells from the first to the last line of a drawing's longer side. The others leave room for what lines share.
+/// Cells between the first and the last line along a drawing's longer side. The rest leaves room for lines that darken
+/// two cells.
 const SPAN: f64 = (SIDE - 1) as f64;
-/// How dark each cell of a drawing is, 0 to 1, row by row from the top.
+/// Darkness of each cell of a drawing, 0 to 1, row by row from the top.
 pub type Picture = Vec<f32>;
 
 /// The words that people were asked to draw and that name a kind.
@@ -54,11 +55,11 @@ pub const WORDS: [(&str, Kind); 25] = [
     ("string bean", Kind::Vegetable),
 ];
 
-/// A drawing in [`SIDE`] by [`SIDE`] cells, its middle in theirs, its longer side as long as they allow.
+/// Returns a drawing in [`SIDE`] by [`SIDE`] cells, its middle in theirs, its longer side as long as they allow.
 ///
-/// A line darkens the two cells between which it crosses the middle of a column (of a row, where it is steeper), each by its
-/// share, as Wu (1991) draws lines without steps; a cell is as dark as what darkens it most. Both ends of a stroke are dots.
-/// Linear in points.
+/// A line darkens the two cells between which it crosses the middle of a column (of a row, if it is steeper), each by
+/// its share, as Wu (1991) draws lines without steps; a cell keeps its greatest darkness. Both ends of a stroke are
+/// dots. Linear in points.
 pub fn picture(ink: &Ink) -> Picture {
     let mut cells = vec![0.0; SIDE * SIDE];
     let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
@@ -94,7 +95,7 @@ fn line(cells: &mut Picture, from: DVec2, to: DVec2) {
     }
 }
 
-/// `at`: the middle of a cell.
+/// Darkens the cell whose middle is `at`, if it lies in the picture.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -107,14 +108,14 @@ fn darken(cells: &mut Picture, at: DVec2, share: f64) {
     }
 }
 
-/// What is seen of a drawing, the mean of it and of its mirror image. All 0 where nothing was learnt.
+/// The result of a look at a drawing: the mean of the drawing and its mirror image. All 0 if nothing was learnt.
 #[derive(Clone, Debug)]
 pub(crate) struct Glance {
     /// The share of each of [`WORDS`].
     pub(crate) words: [f64; WORDS.len()],
-    /// How much each unit is stirred.
+    /// Activation of each unit.
     units: Vec<f64>,
-    /// How well each word says what is seen, before the softmax.
+    /// How well each word describes the drawing, before the softmax.
     sums: Vec<f64>,
 }
 
@@ -125,24 +126,24 @@ impl Default for Glance {
 }
 
 impl Glance {
-    /// One number for each of [`mark_names`]: the units, the logarithm of the share of each word.
+    /// Returns one number for each of [`mark_names`]: the units, the logarithm of the share of each word.
     pub(crate) fn marks(&self) -> Vec<f64> {
         self.units.iter().copied().chain(log_shares(&self.sums)).collect()
     }
 }
 
-/// How undecided a glance is between words: the entropy of their shares (Shannon 1948), natural units.
+/// Returns how undecided a glance is between words: the entropy of their shares (Shannon 1948), natural units.
 pub(crate) fn entropy(words: &[f64; WORDS.len()]) -> f64 {
     -words.iter().filter(|p| **p > 0.0).map(|p| p * base::ops::ln(*p)).sum::<f64>()
 }
 
-/// Names of [`Glance::marks`], in their order.
+/// Returns the names of [`Glance::marks`], in their order.
 pub(crate) fn mark_names() -> Vec<String> {
     let units = (0..HIDDEN).map(|k| format!("glance-{k}"));
     units.chain(WORDS.iter().map(|(word, _)| format!("glance-{}", word.replace(' ', "-")))).collect()
 }
 
-/// Looks at a drawing. The same from left and right.
+/// Looks at a drawing. The result is the same for its mirror image.
 pub(crate) fn look(ink: &Ink) -> Glance {
     let Some(sight) = trained() else { return Glance::default() };
     let picture = picture(ink);
@@ -160,7 +161,7 @@ pub(crate) fn look(ink: &Ink) -> Glance {
     Glance { words, units: mean(&one.units, &other.units), sums }
 }
 
-/// The share of each of [`Kind::ALL`], of those of its words.
+/// Returns the share of each of [`Kind::ALL`]: the sum of the shares of its words.
 pub(crate) fn by_kind(words: &[f64; WORDS.len()]) -> [f64; Kind::ALL.len()] {
     let mut shares = [0.0; Kind::ALL.len()];
     for ((_, kind), share) in WORDS.iter().zip(words) {
@@ -169,7 +170,8 @@ pub(crate) fn by_kind(words: &[f64; WORDS.len()]) -> [f64; Kind::ALL.len()] {
     shares
 }
 
-/// The word for what is known to be of a kind: the likeliest of its words, where that is likelier than all others of it together.
+/// Returns the word for a plant of a known kind: the likeliest of the kind's words, if it is likelier than all its
+/// others together.
 pub(crate) fn word(kind: Kind, words: &[f64; WORDS.len()]) -> Option<&'static str> {
     let own = || WORDS.iter().zip(words).filter(|((_, k), _)| *k == kind);
     let all: f64 = own().map(|(_, share)| share).sum();

@@ -1,13 +1,13 @@
-//! A drawing on a grid of square cells: what is ink, what it encloses, what lies outside.
+//! A drawing on a grid of square cells: ink, enclosed cells, and the outside.
 
 use glam::DVec2;
 use ink::Ink;
 
 use geom::bounds;
 
-/// Cells round the drawing, so that the outside is one.
+/// Margin of cells round the drawing, so that the outside is connected.
 const MARGIN: usize = 1;
-/// No stroke.
+/// Marks a cell without a stroke.
 const NOBODY: u32 = u32::MAX;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +19,8 @@ enum Cell {
     Hole,
 }
 
-/// What a grid of square cells shows of a drawing. The longer side has a fixed number of cells, and the middle of the
-/// drawing lies in the middle of the grid, so that left and right are alike.
+/// A drawing on a grid of square cells. The longer side has a fixed number of cells, and the middle of the drawing
+/// lies in the middle of the grid, so that left and right are treated alike.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     wide: usize,
@@ -31,9 +31,9 @@ pub(crate) struct Grid {
     cells: Vec<Cell>,
     /// The lowest and the highest number of the strokes in a cell.
     owners: Vec<[u32; 2]>,
-    /// Visits of a cell: how often a line came into it.
+    /// How often a line came into each cell.
     visits: Vec<u16>,
-    /// What is enclosed, the largest first.
+    /// The enclosed regions, the largest first.
     pub(crate) holes: Vec<Hole>,
 }
 
@@ -41,30 +41,34 @@ pub(crate) struct Grid {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hole {
     pub(crate) area: f64,
-    /// Heights of its middle, its lowest and its highest cell.
+    /// Height of its middle.
     pub(crate) middle: f64,
+    /// Height of its lowest cell.
     pub(crate) low: f64,
+    /// Height of its highest cell.
     pub(crate) high: f64,
     pub(crate) wide: f64,
-    /// How much of its own box it fills.
+    /// Share of its own box that it fills.
     pub(crate) full: f64,
-    /// How far its middle is from the middle of the drawing.
+    /// Distance of its middle from the middle of the drawing.
     pub(crate) off: f64,
 }
 
 /// One row of cells.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct GridRow {
-    /// Shares of the width: what is ink or enclosed, from the first to the last ink, ink alone.
+    /// Share of the width that is ink or enclosed.
     pub(crate) filled: f64,
+    /// Share of the width from the first to the last ink.
     pub(crate) across: f64,
+    /// Share of the width that is ink.
     pub(crate) ink: f64,
     /// Runs of ink.
     pub(crate) runs: f64,
 }
 
 impl Grid {
-    /// `along`: cells of the longer side. Linear in points.
+    /// Draws the ink on a grid. `along`: cells of the longer side. Linear in points.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a grid has few cells")]
     pub(crate) fn new(ink: &Ink, along: usize) -> Self {
         let boxes = ink.strokes.iter().filter_map(|s| bounds(&s.points));
@@ -87,7 +91,7 @@ impl Grid {
         for (k, s) in (0_u32..).zip(&ink.strokes) {
             let mut before = usize::MAX;
             let mut mark = |p: DVec2| {
-                let at = grid.at(p);
+                let at = grid.cell_index(p);
                 if at != before {
                     grid.visits[at] = grid.visits[at].saturating_add(1);
                     before = at;
@@ -109,14 +113,14 @@ impl Grid {
     }
 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-    fn at(&self, p: DVec2) -> usize {
+    fn cell_index(&self, p: DVec2) -> usize {
         let q = (p - self.centre) / self.cell;
         let place = |v: f64, n: usize| ((v + 0.5 * n as f64).max(0.0) as usize).clamp(MARGIN, n - 1 - MARGIN);
         place(q.y, self.tall) * self.wide + place(q.x, self.wide)
     }
 
-    /// The cells beside, above and below.
-    fn beside(&self, at: usize) -> [Option<usize>; 4] {
+    /// Returns the left, right, lower and upper neighbours of a cell.
+    fn neighbours(&self, at: usize) -> [Option<usize>; 4] {
         let x = at % self.wide;
         [
             (x > 0).then(|| at - 1),
@@ -132,7 +136,7 @@ impl Grid {
         let mut next = 0;
         while let Some(&at) = found.get(next) {
             next += 1;
-            for b in self.beside(at).into_iter().flatten() {
+            for b in self.neighbours(at).into_iter().flatten() {
                 if self.cells[b] == Cell::Open {
                     self.cells[b] = to;
                     found.push(b);
@@ -178,7 +182,7 @@ impl Grid {
         });
     }
 
-    /// The rows of the drawing, the lowest first; at least one.
+    /// Returns the rows of the drawing, the lowest first; at least one.
     pub(crate) fn rows(&self) -> Vec<GridRow> {
         let across = (self.wide - 2 * MARGIN) as f64;
         (MARGIN..self.tall - MARGIN)
@@ -198,7 +202,7 @@ impl Grid {
             .collect()
     }
 
-    /// Share of each quarter of the height that is enclosed.
+    /// Returns the share of each quarter of the height that is enclosed.
     pub(crate) fn hole_bands(&self) -> [f64; 4] {
         let mut sums = [(0.0, 0.0); 4];
         let rows = self.tall - 2 * MARGIN;
@@ -211,7 +215,7 @@ impl Grid {
         sums.map(|(a, b)| if b > 0.0 { a / b } else { 0.0 })
     }
 
-    /// How alike left and right are: ink (a cell to and fro), what is filled; and above and below.
+    /// Measures how similar left and right are: ink (within one cell), filled cells; and above and below.
     pub(crate) fn symmetric(&self) -> [f64; 3] {
         let filled = |c: Cell| matches!(c, Cell::Ink | Cell::Hole);
         let (mut ink, mut met) = (0.0_f64, 0.0);
@@ -238,7 +242,7 @@ impl Grid {
         [met / ink.max(1.0), both / either.max(1.0), upside / any.max(1.0)]
     }
 
-    /// The middle of what is filled above a share of the height, ink coordinates.
+    /// Returns the middle of the filled cells above a share of the height, ink coordinates.
     pub(crate) fn middle(&self, from: f64) -> DVec2 {
         let (mut sum, mut n) = (DVec2::ZERO, 0.0);
         let low = MARGIN as f64 + from * (self.tall - 2 * MARGIN) as f64;
@@ -255,7 +259,7 @@ impl Grid {
         self.centre + (sum / n - half) * self.cell
     }
 
-    /// Cells that are filled, those of them at the rim, and cells with ink.
+    /// Counts filled cells, those of them at the rim, and cells with ink.
     pub(crate) fn areas(&self) -> (f64, f64, f64) {
         let (mut filled, mut rim, mut ink) = (0.0, 0.0, 0.0);
         for (at, cell) in self.cells.iter().enumerate() {
@@ -265,23 +269,24 @@ impl Grid {
             filled += 1.0;
             ink += f64::from(u8::from(*cell == Cell::Ink));
             let outside = |b: Option<usize>| b.is_none_or(|b| self.cells[b] == Cell::Outside);
-            rim += f64::from(u8::from(self.beside(at).into_iter().any(outside)));
+            rim += f64::from(u8::from(self.neighbours(at).into_iter().any(outside)));
         }
         (filled, rim, ink)
     }
 
-    /// Whether another stroke than `stroke` runs through the cell of a point or one beside it.
+    /// Whether another stroke than `stroke` runs through the cell of a point or one next to it.
     pub(crate) fn has_other(&self, p: DVec2, stroke: usize) -> bool {
-        let at = self.at(p);
+        let at = self.cell_index(p);
         let stroke = u32::try_from(stroke).unwrap_or(NOBODY);
         let other = |b: usize| {
             let [low, high] = self.owners[b];
             low != NOBODY && (low != stroke || high != stroke)
         };
-        other(at) || self.beside(at).into_iter().flatten().any(other)
+        other(at) || self.neighbours(at).into_iter().flatten().any(other)
     }
 
-    /// Shares of the cells with ink: with several strokes, entered twice, three times and more; how often on the average.
+    /// Returns shares of the cells with ink: with several strokes, entered twice, three times and more; and the mean
+    /// number of entries.
     pub(crate) fn crossed(&self) -> [f64; 4] {
         let (mut n, mut several, mut twice, mut thrice, mut sum) = (0.0_f64, 0.0, 0.0, 0.0, 0.0);
         for (owners, &visits) in self.owners.iter().zip(&self.visits) {

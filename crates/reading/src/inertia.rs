@@ -1,23 +1,24 @@
-//! What a person was shown keeps its class while the drawing grows, unless the whole clearly says otherwise.
+//! Strokes keep the class that was shown to a person while the drawing grows, unless the whole clearly contradicts it.
 
 use ink::{Classified, Ink, Source};
 
 use crate::{Kind, Reading, Scored};
 
-/// The source of a class that a stroke keeps because it was shown as that, where the classifier now says otherwise.
+/// The source of a class that a stroke keeps because it was shown so, although the classifier now gives another one.
 pub const AS_SHOWN: &str = "as-shown";
 
-/// Another kind than the one that was shown explains the drawing clearly with at least this share, and so many times as
-/// well; and as many times more as the one that was shown explained it better without the last stroke. So one stroke
-/// outweighs all before it only where it says more than they did, and two that say the same are believed.
+/// Least share of a kind, other than the one shown, that replaces it.
 const SURE: f64 = 0.5;
+/// Such a kind also explains the drawing better than the shown one by this factor, and by as much more as the shown
+/// one was better without the last stroke. So one stroke outweighs all before it only if it is stronger evidence than
+/// they were, and two that agree are believed.
 const BETTER: f64 = 2.0;
-/// Of one kind, the classifier's shares of the new classes are larger by this than those of the classes that were shown,
-/// on the average of the length of what would change. `cargo xtask read-in-turn`: with 0.1 the drawings that were
-/// labelled end as right as when they are read afresh, with more they do not.
+/// Within one kind, the classifier's shares of the new classes are larger than those of the shown classes by at least
+/// this, averaged over the length of the changed strokes. `cargo xtask read-in-turn`: with 0.1 labelled drawings end
+/// as correct as when they are read afresh, with more they do not.
 const MARGIN: f64 = 0.1;
 
-/// The classes with which a plant is read as it was shown; none where it is read like that anyway.
+/// Returns the classes with which a plant is read as it was shown; `None` if it is read so anyway.
 pub(crate) fn as_shown(ink: &Ink, classes: &[Classified], free: &Reading) -> Option<Vec<Classified>> {
     let mut kept = classes.to_vec();
     let mut differs = false;
@@ -29,7 +30,7 @@ pub(crate) fn as_shown(ink: &Ink, classes: &[Classified], free: &Reading) -> Opt
     differs.then_some(kept)
 }
 
-/// Whether a reading makes of every stroke the class that it was shown as.
+/// Whether a reading gives every stroke the class that it was shown with.
 pub(crate) fn agrees(ink: &Ink, classes: &[Classified], reading: &Reading) -> bool {
     ink.strokes.iter().zip(classes).all(|(stroke, said)| {
         let now = class_of(reading, stroke.index).map(|c| c.class);
@@ -42,8 +43,8 @@ fn class_of(reading: &Reading, index: u32) -> Option<&crate::StrokeReading> {
     reading.strokes.get(at)
 }
 
-/// Whether a reading speaks clearly against what was shown. `before`: how well each kind explains the drawing without its
-/// last stroke.
+/// Whether a reading clearly contradicts the one that was shown. `before`: how well each kind explains the drawing
+/// without its last stroke.
 pub(crate) fn is_clear(
     ink: &Ink,
     classes: &[Classified],
@@ -75,7 +76,7 @@ pub(crate) fn is_clear(
     sum > MARGIN * length
 }
 
-/// Says of a reading in which strokes are as they were shown how sure the classifier is of that.
+/// Sets how sure the classifier is of strokes that keep the class that was shown.
 pub(crate) fn tell(reading: &mut Reading, ink: &Ink, classes: &[Classified]) {
     for s in reading.strokes.iter_mut().filter(|s| s.source == Source::Rule(AS_SHOWN)) {
         let Ok(row) = ink.strokes.binary_search_by_key(&s.index, |s| s.index) else { continue };

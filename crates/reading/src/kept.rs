@@ -1,7 +1,7 @@
-//! What single strokes gave, kept while they stay as they are: a drawing of thousands grows by one at a time.
+//! Results of single strokes, kept while these do not change: a drawing of thousands grows by one at a time.
 //!
-//! Nothing is found by age or by number alone: a result is taken again only where all that it was made from has the same bits,
-//! so a reading is the same with what was kept and without.
+//! No result is found by age or number alone: it is used again only if all its inputs have the same bits, so a reading
+//! is the same with kept results and without.
 
 use glam::DVec2;
 
@@ -18,7 +18,7 @@ type Blade = (Vec<DVec2>, DVec2, Vec<VeinReading>);
 /// Results of single strokes, for [`read_again`](crate::read_again).
 #[derive(Clone, Debug, Default)]
 pub struct KeptStrokes {
-    /// What outlines of blades enclose, from their points.
+    /// Outlines of blades, from the points of their strokes.
     pub(crate) blades: Kept<Vec<DVec2>, Drawn>,
     /// Limbs of bodies, from outline, gaps and base.
     pub(crate) bodies: Kept<Body, Vec<Limb>>,
@@ -27,7 +27,7 @@ pub struct KeptStrokes {
 }
 
 impl KeptStrokes {
-    /// Forgets what was not needed since this was called last.
+    /// Drops results that were not used since the last call.
     pub(crate) fn forget(&mut self) {
         self.blades.forget();
         self.bodies.forget();
@@ -35,10 +35,10 @@ impl KeptStrokes {
     }
 }
 
-/// What a stroke of a blade is.
+/// The form of a blade's stroke.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
-    /// Closed by itself, with or without a midrib.
+    /// Closed, with or without a midrib.
     Blade(Sheetlet, Vec<Vec<DVec2>>),
     /// So open that it may be one side of a leaf.
     Open,
@@ -64,7 +64,7 @@ impl<K, V> Default for Kept<K, V> {
 }
 
 impl<K, V: Clone> Kept<K, V> {
-    /// The result of a stroke that was made from the same, or else a new one, which is kept.
+    /// Returns the result of a stroke if its inputs are the same, or else makes a new one and keeps it.
     pub(crate) fn get(
         &mut self,
         stroke: u32,
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::{Kind, Reading, read_again, read_as};
 
-    /// A flower with two leaves, one of them with a vein, and a trunk of two lines beside it.
+    /// A flower with two leaves, one of them with a vein, and a trunk of two lines next to it.
     fn lines() -> Vec<Vec<DVec2>> {
         let ring = |x: f64, y: f64, (a, b): (f64, f64)| -> Vec<DVec2> {
             let turn = (0..=40).map(|i| ops::sin_cos(ops::TAU * f64::from(i) / 40.0));

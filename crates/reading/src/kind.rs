@@ -1,9 +1,9 @@
-//! What kinds of plants there are.
+//! The kinds of plants.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a drawing can show. The words of the command line's contract.
+/// The kind of plant that a drawing shows. The words of the command line's contract.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
@@ -64,7 +64,7 @@ impl Kind {
         self as usize
     }
 
-    /// The word in reports and options.
+    /// Returns the word in reports and options.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Flower => "flower",
@@ -84,12 +84,12 @@ impl Kind {
         }
     }
 
-    /// The kind of a word.
+    /// Returns the kind of a word.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
-    /// They are built alike: a conifer is a tree, and a root or pod a body as a fruit is.
+    /// Whether both kinds are built alike: a conifer is a tree, and a root or pod a body as a fruit is.
     pub fn is_like(self, other: Self) -> bool {
         let group = |k| match k {
             Self::Conifer => Self::Tree,
@@ -104,8 +104,9 @@ impl Kind {
 /// One interpretation of a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scored {
-    /// What it would be.
+    /// The kind that the plant would be.
     pub kind: Kind,
-    /// How well it explains the drawing, among all kinds, or, in what is told of a plant, how likely it is right: 0 to 1.
+    /// How well it explains the drawing, among all kinds, or, in the description of a plant, how likely it is right:
+    /// 0 to 1.
     pub score: f64,
 }

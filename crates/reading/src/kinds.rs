@@ -1,9 +1,9 @@
 //! How well each kind of plant explains a whole drawing: `ink + classes + first reading -> share of each kind`.
 //!
 //! A small network over numbers of the whole drawing, with a softmax over the kinds. Its coefficients are data
-//! (`data/kinds.csv`), learnt by `cargo xtask train-kinds` from drawings of people and made ones of the part to learn
-//! from. What it says of the kinds that are words is weighed by how the drawing looks at a [glance](mod@crate::glance).
-//! `docs/strokes.md` says how, and how good it is.
+//! (`data/kinds.csv`), learnt by `cargo xtask train-kinds` from drawings by people and made ones of the learning
+//! part. For the kinds that are words, its result is combined with how the drawing looks at a
+//! [glance](mod@crate::glance). `docs/strokes.md` describes how, and how good it is.
 
 use std::sync::OnceLock;
 
@@ -20,10 +20,10 @@ pub(crate) const COUNT: usize =
     1 + Kind::ALL.len() + (2 + CLASS_BANDS) * StrokeClass::ALL.len() + SHAPE.len() + look::COUNT;
 /// Bands of the height for which the length of each stroke class is measured.
 const CLASS_BANDS: usize = 3;
-/// What ends in this lowest share of the height counts as a foot. As all numbers of a look, how it is cut matters little: the
-/// model learns what the count is worth.
+/// Ends of strokes in this lowest share of the height count as a foot. The exact value matters little, as for all
+/// numbers of a look: the model learns what the count is worth.
 const LOW: f64 = 0.1;
-/// Names of the numbers that say how the whole looks.
+/// Names of the numbers that describe how the whole looks.
 const SHAPE: [&str; 20] = [
     "strokes",
     "wide",
@@ -47,7 +47,7 @@ const SHAPE: [&str; 20] = [
     "straight",
 ];
 
-/// Names of the numbers of [`kind_features`], in their order.
+/// Returns the names of the numbers of [`kind_features`], in their order.
 pub fn kind_feature_names() -> Vec<String> {
     let built = Kind::ALL.iter().map(|k| format!("built-{}", k.word()));
     let sums = StrokeClass::ALL.iter().map(|c| format!("sum-{}", c.word()));
@@ -69,11 +69,11 @@ pub fn kind_feature_names() -> Vec<String> {
         .collect()
 }
 
-/// What is measured of one plant, each about 0 to 1; independent of the order and direction of strokes, of left and right
-/// and of the size of the sheet. Linear in points.
+/// Returns the numbers of one plant, each about 0 to 1; independent of the order and direction of strokes, of left
+/// and right and of the size of the sheet. Linear in points.
 pub fn kind_features(ink: &Ink, classes: &[Classified], first: &Reading) -> Vec<f64> {
     let mut row = vec![1.0];
-    let built = Kind::of(first);
+    let built = Kind::from_reading(first);
     row.extend(Kind::ALL.iter().map(|&k| f64::from(u8::from(k == built))));
     let total: f64 = ink.strokes.iter().map(|s| s.length).sum::<f64>().max(1e-9);
     let share = |k: usize, class: StrokeClass| classes.get(k).map_or(0.0, |c| c.shares[class.place()]);
@@ -94,7 +94,7 @@ pub fn kind_features(ink: &Ink, classes: &[Classified], first: &Reading) -> Vec<
     row
 }
 
-/// How much of each stroke class lies low, in the middle and high.
+/// Measures how much of each stroke class lies low, in the middle and high.
 fn class_bands(ink: &Ink, share: &dyn Fn(usize, StrokeClass) -> f64, total: f64) -> Vec<f64> {
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
@@ -118,7 +118,7 @@ fn class_bands(ink: &Ink, share: &dyn Fn(usize, StrokeClass) -> f64, total: f64)
     sums
 }
 
-/// How the whole looks. `all`: its points, and their hull.
+/// Measures how the whole looks. `all`: its points, and their hull.
 fn shape(ink: &Ink, (all, hull): (&[DVec2], &[DVec2]), total: f64) -> [f64; SHAPE.len()] {
     let Some((lo, hi)) = bounds(all) else { return [0.0; SHAPE.len()] };
     let (wide, tall) = ((hi.x - lo.x).max(1e-6), (hi.y - lo.y).max(1e-6));
@@ -187,7 +187,7 @@ fn shape(ink: &Ink, (all, hull): (&[DVec2], &[DVec2]), total: f64) -> [f64; SHAP
 /// The model: for each number its mean, its spread and a coefficient for each kind and for each unit; for each unit a
 /// coefficient for each kind.
 struct Model {
-    /// What each column stands for; nothing for several plants side by side.
+    /// The kind of each column; `None` for several plants side by side.
     kinds: Vec<Option<Kind>>,
     rows: Vec<ModelRow>,
     /// A row for each unit.
@@ -202,9 +202,9 @@ struct ModelRow {
 
 /// The word of the column for several plants.
 pub const SEVERAL: &str = "several";
-/// How the names of units begin.
+/// Prefix of the names of units.
 const UNIT: &str = "unit-";
-/// A number counts at most this many spreads from its mean: no single one decides.
+/// Greatest distance from its mean, in spreads, at which a number counts: no single one decides.
 pub const KIND_FEATURE_LIMIT: f64 = 4.0;
 
 impl Model {
@@ -233,7 +233,7 @@ impl Model {
         Some(Self { rows: rows?, units: units?, kinds })
     }
 
-    /// How well each column explains a row of numbers, before the softmax.
+    /// Returns how well each column explains a row of numbers, before the softmax.
     fn sums(&self, row: &[f64]) -> Vec<f64> {
         self.weigh(row).sums
     }
@@ -256,18 +256,18 @@ impl Model {
     }
 }
 
-/// What the model makes of a row of numbers.
+/// Results of the model for a row of numbers.
 struct Weighed {
-    /// How many spreads each number is from its mean.
+    /// Distance of each number from its mean, in spreads.
     spreads: Vec<f64>,
-    /// How much each unit is stirred, 0 or more.
+    /// Activation of each unit, 0 or more.
     units: Vec<f64>,
     /// How well each column explains the row, before the softmax.
     sums: Vec<f64>,
 }
 
-/// What the model makes of a row, one number for each of [`mark_names`]: the row in spreads, its units, the logarithm of the
-/// share of each column. Nothing where no model was learnt.
+/// Returns the results of the model for a row, one number for each of [`mark_names`]: the row in spreads, its units,
+/// the logarithm of the share of each column. Nothing if no model was learnt.
 pub(crate) fn marks(row: &[f64]) -> Vec<f64> {
     let Some(model) = trained() else { return Vec::new() };
     let Weighed { mut spreads, units, sums } = model.weigh(row);
@@ -276,7 +276,7 @@ pub(crate) fn marks(row: &[f64]) -> Vec<f64> {
     spreads
 }
 
-/// Names of [`marks`], in their order.
+/// Returns the names of [`marks`], in their order.
 pub(crate) fn mark_names() -> Vec<String> {
     let (units, kinds) = trained().map_or((0, &[][..]), |m| (m.units.len(), &m.kinds[..]));
     let units = (0..units).map(|k| format!("{UNIT}{k}"));
@@ -289,13 +289,13 @@ fn trained() -> Option<&'static Model> {
     MODEL.get_or_init(|| Model::parse(include_str!("../data/kinds.csv"))).as_ref()
 }
 
-/// The numerators of a softmax, the largest 1.
+/// Returns the numerators of a softmax, the largest 1.
 pub(crate) fn powers(sums: &[f64]) -> Vec<f64> {
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     sums.iter().map(|s| ops::exp(s - most)).collect()
 }
 
-/// The logarithms of the shares of a softmax.
+/// Returns the logarithms of the shares of a softmax.
 pub(crate) fn log_shares(sums: &[f64]) -> Vec<f64> {
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let total = most + ops::ln(powers(sums).iter().sum());
@@ -307,14 +307,14 @@ pub(crate) fn log_shares(sums: &[f64]) -> Vec<f64> {
 pub(crate) struct Shares {
     /// Every kind with its share among all kinds, the best first.
     pub(crate) kinds: Vec<Scored>,
-    /// The share of what is no plant, among all.
+    /// The share of no plant, among all.
     pub(crate) no_plant: f64,
     /// The share of several plants, among all.
     pub(crate) several: f64,
 }
 
 impl Shares {
-    /// The colours are those of a plant without wood: woody kinds keep a part of their shares.
+    /// Reduces the shares of woody kinds: the colours are those of a plant without wood.
     pub(crate) fn without_wood(&mut self) {
         let before: f64 = self.kinds.iter().map(|s| s.score).sum();
         let woody = self.kinds.iter_mut().filter(|s| s.kind.is_like(Kind::Tree) || s.kind == Kind::Palm);
@@ -330,10 +330,11 @@ impl Shares {
 const GREEN_WOOD: f64 = 0.1;
 /// A kind that a glance does not see at all keeps this much of its share: a picture so small can mislead.
 const UNSEEN: f64 = 0.03;
-/// What is seen counts to this power beside the numbers: of 0 to 1 the best on drawings by people to choose by.
+/// Power to which the glance counts compared with the numbers: of 0 to 1 the best on the choosing part of drawings by
+/// people.
 const TRUST: f64 = 0.7;
 
-/// What the model says of a row of [`kind_features`], and of what is seen at a glance: the share of each of [`Kind::ALL`].
+/// Returns the share of each of [`Kind::ALL`], from a row of [`kind_features`] and from a glance.
 pub(crate) fn shares(row: &[f64], seen: &[f64; Kind::ALL.len()]) -> Shares {
     let Some(model) = trained() else { return Shares::default() };
     let sums = model.sums(row);
@@ -353,8 +354,8 @@ pub(crate) fn shares(row: &[f64], seen: &[f64; Kind::ALL.len()]) -> Shares {
     Shares { kinds, no_plant, several }
 }
 
-/// Two that look in different ways at the same thing, and err independently: the product of what they say. Only of the kinds
-/// that both know; together they keep their share against what only the numbers know.
+/// Multiplies the results of two models that look at the same thing in different ways and err independently. Only for
+/// the kinds that both know; together these keep their share against those that only the numbers know.
 fn weigh(powers: &mut [f64], kinds: &[Option<Kind>], seen: &[f64; Kind::ALL.len()]) {
     let seen: Vec<f64> = kinds.iter().map(|k| k.map_or(0.0, |k| seen[k.place()])).collect();
     let known = |powers: &[f64]| -> f64 {

@@ -1,28 +1,29 @@
-//! What the strokes of a drawing mean (He and Cheng 2021, section 4), still flat.
+//! Reads the meaning of a drawing's strokes (He and Cheng 2021, section 4), still flat.
 //!
 //! `Ink + classes -> Reading`
 //!
 //! | module | reads | paper |
 //! |---|---|---|
-//! | `several` | each plant of a drawing by itself | beyond |
-//! | `read`, `draft` | the order of the steps, and the drawing half understood | |
+//! | `several` | each plant of a drawing separately | beyond |
+//! | `read`, `draft` | the order of the steps, and the partly understood drawing | |
 //! | `rules` | classes that the whole drawing contradicts | beyond |
 //! | `outlines`, `contour`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
 //! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
-//! | `overlap` | which of the blades that overlap lies in front | beyond |
-//! | `palette` | what colours say | beyond |
+//! | `overlap` | which of overlapping blades lies in front | beyond |
+//! | `palette` | the meaning of colours | beyond |
 //! | `steady`, `pressed` | lines without tremor, and how boldly they were drawn | beyond |
-//! | `attach` | what bears what | beyond |
-//! | `several`, `aside` | several plants in one drawing, and what is drawn beside them | beyond |
-//! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
-//! | [`glance`](mod@glance) | what a drawing looks like, whatever its strokes are | beyond |
-//! | `structure` | what strokes enclose, what covers them, what lies in them, what is repeated | beyond |
-//! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
-//! | `kept` | what single strokes gave, kept while they stay as they are | |
-//! | `rows`, `validate` | the result, and what every reading guarantees | |
-//! | `thresholds` | numbers that several of these compare with, and where all such numbers come from | |
+//! | `attach` | the bearer of each part | beyond |
+//! | `several`, `aside` | several plants in one drawing, and things drawn next to them | beyond |
+//! | `kind`, `built`, `kinds` | the kind that the parts form together, and the kind that explains the drawing best |
+//! beyond |
+//! | [`glance`](mod@glance) | how a drawing looks, whatever its strokes are | beyond |
+//! | `structure` | enclosure, cover, containment and repetition of strokes | beyond |
+//! | `inertia` | strokes keep the class that was shown, unless the whole clearly contradicts it | beyond |
+//! | `kept` | results of single strokes, kept while these do not change | |
+//! | `rows`, `validate` | the result, and the guarantees of every reading | |
+//! | `thresholds` | numbers that several of these compare with, and the origin of all such numbers | |
 
 mod aside;
 mod attach;
@@ -75,6 +76,7 @@ pub use kept::KeptStrokes;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
 pub use no_plant::{NO_PLANT_LIMITS, NoPlantLimits, no_plant_feature_names};
+pub use palette::is_in_blue_pen;
 pub use read::{
     UNLIKE_A_PLANT, kind_row, no_plant_row, read, read_again, read_as, read_but_last, read_without,
 };

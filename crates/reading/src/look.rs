@@ -1,7 +1,8 @@
 //! How a whole drawing looks: `ink -> numbers`, for the model of kinds.
 //!
 //! Nothing here knows a plant. Each number is about 0 to 1, and none depends on the direction of strokes, on left and
-//! right, or on the size of the sheet; on their order only where more than eight strokes end in one place. The model (`kinds`) says what they are worth.
+//! right, or on the size of the sheet; they depend on the order of strokes only where more than eight strokes end in
+//! one place. The model (`kinds`) learns what they are worth.
 
 use base::ops;
 use geom::{bounds, signed_area};
@@ -14,7 +15,7 @@ use crate::thresholds::ROUNDING;
 
 /// Bands into which the height is cut.
 const BANDS: usize = 8;
-/// What is measured: a name, and how many numbers it has, the lowest band first.
+/// The measures: a name, and how many numbers it has, the lowest band first.
 pub(crate) const GROUPS: &[(&str, usize)] = &[
     ("band-ink", BANDS),
     ("band-wide", BANDS),
@@ -55,7 +56,7 @@ pub(crate) const GROUPS: &[(&str, usize)] = &[
     ("tilt", 2),
 ];
 
-/// How many numbers that are.
+/// How many numbers these are together.
 pub(crate) const COUNT: usize = {
     let (mut sum, mut k) = (0, 0);
     while k < GROUPS.len() {
@@ -65,36 +66,42 @@ pub(crate) const COUNT: usize = {
     sum
 };
 
-/// Cells along the longer side: of a fine grid, and of a wide one in which small gaps close.
+/// Cells along the longer side of a fine grid.
 const FINE: usize = 44;
+/// Cells along the longer side of a wide grid, in which small gaps close.
 const WIDE: usize = 18;
-// Where the numbers are cut. The model learns what each is worth, so how they are cut matters little; all that depends on the
-// cuts is learnt anew when one is changed (`cargo xtask train-kinds`).
+// Boundaries of the numbers. The model learns what each is worth, so the exact boundaries matter little; everything
+// that depends on them must be learnt again when one is changed (`cargo xtask train-kinds`).
 
-/// What is divided by less is nothing: *geometry*.
+/// Quotients with a divisor below this are 0: *geometry*.
 const NOTHING: f64 = 1e-12;
-/// Ends nearer than this share of the length: a loop. Farther than that: a line.
+/// A stroke whose ends are nearer than this share of its length is a loop.
 pub(crate) const LOOP: f64 = 0.25;
+/// A stroke whose ends are farther apart than this share of its length is a line.
 pub(crate) const LINE: f64 = 0.8;
-/// Strokes by their openness: closed, bent, straight.
+/// Limits of openness between closed, bent and straight strokes.
 const OPENNESS: [f64; 2] = [0.2, 0.7];
-/// A stroke without ends.
+/// Openness below which a stroke counts as having no ends.
 const CLOSED: f64 = 0.1;
-/// Strokes by length and loops by size, shares of the drawing's longer side; holes by area, shares of its box.
+/// Limits between lengths of strokes, as shares of the drawing's longer side.
 const LENGTHS: [f64; 4] = [0.08, 0.25, 0.7, 1.8];
+/// Limits between sizes of loops, as shares of the drawing's longer side.
 const LOOP_SIZES: [f64; 2] = [0.12, 0.45];
+/// Limits between areas of holes, as shares of the drawing's box.
 const HOLES: [f64; 2] = [0.01, 0.08];
-/// Tangent of an eighth of half a turn, which parts level, slanting and upright lines evenly (*geometry*, rounded).
+/// Tangent of an eighth of half a turn, which divides level, slanting and upright lines evenly (*geometry*, rounded).
 const EIGHTH: f64 = 0.414;
-/// A corner turns by more than this angle, a hairpin by more than that: 52 and 120 degrees.
+/// A corner turns by more than this angle, radians: 52 degrees.
 const CORNER: f64 = 0.9;
+/// A hairpin turns by more than this angle, radians: 120 degrees.
 const HAIRPIN: f64 = 2.1;
 /// A line turns back by more than this share of the drawing's longer side.
 const TURNS_BACK: f64 = 0.05;
-/// What stands is narrower than this share of the widest row; a line has less ink than that share in its row.
+/// A row of a standing part is narrower than this share of the widest row.
 const NARROW: f64 = 0.35;
+/// A row of a line has less ink than this share of the widest row.
 const LINE_INK: f64 = 0.12;
-/// Most runs of ink in a row of two lines: a third may lie between them.
+/// Most runs of ink in a row of two lines: a third one may lie between them.
 const TWO_LINES: f64 = 3.0;
 /// The first row wider than this share of the widest is where the plant widens.
 const WIDENS: f64 = 0.7;
@@ -121,9 +128,9 @@ struct Frame<'a> {
     lo: DVec2,
     size: DVec2,
     centre: DVec2,
-    /// The longer side.
+    /// Longer side of the box.
     long: f64,
-    /// Points of all strokes, each of which stands for so much length.
+    /// Length for which each point stands; the points of all strokes.
     weight: Vec<f64>,
     total: f64,
 }
@@ -133,38 +140,39 @@ impl<'a> Frame<'a> {
         let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.points.iter().copied()).collect();
         let (lo, hi) = bounds(&all)?;
         let long = (hi - lo).max_element().max(1e-9);
-        // A line has no width: what is a share of it stays small.
+        // A line has no width: a small share of its length takes its place.
         let size = (hi - lo).max(DVec2::splat(0.02 * long));
         let weight = ink.strokes.iter().map(|s| s.length / to_f64(s.points.len())).collect();
         let total = ink.strokes.iter().map(|s| s.length).sum();
         Some(Self { strokes: &ink.strokes, lo, size, centre: lo.midpoint(hi), long, weight, total })
     }
 
-    /// Every point and how much length it stands for, as a share of all.
+    /// Returns every point with the length that it stands for, as a share of all.
     fn points(&self) -> impl Iterator<Item = (DVec2, f64)> {
         let rows = self.strokes.iter().zip(&self.weight);
         let total = self.total;
         rows.flat_map(move |(s, w)| s.points.iter().map(move |p| (*p, w / total)))
     }
 
-    /// Where a height lies, 0 below to 1 above.
+    /// Returns the height of a point, 0 below to 1 above.
     fn height(&self, p: DVec2) -> f64 {
         ((p.y - self.lo.y) / self.size.y).clamp(0.0, 1.0)
     }
 
-    /// How far from the middle, 0 to 1 at the sides.
+    /// Returns the distance from the middle, 0 to 1 at the sides.
     fn off_centre(&self, p: DVec2) -> f64 {
         ((p.x - self.centre.x).abs() / (0.5 * self.size.x)).min(1.0)
     }
 }
 
-/// The place of a share 0 to 1 among `n` equal parts.
+/// Returns the index of a share, 0 to 1, among `n` equal parts.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1 times a small number")]
 fn place(share: f64, n: usize) -> usize {
     ((share * n as f64) as usize).min(n - 1)
 }
 
-/// All numbers, in the order of [`GROUPS`]; zeros of an empty drawing. `all`: its points, and their hull. Linear in points.
+/// Returns all numbers, in the order of [`GROUPS`]; zeros for an empty drawing. `all`: its points, and their hull.
+/// Linear in points.
 pub(crate) fn look(ink: &Ink, all: (&[DVec2], &[DVec2])) -> Vec<f64> {
     let Some(frame) = Frame::new(ink) else { return vec![0.0; COUNT] };
     let (fine, wide) = (Grid::new(ink, FINE), Grid::new(ink, WIDE));
@@ -231,7 +239,8 @@ fn holes(fine: &Grid, wide: &Grid, row: &mut Vec<f64>) {
     row.extend([h.area, h.middle, h.low, h.wide, h.full]);
 }
 
-/// In which way lines run, by cell: four rows, the middle and the sides. Level, rising outwards, upright, rising inwards.
+/// Measures the directions of lines by cell: four rows, the middle and the sides. Level, rising outwards, upright,
+/// rising inwards.
 fn ways(frame: &Frame<'_>, row: &mut Vec<f64>) {
     let mut sums = [0.0; 32];
     for s in frame.strokes {
@@ -252,7 +261,7 @@ fn ways(frame: &Frame<'_>, row: &mut Vec<f64>) {
     row.extend(sums.map(|x| 4.0 * x));
 }
 
-/// How lines turn: gently or sharply, always one way round or to and fro.
+/// Measures how lines turn: gently or sharply, always in one direction or to and fro.
 fn turns(frame: &Frame<'_>, row: &mut Vec<f64>) {
     const WINDOW: f64 = 0.03;
     let (mut turning, mut corners, mut hairpins) = ([0.0; 4], [0.0; 4], [0.0; 4]);
@@ -276,7 +285,7 @@ fn turns(frame: &Frame<'_>, row: &mut Vec<f64>) {
             (sum, size) = (sum + a / to_f64(k), size + a.abs() / to_f64(k));
             let around = &angles[j.saturating_sub(k)..(j + k + 1).min(angles.len())];
             let sharpest = a.abs() > CORNER && around.iter().all(|b| b.abs() <= a.abs() + ROUNDING);
-            // Of equals side by side, one.
+            // On a plateau keep the first.
             if !sharpest || (j > 0 && (angles[j - 1].abs() - a.abs()).abs() <= ROUNDING) {
                 continue;
             }
@@ -304,7 +313,7 @@ fn turns(frame: &Frame<'_>, row: &mut Vec<f64>) {
     row.extend([level, upright, most[0], most[1]].map(log));
 }
 
-/// How often a stroke turns back along an axis, by more than a twentieth of the drawing.
+/// Counts how often a stroke turns back along an axis, by more than a twentieth of the drawing.
 fn reversals(s: &InkStroke, long: f64, of: impl Fn(DVec2) -> f64) -> f64 {
     let least = TURNS_BACK * long;
     let (mut low, mut high) = (of(s.points[0]), of(s.points[0]));
@@ -328,7 +337,7 @@ fn reversals(s: &InkStroke, long: f64, of: impl Fn(DVec2) -> f64) -> f64 {
     count
 }
 
-/// Rings round the middle of the whole, and round the middle of what lies high; sectors from below to above.
+/// Measures rings round the middle of the whole, and round the middle of the upper part; sectors from below to above.
 fn rings(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
     let around = |centre: DVec2, from: f64, n: usize| -> (Vec<f64>, Vec<f64>) {
         let (mut ink, mut outward) = (vec![0.0; n], vec![0.0; n]);
@@ -364,7 +373,7 @@ fn rings(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
     row.extend(outward);
 }
 
-/// The outline of all, filled.
+/// Measures the filled outline of the whole.
 fn silhouette(frame: &Frame<'_>, (all, hull): (&[DVec2], &[DVec2]), fine: &Grid, row: &mut Vec<f64>) {
     let hull_area = if hull.len() > 2 { signed_area(hull) } else { 0.0 };
     let (filled, rim, inked) = fine.areas();
@@ -388,7 +397,7 @@ fn silhouette(frame: &Frame<'_>, (all, hull): (&[DVec2], &[DVec2]), fine: &Grid,
     row.extend(reach);
 }
 
-/// What stands below: a line, two lines side by side, something narrow under something wide.
+/// Measures the part that stands below: a line, two lines side by side, something narrow under something wide.
 fn foot(fine: &Grid) -> [f64; 8] {
     let rows = fine.rows();
     let n = rows.len();
@@ -472,7 +481,7 @@ fn strokes(frame: &Frame<'_>, row: &mut Vec<f64>) {
     row.extend([share(lines[4], line_count), share(line_length, line_count)]);
 }
 
-/// How ends meet other strokes: at an end, in the middle, not at all.
+/// Measures how ends meet other strokes: at an end, in the middle, not at all.
 fn ends(frame: &Frame<'_>, fine: &Grid, row: &mut Vec<f64>) {
     let near = MEETS * frame.long;
     let at_end = EndGrid::new(frame, near);
@@ -533,7 +542,7 @@ impl EndGrid {
     }
 }
 
-/// How long and how slanted the cloud of ink is, whichever way it lies.
+/// Measures how long and how slanted the cloud of ink is, in any direction.
 fn tilt(frame: &Frame<'_>) -> [f64; 2] {
     let mean = frame.points().fold(DVec2::ZERO, |m, (p, w)| m + p * w);
     let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! What lies near a point, in constant time whatever was drawn.
+//! Finds points and lines near a point, in constant time for any drawing.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,11 @@ const CELL_CAP: usize = 48;
 pub(crate) struct Entry {
     pub(crate) point: DVec2,
     pub(crate) owner: usize,
-    /// Arc length of the point on its owner.
+    /// Arc length from the start of its owner.
     pub(crate) at: f64,
 }
 
-/// Most cells along a side that are rows of a table; what is finer, or beyond the sheet, is looked up by its key.
+/// Most cells along a side that are rows of a table; finer cells, or cells beyond the sheet, are looked up by key.
 const MOST_CELLS: i64 = 512;
 
 /// A grid of points that belong to lines. Crowded cells keep their first entries only: index the most important
@@ -29,9 +29,9 @@ pub(crate) struct Near {
     cell: f64,
     /// Cells along a side of the sheet, 0 to 1.
     side: i64,
-    /// Of each cell of the sheet, column by column, one more than the row of its list; 0 of an empty one.
+    /// For each cell of the sheet, column by column, one more than the row of its list; 0 for an empty cell.
     sheet: Vec<u32>,
-    /// The same of what lies beyond the sheet.
+    /// The same for cells beyond the sheet.
     beyond: BTreeMap<(i64, i64), u32>,
     lists: Vec<Vec<Entry>>,
 }
@@ -50,7 +50,7 @@ impl Near {
         key
     }
 
-    /// The row of a cell in the table of the sheet, if it lies there.
+    /// Returns the row of a cell in the table of the sheet, if it lies there.
     fn row(&self, (x, y): (i64, i64)) -> Option<usize> {
         let on = (0..self.side).contains(&x) && (0..self.side).contains(&y);
         usize::try_from(x * self.side + y).ok().filter(|_| on)
@@ -94,8 +94,8 @@ impl Near {
         }
     }
 
-    /// Calls `f` with every entry within `r` of `p` and its distance, in a fixed order: that of the cells, column by column.
-    /// `r` of a few cells.
+    /// Calls `f` with every entry within `r` of `p` and its distance, in a fixed order: that of the cells, column by
+    /// column. `r` of a few cells.
     pub(crate) fn visit(&self, p: DVec2, r: f64, mut f: impl FnMut(&Entry, f64)) {
         let (lo, hi) = (self.key(p - DVec2::splat(r)), self.key(p + DVec2::splat(r)));
         let mut look = |name: u32| {
@@ -106,7 +106,7 @@ impl Near {
                 }
             }
         };
-        // Of a column, what lies below the sheet, on it and above it.
+        // In a column: cells below the sheet, on it and above it.
         let beyond = |x: i64, from: i64, to: i64, look: &mut dyn FnMut(u32)| {
             if from <= to && !self.beyond.is_empty() {
                 self.beyond.range((x, from)..=(x, to)).for_each(|(_, name)| look(*name));
@@ -128,7 +128,7 @@ impl Near {
         }
     }
 
-    /// The entry nearest to `p` within `r` that `want` accepts.
+    /// Returns the entry nearest to `p` within `r` that `want` accepts.
     pub(crate) fn nearest(&self, p: DVec2, r: f64, want: impl Fn(usize) -> bool) -> Option<(Entry, f64)> {
         self.outwards(r, |r| {
             let mut best: Option<(Entry, f64)> = None;
@@ -141,8 +141,8 @@ impl Near {
         })
     }
 
-    /// What `find` finds within a small radius, or else within one twice as large, and so on up to `r`. The same as what it
-    /// finds within `r` at once, if that is the nearest of something.
+    /// Returns what `find` finds within a small radius, or else within one twice as large, and so on up to `r`. The
+    /// result is the same as that of `find(r)` if `find` returns the nearest of something.
     pub(crate) fn outwards<T>(&self, r: f64, find: impl Fn(f64) -> Option<T>) -> Option<T> {
         let mut within = 0.5 * self.cell;
         while within < r {
@@ -164,10 +164,11 @@ pub(crate) struct Boxes {
     bounds: Vec<(DVec2, DVec2)>,
 }
 
-/// Cells of a twenty-fifth of the drawing: a petal covers a few of them. Ink lies within 0 and 1; what was extended beyond is
-/// looked for in the cells from -1 to 2.
+/// Side of a cell: a twenty-fifth of the drawing, so that a petal covers a few cells.
 const BOX_CELL: f64 = 0.04;
+/// The lowest cell along a side. Ink lies within 0 and 1; extended lines are looked up in the cells from -1 to 2.
 const FIRST_BOX: i64 = -25;
+/// Cells along a side.
 const BOXES: i64 = 76;
 
 impl Boxes {
@@ -203,7 +204,7 @@ impl Boxes {
         usize::try_from(x * BOXES + y).unwrap_or(0)
     }
 
-    /// Polygons whose box holds `p`, by row.
+    /// Returns the rows of polygons whose box contains `p`.
     pub(crate) fn around(&self, p: DVec2) -> impl Iterator<Item = usize> {
         let within = move |&&b: &&usize| {
             let (lo, hi) = self.bounds[b];
@@ -213,7 +214,7 @@ impl Boxes {
     }
 }
 
-/// How far apart a stroke's ends are, as a share of its length.
+/// Returns the distance between a stroke's ends, as a share of its length.
 pub(crate) fn openness(s: &InkStroke) -> f64 {
     s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }

@@ -1,10 +1,9 @@
-//! Whether a drawing shows a plant at all: `its numbers, what the model of kinds and a glance make of them -> the chance that it
-//! shows none`.
+//! The chance that a drawing shows no plant: `its numbers, results of the model of kinds and of a glance -> chance`.
 //!
-//! A logistic regression. The model of kinds learnt what is no plant from made drawings, and its share of that says little of
-//! what people draw; but its units and those of the glance, which learnt 320 words of other things, see what tells them apart.
-//! The coefficients are data (`data/no_plants.csv`), learnt by `cargo xtask train-no-plants`; `docs/strokes.md` says how, and what
-//! it is worth.
+//! A logistic regression. The model of kinds learnt from made drawings what is no plant, and its share of no plant
+//! says little about drawings by people; but its units and those of the glance, which learnt 320 words of other
+//! things, separate the two. The coefficients are data (`data/no_plants.csv`), learnt by `cargo xtask
+//! train-no-plants`; `docs/strokes.md` describes how, and how good it is.
 
 use std::sync::OnceLock;
 
@@ -13,14 +12,16 @@ use base::ops;
 use crate::glance::{self, Glance};
 use crate::kinds;
 
-/// What a drawing that shows no plant is told by.
+/// Limits by which a drawing counts as showing no plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoPlantLimits {
-    /// A drawing shows no plant where the chance of that is larger: 2 % of plants by people are above (`docs/strokes.md`).
+    /// A drawing shows no plant if the chance of that is larger: 2 % of plants by people are above
+    /// (`docs/strokes.md`).
     pub chance_most: f64,
-    /// The model of kinds knows by itself what has a larger share of no plant: none of 1,623 plants by people is above.
+    /// A drawing shows no plant if the model of kinds alone gives a larger share to that: none of 1,623 plants by
+    /// people is above.
     pub share_most: f64,
-    /// A number counts at most so many spreads from its mean, so that no single one decides.
+    /// Greatest distance from its mean, in spreads, at which a number counts, so that no single one decides.
     pub spreads_most: f64,
 }
 
@@ -31,25 +32,25 @@ pub const NO_PLANT_LIMITS: NoPlantLimits =
 /// Names of the numbers of [`row`] that neither the model of kinds nor the glance has.
 const OWN: [&str; 2] = ["strokes", "sureness"];
 
-/// Names of the numbers, in their order.
+/// Returns the names of the numbers, in their order.
 pub fn no_plant_feature_names() -> Vec<String> {
     let own = OWN.iter().map(|n| (*n).to_owned());
     kinds::mark_names().into_iter().chain(glance::mark_names()).chain(own).collect()
 }
 
-/// The numbers of a drawing: of what the model of kinds makes of its row, of the glance, and how many strokes it has and how sure
-/// the classifier is of them.
+/// Returns the numbers of a drawing: results of the model of kinds for its row and of the glance, the number of its
+/// strokes, and how sure the classifier is of them.
 pub(crate) fn row(kinds_row: &[f64], glance: &Glance, strokes: usize, sureness: f64) -> Vec<f64> {
     let own = [ops::ln(strokes.max(1) as f64), sureness];
     kinds::marks(kinds_row).into_iter().chain(glance.marks()).chain(own).collect()
 }
 
-/// The chance that a drawing with such a [`row`] shows no plant: 0 to 1, and 0 where nothing was learnt.
+/// Returns the chance that a drawing with such a [`row`] shows no plant: 0 to 1, and 0 if nothing was learnt.
 pub(crate) fn chance(row: &[f64]) -> f64 {
     trained().map_or(0.0, |model| model.chance(row))
 }
 
-/// A number: its mean, its spread, what a spread of it counts.
+/// A number of the regression: its mean, its spread, its coefficient per spread.
 struct Term {
     mean: f64,
     spread: f64,
@@ -61,7 +62,7 @@ struct Model {
     terms: Vec<Term>,
 }
 
-/// The row of what counts in every drawing.
+/// Name of the constant term.
 const CONSTANT: &str = "one";
 
 impl Model {

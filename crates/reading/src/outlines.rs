@@ -20,50 +20,57 @@ use crate::{Attachment, Kind, OrganWord, READ_AS, RegionKind};
 const MOST_BODIES: usize = 100;
 /// A body's outline is thinner than this share of its length: a line.
 const THIN: f64 = 0.008;
-/// The base of an arm lies this near to the body.
+/// The base of an arm is this near to the body.
 const ARM: f64 = 0.03;
 /// One side of it may end this far off.
 const OVERSHOT: f64 = 0.12;
-/// The sides of a trunk drawn in one go with its crown: the crown closes where its stroke comes nearer to itself than this
-/// share of the gap between its ends, and a side is straighter than that share of its length.
+/// The crown of a stroke drawn in one go with sides of a trunk closes where the stroke comes nearer to itself than
+/// this share of the gap between its ends.
 const SIDE_NEAR: f64 = 0.75;
+/// A side of a trunk in such a stroke is straighter than this: its chord over its length.
 const SIDE_STRAIGHT: f64 = 0.75;
-/// The other side of a trunk is at least this share as long.
+/// The second side of a trunk is at least this share of the first one long.
 const SIDES_ALIKE: f64 = 0.5;
-/// What ends within this of the foot of a crown ends at it: four steps of the pen (*sampled*). A trunk is wider.
+/// A line that ends within this distance of the foot of a crown ends at it: four steps of the pen (*sampled*). A
+/// trunk is wider.
 const FOOT: f64 = 0.02;
-/// What hangs below a crown by more than this is its trunk.
+/// A part that hangs below a crown by more than this is its trunk.
 const HANGS: f64 = 0.08;
-/// Half a body: one gap of more than this share of its height, from its foot to a top that is higher by more than that and lies
-/// this far to the side, all shares of its height.
+/// The only gap of half a body is wider than this share of the body's height.
 const GAP: f64 = 0.1;
+/// The top of that gap lies higher than its foot by more than this share of the height.
 const LEFT_OFF: f64 = 0.3;
+/// The foot of that gap lies in this lowest share of the height.
 const AT_FOOT: f64 = 0.08;
+/// The top of that gap lies this far to the side of its foot, as a share of the height.
 const SLANTS: f64 = 0.04;
 /// An axis that runs this deep into a contour, as a share of its size, bears it.
 const DEEP: f64 = 0.3;
-/// A trunk that goes on into a crown ends below this share of its height over its heart, and this near to it, as a share of its
-/// size and at least.
+/// A trunk that goes on into a crown ends below this share of the crown's height above its heart.
 const ABOVE_HEART: f64 = 0.25;
+/// Such a trunk ends this near to the heart, as a share of the crown's size.
 const LED: f64 = 0.35;
+/// Least value of that distance.
 const LED_LEAST: f64 = 0.05;
-/// A crown nearer to the ground than this share of its height stands on it; one higher than that needs a trunk of its own.
+/// A crown nearer to the ground than this share of its own height stands on it.
 const ON_GROUND: f64 = 0.2;
+/// A crown higher above the ground than this share of the height needs a trunk of its own.
 const NEEDS_TRUNK: f64 = 0.35;
 /// A bush meets the ground with this lowest share of its height.
 const MEETS_GROUND: f64 = 0.25;
-/// A line is of a crown's outline if it begins and ends in the crown, and so much of it runs outside of it or within this of its
-/// outline.
+/// A line belongs to a crown's outline if it begins and ends in the crown and more than this share of it runs outside
+/// or along the outline.
 const OF_IT: f64 = 0.5;
+/// A point nearer to the outline than this lies along it.
 const RIM: f64 = 0.025;
-/// Shading is a trunk if it is so many times as tall as wide.
+/// Shading is a trunk if its height is more than this factor of its width.
 const SHADED: f64 = 1.2;
 /// A thorn is shorter than this share of the body's height.
 const THORN: f64 = 0.3;
 
-/// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or what hangs below the crown.
+/// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or a part that hangs below the crown.
 pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
-    // Where the trunk has two lines of its own, what hangs below is a second round of the crown.
+    // If the trunk has two lines of its own, a part that hangs below is a second round of the crown.
     if draft.trunk || draft.is_cut {
         return;
     }
@@ -95,7 +102,8 @@ pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
     other_side(draft);
 }
 
-/// The other side of a trunk of which one was drawn in a stroke with the crown: a line beside it, about as long.
+/// Finds the second side of a trunk whose first was drawn in a stroke with the crown: a line next to it, about as
+/// long.
 fn other_side(draft: &mut Draft<'_>) {
     let [(crown, side)] = &draft.sides[..] else { return };
     let (a, b) = (side[0], side[side.len() - 1]);
@@ -118,7 +126,7 @@ fn other_side(draft: &mut Draft<'_>) {
     }
 }
 
-/// Reads trunk outlines into axes with half widths; what is no body becomes a line of the draft.
+/// Reads trunk outlines into axes with half widths; an outline that is no body becomes a line of the draft.
 pub(crate) fn bodies(draft: &mut Draft<'_>) {
     let sides = std::mem::take(&mut draft.sides);
     let ink = draft.ink;
@@ -185,7 +193,7 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
     }
 }
 
-/// A line as an outline that is open above, narrower there.
+/// Turns a line into an outline that is open above, and narrower there.
 fn thick(line: &[DVec2], parts: Vec<usize>) -> Ring {
     let up: Vec<DVec2> =
         if line[0].y < line[line.len() - 1].y { line.to_vec() } else { line.iter().rev().copied().collect() };
@@ -195,7 +203,7 @@ fn thick(line: &[DVec2], parts: Vec<usize>) -> Ring {
     Ring { points, parts, gaps: vec![n - 1] }
 }
 
-/// An outline that was left off far above its foot goes straight down to it: half a body is no slanting one.
+/// Closes an outline that was left off far above its foot straight down to it: half a body does not slant.
 fn plumb(ring: &mut Ring) {
     let Some((lo, hi)) = bounds(&ring.points) else { return };
     let wide = |&g: &usize| {
@@ -212,12 +220,12 @@ fn plumb(ring: &mut Ring) {
         return;
     }
     ring.points.insert(gap + 1, DVec2::new(top.x, foot.y));
-    // What stays open is the foot.
+    // The part that stays open is the foot.
     ring.gaps[at] += usize::from(a.y > b.y);
     ring.gaps[at + 1..].iter_mut().for_each(|g| *g += 1);
 }
 
-/// Where an arm whose opening lies on a body stands: the bearer, and the middle of the opening.
+/// Returns where an arm whose opening lies on a body stands: the bearer, and the middle of the opening.
 fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DVec2)> {
     if !later {
         return None;
@@ -291,7 +299,8 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
     }
 }
 
-/// Lines that leave a crown and come back, or run along its outline, are of that: no branches, unless the user said so.
+/// Gives lines that leave a crown and come back, or run along its outline, to that crown: they are no branches,
+/// unless the user marked them as such.
 pub(crate) fn lobes(draft: &mut Draft<'_>) {
     let lines = std::mem::take(&mut draft.lines);
     let mut regions = std::mem::take(&mut draft.regions);
@@ -328,7 +337,7 @@ fn is_lobe(points: &[DVec2], region: &RegionDraft) -> bool {
             > OF_IT * points.len() as f64
 }
 
-/// The outline around several that overlap, as it is seen from their middle.
+/// Returns the outline around several overlapping rings, as it is seen from their middle.
 fn union(rings: &[Vec<DVec2>]) -> Option<Vec<DVec2>> {
     const RAYS: u32 = 180;
     let centre = centroid(&convex_hull(&rings.concat()));
@@ -353,7 +362,7 @@ fn union(rings: &[Vec<DVec2>]) -> Option<Vec<DVec2>> {
     geom::simple_outline(&outline)
 }
 
-/// Finds, leads or adds the axes that run into each region; what comes back is one list of rows per region.
+/// Finds, leads or adds the axes that run into each region; returns one list of rows for each region.
 pub(crate) fn bear_regions(draft: &mut Draft<'_>) -> Vec<Vec<usize>> {
     let regions = std::mem::take(&mut draft.regions);
     let drawn = draft.forest.axes.len();
@@ -380,7 +389,7 @@ pub(crate) fn bear_regions(draft: &mut Draft<'_>) -> Vec<Vec<usize>> {
     all
 }
 
-/// Rows with a part inside the region, from the index.
+/// Returns the rows with a part inside the region, from the index.
 fn inside_rows(
     draft: &Draft<'_>,
     region: &RegionDraft,
@@ -398,7 +407,7 @@ fn inside_rows(
     rows
 }
 
-/// Length of an axis inside a region, as a share of the region's size.
+/// Returns the length of an axis inside a region, as a share of the region's size.
 fn depth_inside(forest: &Forest, row: usize, region: &RegionDraft) -> f64 {
     let (lo, hi) = region.bounds;
     let inside: f64 = forest.axes[row]
@@ -463,7 +472,8 @@ fn lead_into(draft: &mut Draft<'_>, region: &RegionDraft, tops: &[DVec2], floor:
     stems_below(draft, region, floor)
 }
 
-/// A crown without a trunk: one over the ground gets a trunk, one on the ground (a bush) several stems.
+/// Adds stems to a crown without a trunk: a trunk if it is above the ground, several stems if it is on the ground (a
+/// bush).
 fn stems_below(draft: &mut Draft<'_>, region: &RegionDraft, floor: f64) -> Vec<usize> {
     let (lo, hi) = region.bounds;
     let (width, height) = (hi.x - lo.x, hi.y - lo.y);
@@ -495,7 +505,7 @@ fn stems_below(draft: &mut Draft<'_>, region: &RegionDraft, floor: f64) -> Vec<u
     rows
 }
 
-/// Shading below a crown that has no trunk is its trunk.
+/// Turns shading below a crown without a trunk into its trunk.
 pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
     if !draft.bodies.is_empty() || draft.regions.is_empty() || !draft.of_class(StrokeClass::Axis).is_empty() {
         return;
@@ -520,7 +530,7 @@ pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
     }
 }
 
-/// Short lines on the outline of a cactus are its thorns: root and tip, with what bears them.
+/// Takes short lines on the outline of a cactus for its thorns: root and tip, with their bearers.
 pub(crate) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)> {
     if draft.bodies.is_empty() || !draft.regions.is_empty() || draft.open_top || draft.is_tree() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Which of the blades that overlap lies in front.
+//! Finds which of overlapping blades lies in front.
 //!
 //! `blades + their strokes -> the layer of each`
 
@@ -8,13 +8,13 @@ use ink::Ink;
 
 use crate::BladeReading;
 
-/// Of more blades nobody drew one over the other on purpose.
+/// Most blades that are compared: with more, nobody drew one over another on purpose.
 const MOST: usize = 600;
 /// Two overlap if more than this share of an outline lies within the other: neighbours meet at their feet.
 const OVER: f64 = 0.08;
 /// An outline is open if its ends are farther apart than this share of its length.
 const OPEN: f64 = 0.06;
-/// An end lies on another outline if it is nearer than this share of that one's size.
+/// An end lies on another outline if it is nearer than this share of that outline's size.
 const ON: f64 = 0.06;
 /// Places of an outline that are looked at.
 const PLACES: usize = 24;
@@ -28,10 +28,12 @@ struct Drawn<'a> {
     ends: Option<[DVec2; 2]>,
 }
 
-/// The layer of each blade, -1 behind all that it overlaps to 1 in front; `None` of one that overlaps no other.
+/// Returns the layer of each blade, -1 behind all that it overlaps to 1 in front; `None` for one that overlaps no
+/// other.
 ///
-/// A line that stops at both ends on the outline of another blade goes on behind that one: it is hidden there (a T-junction:
-/// Guzman 1968). Where both outlines are whole, what was drawn later was drawn over the other. Cost: pairs that are near.
+/// A line that stops at both ends on the outline of another blade goes on behind that one: it is hidden there (a
+/// T-junction: Guzman 1968). If both outlines are whole, the later one was drawn over the earlier one. Cost: pairs
+/// that are near.
 pub(crate) fn layers(blades: &[BladeReading], ink: &Ink) -> Vec<Option<f64>> {
     if blades.len() < 2 || blades.len() > MOST {
         return vec![None; blades.len()];
@@ -48,7 +50,7 @@ pub(crate) fn layers(blades: &[BladeReading], ink: &Ink) -> Vec<Option<f64>> {
             Drawn { blade, low, high, ends }
         })
         .collect();
-    // Behind and in front, of each pair.
+    // For each pair, the blade behind and the blade in front.
     let mut over: Vec<(usize, usize)> = Vec::new();
     for (i, a) in drawn.iter().enumerate() {
         for (j, b) in drawn.iter().enumerate().skip(i + 1) {
@@ -67,7 +69,7 @@ pub(crate) fn layers(blades: &[BladeReading], ink: &Ink) -> Vec<Option<f64>> {
     levels(blades.len(), &over)
 }
 
-/// The share of an outline that lies within another one.
+/// Returns the share of an outline that lies within another one.
 fn within(inner: &Drawn<'_>, outer: &Drawn<'_>) -> f64 {
     let outline = &inner.blade.outline;
     let step = (outline.len() / PLACES).max(1);
@@ -83,8 +85,8 @@ fn stops_at(one: &Drawn<'_>, other: &Drawn<'_>) -> bool {
     one.ends.is_some_and(|ends| ends.iter().all(on))
 }
 
-/// From pairs of what is behind and what is in front to levels, evenly from -1 to 1 among those that hang together. Where
-/// they go round in a circle, as petals may, the circle is cut.
+/// Turns pairs (behind, in front) into levels, evenly from -1 to 1 among connected blades. Cycles, which petals may
+/// form, are cut.
 fn levels(count: usize, over: &[(usize, usize)]) -> Vec<Option<f64>> {
     let mut level = vec![0_usize; count];
     let mut group: Vec<usize> = (0..count).collect();
@@ -140,7 +142,7 @@ mod tests {
             .collect()
     }
 
-    fn of(lines: &[Vec<DVec2>]) -> Vec<Option<f64>> {
+    fn overlaps_of_lines(lines: &[Vec<DVec2>]) -> Vec<Option<f64>> {
         let stroke = |line: &Vec<DVec2>| Stroke {
             samples: line.iter().map(|p| InkSample::from(*p)).collect(),
             ..Stroke::default()
@@ -165,11 +167,11 @@ mod tests {
     #[test]
     fn what_was_drawn_over_what_lies_in_front() {
         assert_eq!(
-            of(&[leaf(0.0, false), leaf(1.2, false), leaf(2.4, false)]),
+            overlaps_of_lines(&[leaf(0.0, false), leaf(1.2, false), leaf(2.4, false)]),
             [Some(-1.0), Some(0.0), Some(1.0)]
         );
         assert_eq!(
-            of(&[leaf(0.0, false), leaf(2.2, false), leaf(4.4, false)]),
+            overlaps_of_lines(&[leaf(0.0, false), leaf(2.2, false), leaf(4.4, false)]),
             [None; 3],
             "they do not overlap"
         );
@@ -178,8 +180,8 @@ mod tests {
     #[test]
     fn a_line_that_stops_at_a_leaf_goes_on_behind_it() {
         // Both orders of drawing.
-        assert_eq!(of(&[leaf(0.0, false), leaf(0.9, true)]), [Some(1.0), Some(-1.0)]);
-        assert_eq!(of(&[leaf(0.9, true), leaf(0.0, false)]), [Some(-1.0), Some(1.0)]);
+        assert_eq!(overlaps_of_lines(&[leaf(0.0, false), leaf(0.9, true)]), [Some(1.0), Some(-1.0)]);
+        assert_eq!(overlaps_of_lines(&[leaf(0.9, true), leaf(0.0, false)]), [Some(-1.0), Some(1.0)]);
     }
 
     #[test]

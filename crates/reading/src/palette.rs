@@ -1,11 +1,11 @@
-//! What the colours of a drawing say: `strokes -> what is green, what may be wood`.
+//! The meaning of a drawing's colours: `strokes -> green strokes, strokes that may be wood`.
 //!
-//! A drawing in one colour tells the colour of the pen. In a painted one, green is no bark and no clay, and a plant without
-//! anything brown, grey or black is a herb.
+//! A drawing in one colour shows only the colour of the pen. In a painted one, green is no bark and no clay, and a
+//! plant without anything brown, grey or black is a herb.
 
 use ink::{Ink, InkStroke};
 
-/// How colours are told apart, and what they say.
+/// Limits between colours, and limits of a herb.
 #[derive(Clone, Debug)]
 struct PaletteLimits {
     /// Colours differ if a channel differs by more than this.
@@ -16,11 +16,13 @@ struct PaletteLimits {
     dark: u8,
     /// The hues of green, degrees: from the olive of dry grass to the blue green of a conifer.
     green: core::ops::Range<f64>,
+    /// The hues of blue, degrees: from cyan to violet. No leaf, wood or pot has them.
+    blue: core::ops::Range<f64>,
     /// A herb is green over at least this share of its lines.
     herb_green: f64,
-    /// It has less than this share that could be wood.
+    /// A herb has less than this share of lines that could be wood.
     herb_wood: f64,
-    /// A shorter line, in diagonals of the drawing, is no wood: a grain, a seed.
+    /// A shorter line, in diagonals of the drawing, is not wood but a grain or a seed.
     wood_least: f64,
 }
 
@@ -29,6 +31,7 @@ const LIMITS: PaletteLimits = PaletteLimits {
     grey: 30,
     dark: 60,
     green: 62.0..170.0,
+    blue: 185.0..285.0,
     herb_green: 0.25,
     herb_wood: 0.08,
     wood_least: 0.1,
@@ -69,7 +72,7 @@ pub(crate) fn is_herb(ink: &Ink) -> bool {
     green >= LIMITS.herb_green * whole && wood < LIMITS.herb_wood * whole
 }
 
-/// The hue in degrees, and how far apart the channels are.
+/// Returns the hue in degrees, and the difference between the largest and the smallest channel.
 fn hue(c: [u8; 3]) -> (f64, u8) {
     let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
     let [r, g, b] = c.map(f64::from);
@@ -92,9 +95,20 @@ fn is_green(c: [u8; 3]) -> bool {
     span > LIMITS.grey && c.into_iter().any(|x| x >= LIMITS.dark) && LIMITS.green.contains(&hue)
 }
 
-/// Brown, grey and black; white and bright colours are none of bark.
+/// Whether a drawing is in one blue pen: each colour of it that is not grey is blue, and so is that of an organ which
+/// no plant has in blue. `flowers`: colours of petals; `others`: colours of leaves, fruits, contours and pots.
+pub fn is_in_blue_pen(
+    flowers: impl Iterator<Item = [u8; 3]>,
+    others: impl Iterator<Item = [u8; 3]> + Clone,
+) -> bool {
+    let is_coloured = |c: &[u8; 3]| hue(*c).1 > LIMITS.grey;
+    let is_blue = |c: [u8; 3]| LIMITS.blue.contains(&hue(c).0);
+    flowers.chain(others.clone()).filter(is_coloured).all(is_blue) && others.filter(is_coloured).any(is_blue)
+}
+
+/// Whether a colour may be wood: brown, grey or black; bark is not white or bright.
 fn may_be_wood(c: [u8; 3]) -> bool {
-    /// Bark is no brighter.
+    /// Greatest brightness of bark.
     const BRIGHT: u8 = 205;
     let (hue, span) = hue(c);
     let is_brown = (0.0..LIMITS.green.start).contains(&hue);
@@ -105,6 +119,14 @@ fn may_be_wood(c: [u8; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_drawing_with_blue_leaves_is_in_one_pen() {
+        let [blue, sky, ink, green] = [[32, 90, 200], [143, 191, 250], [20, 20, 20], [60, 150, 40]];
+        assert!(is_in_blue_pen([sky].into_iter(), [blue, ink].into_iter()));
+        assert!(!is_in_blue_pen([sky].into_iter(), [green].into_iter()));
+        assert!(!is_in_blue_pen([sky].into_iter(), [ink].into_iter()));
+    }
 
     #[test]
     fn greens_of_leaves_are_green_and_barks_are_not() {

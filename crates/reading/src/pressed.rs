@@ -5,16 +5,17 @@ use ink::Ink;
 
 use crate::thresholds::STRAIGHT;
 
-/// Pressures that differ by less than this share are those of a pen that measures none.
+/// Pressures that differ by less than this share come from a pen that measures none.
 const ALIKE: f64 = 0.1;
-/// The boldest and the lightest line beside the usual one, by pressure and by speed.
+/// The lightest and the boldest line relative to the usual one, by pressure.
 const PRESSED: (f64, f64) = (0.5, 2.0);
+/// The lightest and the boldest line relative to the usual one, by speed.
 const SLOW: (f64, f64) = (0.8, 1.25);
 /// A line drawn 16 times as fast as usual is half as thick.
 const BY_SPEED: f64 = 0.25;
 
-/// The strokes that were drawn more boldly or more lightly than usual, by their indices, and how much. Nothing where the
-/// drawing does not say.
+/// Returns the indices of the strokes that were drawn more boldly or more lightly than usual, and by what factor.
+/// Nothing if the drawing has no pressure and no speed.
 pub(crate) fn pressed(ink: &Ink) -> Vec<(u32, f64)> {
     let pressures = ink.strokes.iter().filter_map(|s| Some((s.index, s.pressure.filter(|&p| p > 0.0)?)));
     let pressures: Vec<(u32, f64)> = pressures.collect();
@@ -33,7 +34,7 @@ pub(crate) fn pressed(ink: &Ink) -> Vec<(u32, f64)> {
     speeds.iter().map(|&(k, v)| (k, bold(v))).collect()
 }
 
-/// The middle one, where they differ at all.
+/// Returns the median, if the values differ at all.
 fn usual(values: &[(u32, f64)]) -> Option<f64> {
     let mut sorted: Vec<f64> = values.iter().map(|v| v.1).collect();
     base::sort_numbers(&mut sorted);
@@ -49,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    /// Upright lines, each with a pressure and a time in all.
+    /// Upright lines, each with a pressure and a total time.
     fn lines(of: &[(Option<f64>, Option<f64>)]) -> Vec<(u32, f64)> {
         let stroke = |(k, &(pressure, took)): (usize, &(Option<f64>, Option<f64>))| Stroke {
             samples: (0..=10)
@@ -69,7 +70,7 @@ mod tests {
     fn pressure_counts_and_else_speed() {
         let found = lines(&[(Some(0.2), None), (Some(0.4), None), (Some(0.8), None)]);
         assert_eq!(found, [(0, 0.5), (1, 1.0), (2, 2.0)]);
-        // A mouse presses alike: then slow lines are bold.
+        // A mouse always has the same pressure: then slow lines are bold.
         let found = lines(&[(Some(0.5), Some(900.0)), (Some(0.5), Some(300.0)), (Some(0.5), Some(100.0))]);
         assert!(found[0].1 > 1.0 && found[1].1 == 1.0 && found[2].1 < 1.0, "{found:?}");
         assert_eq!(lines(&[(None, None), (None, None)]), []);

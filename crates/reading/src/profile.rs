@@ -1,7 +1,7 @@
 //! Flowers in profile: petals that overlap one another at the end of a stem.
 //!
-//! Their roots are hidden behind the petals in front, so that no cluster of roots shows (He and Cheng 2021, section 4.1). But
-//! leaves seldom cover one another at the tip of a stem, and petals of a cup always do.
+//! Their roots are hidden behind the petals in front, so that no cluster of roots shows (He and Cheng 2021, section
+//! 4.1). But leaves seldom cover one another at the tip of a stem, and petals of a cup always do.
 
 use glam::DVec2;
 
@@ -12,7 +12,7 @@ use crate::draft::{Draft, FlowerDraft};
 use crate::structure::{slenderness, widest_gap};
 use crate::thresholds::FEWEST_PETALS;
 
-/// When blades at the end of a stem are a flower in profile.
+/// Limits of blades at the end of a stem that are a flower in profile.
 struct ProfileLimits {
     /// Petals come this near to the end of their stem, as a share of their size,
     at_tip: f64,
@@ -20,25 +20,28 @@ struct ProfileLimits {
     beyond: f64,
     /// and leave more than this angle free, radians, where the stem comes from:
     behind: f64,
-    /// few of them more than this, as the leaflets of a leaf of three spread as far as the petals of a wide cup;
+    /// fewer of them leave more than this, because the leaflets of a leaf of three spread as far as the petals of a
+    /// wide cup;
     behind_few: f64,
     few: usize,
     /// They are wider than this share of their length: narrow leaves cover one another at the tips of grasses.
     slenderness: f64,
-    /// A stem that leads up ends higher than this share of the height of all blades: what stands lower is a tuft of leaves.
+    /// A stem that leads up ends higher than this share of the height of all blades: lower blades are a tuft of
+    /// leaves.
     lowest: f64,
-    /// The stem is longer than this share of the largest, and ends at nothing else within this distance.
+    /// The stem is longer than this share of the largest blade,
     stem: f64,
+    /// and ends at nothing else within this distance.
     free: f64,
-    /// So many of them at least go on behind others.
+    /// At least this many of them go on behind others.
     fewest_hidden: usize,
-    /// Petals that are farther back touch one in front of them within this share of its size, and lie within so many times the
-    /// size of the largest of the end of the stem.
+    /// Petals that are farther back touch one in front of them within this share of its size.
     touching: f64,
+    /// Such petals lie within this factor of the largest petal's size from the end of the stem.
     reach: f64,
-    /// The way of a stem at its end is that of its last part of this length, ink units.
+    /// The direction of a stem at its end is that of its last part of this length, ink units.
     heading: f64,
-    /// Drawings of more blades or lines are no single flowers: nothing is looked for.
+    /// With more blades or lines a drawing is no single flower: nothing is looked for.
     most_blades: usize,
     most_lines: usize,
     /// Points of an outline that are compared with another one.
@@ -64,37 +67,38 @@ const LIMITS: ProfileLimits = ProfileLimits {
     places: 32,
 };
 
-/// When an outline is a bell or a tube: a corolla of petals that are grown together, from the side.
+/// Limits of an outline that is a bell or a tube: a corolla of united petals in profile.
 struct BellLimits {
-    /// Where a leaf narrows to its tip a bell is open: at this share of its length it has at least that share of its greatest
-    /// width (an ellipse has 0.6 there),
+    /// A bell is open where a leaf narrows to its tip: at the first share of its length it has at least the second
+    /// share of its greatest width (an ellipse has 0.6 there),
     mouth: [f64; 2],
     /// and it narrows to its base less than a fan does.
     base: [f64; 2],
-    /// It is at least so many times as long as wide.
+    /// Its length is at least this factor of its width.
     long: f64,
-    /// So many that are alike are flowers, and this share of all that are alike has the form.
+    /// At least this many similar outlines are flowers,
     fewest: usize,
+    /// if more than this share of all similar outlines has the form.
     share: f64,
-    /// Outlines are alike if neither has more than this many times the length of the other.
+    /// Outlines are alike if neither is longer than the other by more than this factor.
     alike: f64,
 }
 
 const BELLS: BellLimits =
     BellLimits { mouth: [0.9, 0.75], base: [0.25, 0.4], long: 0.9, fewest: 3, share: 0.6, alike: 1.8 };
 
-/// The end of a stem and the way on which it ends.
+/// The end of a stem and the direction in which it ends.
 struct Tip {
     at: DVec2,
     way: DVec2,
-    /// The line of the draft, none of a stem that was drawn as an outline.
+    /// The line of the draft; `None` for a stem that was drawn as an outline.
     line: Option<usize>,
-    /// How long the stem is.
+    /// Length of the stem.
     length: f64,
 }
 
-/// Gathers petals in profile that no flower has yet; gives each its root. Cost: ends of lines times blades, of at most some
-/// hundred.
+/// Gathers petals in profile that belong to no flower yet; gives each its root. Cost: ends of lines times blades, at
+/// most some hundred blades.
 pub(crate) fn gather(
     draft: &mut Draft<'_>,
     flowers: &mut Vec<FlowerDraft>,
@@ -141,7 +145,7 @@ fn is_flower(draft: &Draft<'_>, tip: &Tip, petals: &[usize]) -> bool {
         && is_free(draft, tip, largest)
 }
 
-/// Whether the end of a stem that leads up is where the plant begins.
+/// Whether the end of a stem that leads up lies where the plant begins.
 fn is_at_ground(draft: &Draft<'_>, tip: &Tip) -> bool {
     let heights = || draft.blades.iter().flat_map(|b| &b.outline).map(|p| p.y);
     let (low, high) = heights().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
@@ -155,7 +159,8 @@ fn is_free(draft: &Draft<'_>, tip: &Tip, largest: f64) -> bool {
     !stems.any(|(_, l)| geom::distance_to_polyline(&l.points, tip.at).is_some_and(|d| d < LIMITS.free))
 }
 
-/// Both ends of all lines, and the tops of outlined stems: which of them bears a flower shows by what lies beyond it.
+/// Returns both ends of all lines, and the tops of outlined stems: the blades beyond an end show whether it bears a
+/// flower.
 fn tips(draft: &Draft<'_>) -> Vec<Tip> {
     let tip = |points: &[DVec2], line: Option<usize>, is_last: bool| {
         let length = geom::polyline_length(points);
@@ -172,7 +177,7 @@ fn tips(draft: &Draft<'_>) -> Vec<Tip> {
     of_lines.chain(of_bodies).flatten().collect()
 }
 
-/// Free blades at the end of a stem and beyond it, and those behind them.
+/// Returns free blades at the end of a stem and beyond it, and those behind them.
 fn petals_at(draft: &Draft<'_>, tip: &Tip, taken: &[bool]) -> Vec<usize> {
     let is_beyond = |b: &Sheetlet| (b.middle - tip.at).dot(tip.way) > LIMITS.beyond * b.size;
     let mut petals: Vec<usize> = (0..draft.blades.len())
@@ -206,7 +211,7 @@ fn petals_at(draft: &Draft<'_>, tip: &Tip, taken: &[bool]) -> Vec<usize> {
     petals
 }
 
-/// Makes a flower of each outline that is a bell, where several are alike. `roots`: where blades are attached.
+/// Makes a flower of each outline that is a bell, if several are alike. `roots`: where blades are attached.
 pub(crate) fn bells(draft: &Draft<'_>, flowers: &mut Vec<FlowerDraft>, roots: &[DVec2], taken: &[bool]) {
     if draft.blades.len() > LIMITS.most_blades {
         return;

@@ -1,4 +1,5 @@
-//! A drawing as a picture of square cells, and what can be found in one: `lines -> cells -> pieces and their outlines`.
+//! A drawing as a picture of square cells, and shapes in such a picture: `lines -> cells -> pieces and their
+//! outlines`.
 
 use geom::bounds;
 use glam::DVec2;
@@ -14,15 +15,16 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// The size of a cell where so many lie along the longer side of the box of the lines; `None` for lines without an extent.
+    /// Returns the size of a cell if this number of cells lies along the longer side of the box of the lines; `None`
+    /// for lines without an extent.
     pub(crate) fn size_for(lines: &[&[DVec2]], along: usize) -> Option<f64> {
         let (lo, hi) = bounds_of(lines)?;
         let size = (hi - lo).max_element() / along as f64;
         (size.is_finite() && size > 0.0).then_some(size)
     }
 
-    /// `along`: cells of the longer side of the box of the lines; `margin`: cells round that box. `None` for lines without an
-    /// extent.
+    /// `along`: cells of the longer side of the box of the lines; `margin`: cells round that box. `None` for lines
+    /// without an extent.
     pub(crate) fn new(lines: &[&[DVec2]], along: usize, margin: f64) -> Option<Self> {
         let size = Self::size_for(lines, along)?;
         let (lo, hi) = bounds_of(lines)?;
@@ -31,12 +33,12 @@ impl Cells {
         Some(Self { wide: count(hi.x - lo.x), tall: count(hi.y - lo.y), size, corner })
     }
 
-    /// How many there are.
+    /// Returns the number of cells.
     pub(crate) const fn count(&self) -> usize {
         self.wide * self.tall
     }
 
-    /// The cell in which a point lies; the nearest one of a point beyond.
+    /// Returns the cell that contains a point; for a point beyond, the nearest cell.
     pub(crate) fn place(&self, p: DVec2) -> usize {
         let q = (p - self.corner) / self.size;
         self.row(q.y, self.tall) * self.wide + self.row(q.x, self.wide)
@@ -47,7 +49,7 @@ impl Cells {
         (v.max(0.0) as usize).min(n - 1)
     }
 
-    /// Goes along a line by half a cell at most, however far apart its points are.
+    /// Visits points along a line in steps of half a cell at most, however far apart its own points are.
     pub(crate) fn walk(&self, line: &[DVec2], mut visit: impl FnMut(DVec2)) {
         for pair in line.windows(2) {
             let steps = whole((pair[0].distance(pair[1]) / (0.5 * self.size)).ceil());
@@ -56,7 +58,7 @@ impl Cells {
         }
     }
 
-    /// Steps from a cell to all cells within a ball, and those beside it.
+    /// Returns the cells that the steps of `ball` reach from a cell, within the picture.
     pub(crate) fn around(&self, at: usize, ball: &[(isize, isize)]) -> impl Iterator<Item = usize> {
         let (x, y, wide, tall) = (at % self.wide, at / self.wide, self.wide, self.tall);
         ball.iter().filter_map(move |&(dx, dy)| {
@@ -70,10 +72,10 @@ fn bounds_of(lines: &[&[DVec2]]) -> Option<(DVec2, DVec2)> {
     lines.iter().filter_map(|l| bounds(l)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// Steps to the cells beside, above and below.
+/// Steps to the left and right, upper and lower neighbours of a cell.
 pub(crate) const BESIDE: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// All cells that a ball covers in some cell.
+/// Returns all cells that a ball covers around any of the given cells.
 pub(crate) fn grown(cells: &Cells, from: &[bool], ball: &[(isize, isize)]) -> Vec<bool> {
     let mut all = from.to_vec();
     let rim = |k: usize| cells.around(k, &BESIDE).any(|b| !from[b]);
@@ -83,7 +85,7 @@ pub(crate) fn grown(cells: &Cells, from: &[bool], ball: &[(isize, isize)]) -> Ve
     all
 }
 
-/// The largest piece of cells that hangs together.
+/// Returns the largest connected piece of cells.
 pub(crate) fn largest(cells: &Cells, is: &dyn Fn(usize) -> bool) -> Option<Vec<bool>> {
     let mut seen = vec![false; cells.count()];
     let mut best: (usize, Option<Vec<bool>>) = (0, None);
@@ -105,14 +107,14 @@ fn whole(x: f64) -> usize {
     x.max(0.0) as usize
 }
 
-/// Steps to all cells within a reach, in cells.
+/// Returns the steps to all cells within a reach, in cells.
 pub(crate) fn ball(reach: f64) -> Vec<(isize, isize)> {
     let n = whole(reach.ceil()).cast_signed();
     let square = (-n..=n).flat_map(|y| (-n..=n).map(move |x| (x, y)));
     square.filter(|&(x, y)| ((x * x + y * y) as f64) <= reach * reach).collect()
 }
 
-/// Cells through which lines run.
+/// Marks the cells through which lines run.
 pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
     let mut drawn = vec![false; cells.count()];
     for line in lines {
@@ -121,7 +123,7 @@ pub(crate) fn drawn(cells: &Cells, lines: &[&[DVec2]]) -> Vec<bool> {
     drawn
 }
 
-/// What hangs together with a cell.
+/// Marks the cells connected with a cell.
 pub(crate) fn flood(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool) -> Vec<bool> {
     let mut found = vec![false; cells.count()];
     let mut ahead = vec![from];
@@ -137,7 +139,7 @@ pub(crate) fn flood(cells: &Cells, from: usize, is: &dyn Fn(usize) -> bool) -> V
     found
 }
 
-/// The middles of the cells at the rim of a piece, counter-clockwise: lines run through them.
+/// Returns the centres of the cells at the rim of a piece, counter-clockwise: lines run through them.
 pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
     let first = piece.iter().position(|p| *p)?;
     let has = |(x, y): (isize, isize)| {
@@ -147,7 +149,7 @@ pub(crate) fn around(cells: &Cells, piece: &[bool]) -> Option<Vec<DVec2>> {
     // The cells to the left and to the right of the side that leaves a corner in each direction.
     let left = |(x, y): (isize, isize), way: usize| [(x, y), (x - 1, y), (x - 1, y - 1), (x, y - 1)][way];
     let right = |(x, y): (isize, isize), way: usize| [(x, y - 1), (x, y), (x - 1, y), (x - 1, y - 1)][way];
-    // The lowest row of the piece: below its first cell there is nothing.
+    // The lowest row of the piece: below its first cell there is no cell of the piece.
     let start = ((first % cells.wide).cast_signed(), (first / cells.wide).cast_signed());
     let (mut at, mut way) = (start, 0_usize);
     let mut line: Vec<DVec2> = Vec::new();

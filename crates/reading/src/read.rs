@@ -3,7 +3,7 @@
 use std::cell::{OnceCell, RefCell};
 
 use base::{CancelToken, Cancelled, Report, Run};
-use ink::{COMMON_GROUND, Classified, Ink, Source, StrokeClass};
+use ink::{COMMON_GROUND, Classified, Ink, LONE_LINE, Source, StrokeClass};
 use plant::AxisKind;
 
 use crate::bare::BareWood;
@@ -45,17 +45,19 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     read_without(&[], ink, classes, report)
 }
 
-/// As [`read`], taking every plant of the drawing for one kind, whatever it looks like.
+/// Reads a drawing as [`read`] does, but takes every plant for one kind, whatever it looks like.
 pub fn read_as(kind: Option<Kind>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     read_again(kind, &[], (ink, classes), &mut KeptStrokes::default(), &Run::plain(), report)
 }
 
-/// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
+/// Reads a drawing as [`read`] does, with some [rules](crate::RULES) switched off by their names: to measure what each
+/// is worth.
 pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     read_again(None, off, (ink, classes), &mut KeptStrokes::default(), &Run::plain(), report)
 }
 
-/// As [`read_as`], and as [`read_without`], of a drawing that changes: what the strokes that stay gave is kept.
+/// Reads a changing drawing as [`read_as`] and [`read_without`] do, and keeps the results of strokes that do not
+/// change.
 ///
 /// Guaranteed: the same reading as with nothing kept. A cancelled run ends soon, with a reading that means nothing.
 pub fn read_again(
@@ -74,7 +76,7 @@ pub fn read_again(
     reading
 }
 
-/// As [`read_again`], of a drawing whose last stroke is still under the pen: it is left out, and changes nothing.
+/// Reads a drawing as [`read_again`] does, without its last stroke, which is still being drawn: it changes nothing.
 pub fn read_but_last(
     (ink, classes): (&Ink, &[Classified]),
     kept: &mut KeptStrokes,
@@ -95,31 +97,31 @@ pub fn read_but_last(
     reading
 }
 
-/// What is said of a stroke where a rule that decided it is switched off.
+/// Returns the class of a stroke if the rule that decided it is switched off.
 fn without(off: &[&str], said: &Classified) -> Classified {
     match said.source {
-        // Nothing else was asked about the ground of several plants.
+        // There is no other evidence about the ground of several plants.
         Source::Rule(COMMON_GROUND) if off.contains(&COMMON_GROUND) => Classified::default(),
         Source::Rule(name) if off.contains(&name) => Classified::by_shares(said.shares),
         _ => *said,
     }
 }
 
-/// What a drawing of one plant measures, for the model of kinds: [`kind_features`](crate::kind_features) of its first
-/// reading.
+/// Returns the numbers of a drawing of one plant, for the model of kinds: [`kind_features`](crate::kind_features) of
+/// its first reading.
 pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
     let asked = Asked { kind: None, off: &[], kept: &RefCell::default(), cancel: Run::plain().cancel };
     let first = attempt(&asked, &Proposal::default(), ink, classes, &mut Report::default());
     kinds::kind_features(ink, classes, &first)
 }
 
-/// What a drawing measures, for the model of what is no plant: one number for each of
+/// Returns the numbers of a drawing, for the model of drawings that show no plant: one for each of
 /// [`no_plant_feature_names`](crate::no_plant_feature_names).
 pub fn no_plant_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
     no_plant::row(&kind_row(ink, classes), &glance::look(ink), ink.strokes.len(), sureness(ink, classes))
 }
 
-/// How a drawing is to be read.
+/// Options of a reading.
 struct Asked<'a> {
     /// The kind that every plant is taken for.
     kind: Option<Kind>,
@@ -130,24 +132,25 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Whether the whole may decide what strokes are: no class was set by hand, and there are not too many.
+    /// Whether the whole may decide the classes of strokes: no class was set by hand, and there are not too many
+    /// strokes.
     fn is_free(&self, ink: &Ink, classes: &[Classified]) -> bool {
         let guessed = classes.iter().all(|c| c.source != Source::User);
         guessed && ink.strokes.len() <= MOST_STROKES && !self.off.contains(&READ_AS)
     }
 
-    /// Whether nobody waits for it any more: what is read from here on means nothing.
+    /// Whether the run was cancelled: anything read from here on means nothing.
     fn is_over(&self) -> bool {
         self.cancel.check().is_err()
     }
 
-    /// Whether what looks like no plant is left out where it stands beside one.
+    /// Whether pieces that look like no plant are left out next to a plant.
     fn leaves_out(&self, ink: &Ink) -> bool {
         ink.strokes.len() <= MOST_STROKES && !self.off.contains(&BESIDE_THE_PLANT)
     }
 }
 
-/// A plant as its strokes say, and how well each kind explains it.
+/// A plant as its strokes alone give it, and how well each kind explains it.
 struct First {
     reading: Reading,
     said: Report,
@@ -158,12 +161,12 @@ struct First {
 }
 
 impl First {
-    fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
+    fn read(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
         let reading = attempt(asked, &Proposal::default(), ink, classes, &mut said);
         if ink.strokes.len() > MOST_JUDGED || asked.is_over() {
-            // As it was read, and as nothing else.
-            let kinds = vec![Scored { kind: Kind::of(&reading), score: 1.0 }];
+            // The kind that was read, and no other.
+            let kinds = vec![Scored { kind: Kind::from_reading(&reading), score: 1.0 }];
             let shares = kinds::Shares { kinds, ..kinds::Shares::default() };
             return Self { reading, said, shares, glance: Glance::default(), no_plant: 0.0 };
         }
@@ -177,16 +180,16 @@ impl First {
         Self { reading, said, shares, glance, no_plant: no_plant::chance(&row) }
     }
 
-    /// Says if this is no plant, unless the user said which one it is.
+    /// Warns if this is no plant, unless the user gave its kind.
     fn warn_if_no_plant(&self, asked: &Asked<'_>, report: &mut Report) {
         let limits = NO_PLANT_LIMITS;
         let is_none = self.no_plant > limits.chance_most || self.shares.no_plant > limits.share_most;
         if asked.kind.is_none() && is_none {
-            report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
+            report.warn(UNLIKE_A_PLANT, "this does not look like a plant; it was read as the nearest plant");
         }
     }
 
-    /// Whether what lies apart is one plant all the same, because one kind explains all of it: berries, a pod with its
+    /// Whether separate pieces are one plant after all, because one kind explains all of it: berries, a pod with its
     /// peas.
     fn is_one(&self) -> bool {
         self.shares.several < FEW_PLANTS && self.shares.kinds.first().is_some_and(|k| k.score > ALONE)
@@ -197,25 +200,25 @@ fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repo
     Reading { pressed: pressed::pressed(ink), ..each(asked, ink, classes, report) }
 }
 
-/// Every plant of a drawing.
+/// Reads every plant of a drawing.
 fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     if !ink.subjects.is_parted() {
-        let first = First::of(asked, ink, classes);
+        let first = First::read(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);
     }
     if asked.is_over() {
         return Reading::default();
     }
-    let leaflets = |p: &structure::readers::Proposal| p.kind == Kind::Leaf;
-    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(leaflets) {
-        let first = First::of(asked, ink, classes);
+    let is_of_pieces = |p: &structure::readers::Proposal| p.kind == Kind::Leaf || p.word == Some("mushroom");
+    if asked.is_free(ink, classes) && structure::readers::propose(ink).iter().any(is_of_pieces) {
+        let first = First::read(asked, ink, classes);
         first.warn_if_no_plant(asked, report);
         return one(asked, ink, classes, first, report);
     }
     let parts = several::parts(ink, classes);
     let several = parts.len() > 1;
-    let mut firsts: Vec<First> = parts.iter().map(|p| First::of(asked, &p.ink, &p.classes)).collect();
+    let mut firsts: Vec<First> = parts.iter().map(|p| First::read(asked, &p.ink, &p.classes)).collect();
     let mut left = vec![false; parts.len()];
     if several && asked.leaves_out(ink) {
         let pieces: Vec<aside::Piece<'_>> = parts
@@ -223,12 +226,12 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
             .zip(&firsts)
             .map(|(p, f)| aside::Piece::new(&p.rows, &p.classes, &f.shares))
             .collect();
-        left = aside::beside(ink, &pieces, |rows| {
+        left = aside::find_left_out(ink, &pieces, |rows| {
             let part = several::part(ink, classes, rows.to_vec());
-            First::of(asked, &part.ink, &part.classes).shares.no_plant
+            First::read(asked, &part.ink, &part.classes).shares.no_plant
         });
     }
-    // Of the pieces of a thing some look like plants, and of those of a plant some do not: what stays is judged as a whole.
+    // Some pieces of a thing look like plants, and some pieces of a plant do not: the rest is judged as a whole.
     let stay: Vec<usize> = (0..parts.len()).filter(|&k| !left[k]).collect();
     if let [only] = stay[..] {
         firsts[only].warn_if_no_plant(asked, report);
@@ -237,9 +240,9 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
             let mut rows: Vec<usize> = stay.iter().flat_map(|&k| parts[k].rows.iter().copied()).collect();
             rows.sort_unstable();
             let part = several::part(ink, classes, rows);
-            First::of(asked, &part.ink, &part.classes).warn_if_no_plant(asked, report);
+            First::read(asked, &part.ink, &part.classes).warn_if_no_plant(asked, report);
         } else {
-            let first = First::of(asked, ink, classes);
+            let first = First::read(asked, ink, classes);
             first.warn_if_no_plant(asked, report);
             if first.is_one() {
                 return one(asked, ink, classes, first, report);
@@ -257,57 +260,61 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
     kept.finish(report)
 }
 
-/// Several plants explain a drawing at most so well where it is read as one, and the kind of that one at least so well.
+/// A drawing is one plant only if the share of several plants is below this when it is read as one.
 const FEW_PLANTS: f64 = 0.1;
+/// A drawing is one plant only if the likeliest kind has more than this share.
 const ALONE: f64 = 0.6;
-/// Another kind is tried if it explains the drawing at least so well, and so many times as well as what was read first.
+/// Another kind is tried if its share is above this.
 const SURE: f64 = 0.3;
+/// Another kind is tried if its share is more than this factor of that of the kind first read.
 const BETTER: f64 = 2.0;
-/// Strokes of which the classifier is so sure speak for what was read first: another kind must then explain the drawing
-/// this many times as well.
+/// Strokes of which the classifier is more sure than this support the kind first read.
 const CLEAR: f64 = 0.55;
+/// Factor by which another kind must then be likelier.
 const MUCH_BETTER: f64 = 5.0;
 /// A kind with a larger share than this is likelier than all others together (*geometry*).
 const LIKELY: f64 = 0.5;
-/// A drawing of many strokes is none of those from which kinds were learnt: its kind is likely only above this share.
+/// Least share of a likely kind in a drawing of many strokes: kinds were not learnt from such drawings.
 const SURELY: f64 = 0.9;
 /// The code of the warning that a drawing shows no plant.
 pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
-/// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
+/// Weight of the kind first read in the reported scores, relative to the model's share: it was built.
 const BUILT: f64 = 6.0;
 /// A drawing of more strokes is read once: nobody draws one plant with so many and means another kind.
 const MOST_STROKES: usize = 200;
 /// A drawing of more strokes is not compared with other kinds at all: the numbers of the whole would take two fifths of
 /// the time of each stroke that is added, and the model learnt from none so large.
 const MOST_JUDGED: usize = 1000;
-/// A blade on wood that is larger than this share of the drawing's diagonal is a crown: that is most of a tree (*geometry*).
+/// A blade on wood that is larger than this share of the drawing's diagonal is a crown: that is most of a tree
+/// (*geometry*).
 const CROWN_BLADE: f64 = 0.35;
-/// A tree of which the crowns are less than this share of the hull is read again, and that reading kept if its crowns are more
-/// than that, and so many times as much: bare trees have none.
+/// A tree whose crowns are less than this share of the hull is read again; the new reading is kept if its crowns are
+/// more than this share.
 const POOR_CROWN: f64 = 0.25;
+/// The crowns of the new reading must also be more than this factor of the first ones: bare trees have none.
 const MORE_CROWN: f64 = 2.0;
-/// A tree is read by its silhouette where what was read of its strokes covers less of trunk or crown than this: of trees by hand
-/// whose trunks or crowns came apart nearly all cover less, of whole ones few (*drawings*).
+/// A tree is read by its silhouette if the reading of its strokes covers less of trunk or crown than this: nearly all
+/// trees by hand whose trunks or crowns came apart cover less, few whole ones do (*drawings*).
 const FITS: f64 = 0.8;
-/// A tree with so many leaves or flowers was drawn leaf by leaf.
+/// A tree with at least this many leaves or flowers was drawn leaf by leaf.
 const LEAFY: usize = 8;
-/// A palm has at least so many fronds where the whole is known to be one.
+/// Fewest fronds of a palm if the whole is known to be one.
 const FEWEST_FRONDS: usize = 2;
-/// Readings that are told.
+/// Most readings that are reported.
 const TOLD: usize = 3;
 
-/// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
+/// Reads one plant: chooses the interpretation that explains the whole drawing best.
 fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
     if asked.is_over() {
         return Reading::default();
     }
     let First { mut reading, mut said, shares, glance, .. } = first;
-    let mut kind = Kind::of(&reading);
-    // What it is taken for beyond what its strokes say.
+    let mut kind = Kind::from_reading(&reading);
+    // The interpretation of the whole that replaces that of the strokes, if any.
     let mut taken = None;
     let (mut scores, no_plant) = (shares.kinds, shares.no_plant);
     let built = kind;
-    // The model learnt from no drawing that has roots.
+    // The model learnt from no drawing with roots.
     let (rooted, free) = (is_rooted(&reading), asked.is_free(ink, classes));
     let other = kind_to_try((ink, classes), (&reading, built), &scores, free);
     if let Some(wanted) = asked.kind {
@@ -315,7 +322,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         (reading, said) = taken_for(asked, wanted, ink, classes);
     } else if let Some(other) = other.filter(|_| !rooted && free) {
         let (tried, again) = taken_for(asked, other.kind, ink, classes);
-        // Only what can be built of the drawing explains it.
+        // Only a kind that can be built explains the drawing.
         let better = !other.kind.is_like(built)
             || other.kind.is_like(Kind::Fruit)
             || built == Kind::Palm && is_whole_palm(&reading, &tried)
@@ -343,7 +350,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         if let Some((tried, again, likely)) = as_likely(asked, (&facts, classes), &found.reading, &scores) {
             (reading, said, kind, taken) = (tried, again, likely, Some(likely));
         } else {
-            kind = Kind::of(&found.reading);
+            kind = Kind::from_reading(&found.reading);
             (reading, said, taken) = (found.reading, found.said, None);
             (structure, is_structural, is_cut) = (found.says.clone(), true, found.says.is_none());
         }
@@ -353,7 +360,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     }
     let (mut sure, mut called) = (None, None);
     if let Some((composed, proposal, score)) = by_readers(asked, (ink, classes), &scores)
-        && (proposal.kind != kind || proposal.word.is_some() || explains_better(&facts, &composed, &reading))
+        && is_preferred(&facts, (&composed, &proposal), (&reading, kind))
     {
         (reading, said, kind, sure) = (composed, Report::default(), proposal.kind, Some(score));
         called = proposal.word;
@@ -366,11 +373,11 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let mut again = Report::default();
         let proposal = Proposal { kind: taken, structure, is_cut: false };
         let mut tried = attempt(asked, &proposal, ink, &shown, &mut again);
-        let was = Kind::of(&tried);
+        let was = Kind::from_reading(&tried);
         let before = || {
             let rows = (0..ink.strokes.len().saturating_sub(1)).collect();
             let part = several::part(ink, classes, rows);
-            First::of(asked, &part.ink, &part.classes).shares.kinds
+            First::read(asked, &part.ink, &part.classes).shares.kinds
         };
         if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores, before) {
             inertia::tell(&mut tried, ink, classes);
@@ -385,7 +392,7 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && sure.is_none() {
         kind = told_apart(kind, &scores);
     }
-    // Several bodies that a reader knows are no single one.
+    // If a reader knows several bodies, they are not a single one.
     as_body(ink, kind, free && called.is_none(), &mut reading);
     let evidence = Evidence {
         share: share_of(&scores, kind) / scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE),
@@ -404,7 +411,8 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     reading
 }
 
-/// How much of a drawing of many organs a reading explains: 0 to 1. Of a drawing of few strokes, or of more than are looked at, 1.
+/// Returns how much of a drawing of many organs a reading explains: 0 to 1. It is 1 for a drawing of few strokes, or
+/// of more than are examined.
 fn explained(facts: &SheetOnce<'_>, reading: &Reading) -> f64 {
     let limits = structure::LIMITS;
     let is_of_many = (limits.many_strokes..=limits.most_strokes).contains(&facts.ink.strokes.len());
@@ -423,20 +431,21 @@ impl SheetOnce<'_> {
     }
 }
 
-/// How likely a kind is, with all that are built alike.
+/// Returns how likely a kind is, together with all that are built alike.
 fn share_of(scores: &[Scored], kind: Kind) -> f64 {
     scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
 }
 
-/// The kind that explains a drawing clearly better than what was built of it, or that same kind where not all of it was built:
-/// its crown was taken for a blade, or most of it for something else, or the leaves on a fruit for petals.
+/// Returns the kind that explains a drawing clearly better than the kind that was built, or the same kind if not all
+/// of it was built: its crown was taken for a blade, or most of it for something else, or the leaves on a fruit for
+/// petals.
 fn kind_to_try(
     (ink, classes): (&Ink, &[Classified]),
     (reading, built): (&Reading, Kind),
     scores: &[Scored],
     free: bool,
 ) -> Option<Scored> {
-    // Petals round a middle were no chance either.
+    // Petals round a middle were no coincidence either.
     let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
     let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
@@ -454,7 +463,7 @@ fn kind_to_try(
     scores.iter().find(likelier).or_else(|| scores.iter().find(same)).copied()
 }
 
-/// A vegetable is one body, if no class was set by hand; and what is no wood is none.
+/// Makes a vegetable one body, if no class was set by hand; a kind without wood gets none.
 fn as_body(ink: &Ink, kind: Kind, free: bool, reading: &mut Reading) {
     if kind == Kind::Vegetable && free {
         silhouette::one_body(ink, reading);
@@ -464,7 +473,7 @@ fn as_body(ink: &Ink, kind: Kind, free: bool, reading: &mut Reading) {
     }
 }
 
-/// What is told of one plant.
+/// Describes one plant.
 fn described(
     ink: &Ink,
     kind: Kind,
@@ -477,9 +486,9 @@ fn described(
     PlantReading { strokes, height: (high - low).max(0.0), kind, word, evidence, readings }
 }
 
-/// Whether a reading is of the kind that it was taken for: it has what the kind needs, and nothing else. Wood is a tree, bare or
-/// with a crown down to the ground, two fronds on a trunk are a palm, a body without leaves is a cactus, whatever it stands in,
-/// and blades that nothing bears are grass.
+/// Whether a reading is of the kind that it was taken for: it has the parts that the kind needs, and no others. Wood is
+/// a tree, bare or with a crown down to the ground, two fronds on a trunk are a palm, a body without leaves is a
+/// cactus, even in a pot, and blades that nothing bears are grass.
 fn is_built(kind: Kind, reading: &Reading) -> bool {
     let no_flower = reading.flowers.is_empty() && reading.fruits.is_empty();
     let bare = reading.regions.is_empty();
@@ -492,11 +501,11 @@ fn is_built(kind: Kind, reading: &Reading) -> bool {
         Kind::Grass => bare && reading.axes.is_empty() && reading.leaves.len() >= FEWEST_PETALS,
         _ => false,
     };
-    kind.is_like(Kind::of(reading)) || (no_flower && needed)
+    kind.is_like(Kind::from_reading(reading)) || (no_flower && needed)
 }
 
-/// Whether what was read has roots under a ground: they are those of what stands on it. Without a ground they are lines that lead
-/// down, of which each kind makes something else.
+/// Whether a reading has roots under a ground: they belong to the plant that stands on it. Without a ground they are
+/// lines that lead down, which each kind reads differently.
 fn is_rooted(reading: &Reading) -> bool {
     reading.axes.iter().any(|a| a.kind == AxisKind::Root)
         && reading.strokes.iter().any(|s| s.class == StrokeClass::Ground)
@@ -509,15 +518,16 @@ fn bears_a_crown_as_blade(reading: &Reading) -> bool {
     petals.chain(&reading.leaves).any(large)
 }
 
-/// How much of the hull of a drawing its crowns are.
+/// Returns the share of a drawing's hull that its crowns cover.
 fn crown_share(ink: &Ink, reading: &Reading) -> f64 {
-    // Of few points: each stroke keeps its hull.
+    // The hulls of the strokes: fewer points.
     let all: Vec<DVec2> = ink.strokes.iter().flat_map(|s| s.hull().iter().copied()).collect();
     let crowns: f64 = reading.regions.iter().map(|r| signed_area(&r.outline)).sum();
     crowns / signed_area(&convex_hull(&all)).max(f64::MIN_POSITIVE)
 }
 
-/// Whether a tree that was read again is more of one: it has no blade as large as a crown, and much more crown if it had little.
+/// Whether a tree that was read again is a better tree: it has no blade as large as a crown, and much more crown if it
+/// had little.
 fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
     let more = || {
         let share = crown_share(ink, again);
@@ -526,30 +536,30 @@ fn is_whole_tree(ink: &Ink, first: &Reading, again: &Reading) -> bool {
     !bears_a_crown_as_blade(again) && (bears_a_crown_as_blade(first) || more())
 }
 
-/// Lines of a reading that are wood without an outline.
+/// Counts the lines of a reading that are wood without an outline.
 fn bare_lines(reading: &Reading) -> usize {
     reading.axes.iter().filter(|a| a.half_width.is_empty()).count()
 }
 
-/// Whether a palm that was read again is more of one: fewer of its fronds are bare wood, and none are gone.
+/// Whether a palm that was read again is a better palm: fewer of its fronds are bare wood, and none are lost.
 fn is_whole_palm(first: &Reading, again: &Reading) -> bool {
     bare_lines(again) < bare_lines(first) && again.leaves.len() >= first.leaves.len()
 }
 
-/// Cacti, fruits and vegetables have no wood, however much they branch.
+/// Removes the wood of cacti, fruits and vegetables, however much they branch.
 fn soften(reading: &mut Reading) {
     reading.woody = false;
     let wood = reading.axes.iter_mut().filter(|a| a.kind == AxisKind::Branch);
     wood.for_each(|a| a.kind = AxisKind::Stem);
 }
 
-/// A fruit and a root are built alike: the model says which of them it is.
+/// Chooses between a fruit and a root, which are built alike, by the model's shares.
 fn told_apart(kind: Kind, scores: &[Scored]) -> Kind {
     let body = scores.iter().find(|s| s.kind.is_like(Kind::Fruit));
     body.filter(|_| kind.is_like(Kind::Fruit)).map_or(kind, |s| s.kind)
 }
 
-/// How sure the classifier is of the strokes of a drawing, the mean over their length: 0 to 1.
+/// Returns how sure the classifier is of the strokes of a drawing, the mean over their length: 0 to 1.
 fn sureness(ink: &Ink, classes: &[Classified]) -> f64 {
     let rows = ink.strokes.iter().zip(classes);
     let (sum, length) =
@@ -557,13 +567,13 @@ fn sureness(ink: &Ink, classes: &[Classified]) -> f64 {
     if length > 0.0 { sum / length } else { 0.0 }
 }
 
-/// What a plant was read as with how likely that is right, and the best of the others; one of each that are built alike. The
-/// others share what is left as they share it among themselves; what could not be built, or is not what the user asked for,
-/// explains the drawing no better than what was.
+/// Returns the kind of a plant and how likely it is right, and the best of the others; one of each group that is built
+/// alike. The others share the rest in proportion; a kind that could not be built, or is not the one the user asked
+/// for, explains the drawing no better than the kind that was built.
 fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     let total: f64 = scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE);
     let group = |k: Kind| share_of(scores, k) / total;
-    // The model weighs no kind against another in a drawing of so many strokes.
+    // The model compares no kinds in a drawing of so many strokes.
     let is_weighed = scores.len() > 1;
     let own =
         if is_weighed { evidence.confidence() } else { CONFIDENCE_LIMITS.not_weighed.min(evidence.share) };
@@ -579,12 +589,12 @@ fn readings(kind: Kind, evidence: &Evidence, scores: &[Scored]) -> Vec<Scored> {
     found
 }
 
-/// A plant that is taken for one of these has leaves where another may have petals.
+/// Whether a plant of this kind has leaves where another may have petals.
 const fn bears_no_flower(kind: Kind) -> bool {
     matches!(kind, Kind::Grass | Kind::Stem | Kind::Palm | Kind::Leaf | Kind::Fruit | Kind::Vegetable)
 }
 
-/// One reading of one plant that is taken for a kind; of a tree that came apart by its silhouette, if no class was set by hand.
+/// Reads one plant as a kind; reads a tree that came apart by its silhouette, if no class was set by hand.
 fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -> (Reading, Report) {
     let mut report = Report::default();
     let proposal = Proposal { kind: Some(kind), ..Proposal::default() };
@@ -598,20 +608,21 @@ fn taken_for(asked: &Asked<'_>, kind: Kind, ink: &Ink, classes: &[Classified]) -
     (reading, report)
 }
 
-/// A tree by its silhouette, where what was read of its strokes does not cover that. One drawn leaf by leaf would lose its leaves.
+/// Reads a tree by its silhouette if the reading of its strokes does not cover that. A tree drawn leaf by leaf would
+/// lose its leaves.
 fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: &Reading) -> Option<Reading> {
     let organs = reading.leaves.len() + reading.flowers.len();
     if organs >= LEAFY {
         return None;
     }
-    let shaping = Shaping::of(ink, reading)?;
+    let shaping = Shaping::find(ink, reading)?;
     let drawn = Drawn::new(&shaping.lines);
     let mut draft = Draft::new(ink, classes, asked.kept);
     draft.kind = Some(Kind::Tree);
-    if let Some(silhouette) = Silhouette::of(&drawn) {
+    if let Some(silhouette) = Silhouette::find(&drawn) {
         (silhouette.fit(reading) < FITS).then(|| silhouette.read(&shaping, &mut draft))?;
     } else {
-        let bare = reading.regions.is_empty().then(|| BareWood::of(&drawn, reading)).flatten()?;
+        let bare = reading.regions.is_empty().then(|| BareWood::find(&drawn, reading)).flatten()?;
         (bare.fit(reading) < FITS).then(|| bare.read(&shaping, &mut draft))?;
     }
     outlines::lobes(&mut draft);
@@ -629,12 +640,12 @@ fn by_silhouette(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], reading: 
 struct Structural {
     reading: Reading,
     said: Report,
-    /// What the structure says of the drawing's own strokes; nothing where some were cut anew.
+    /// The structure of the drawing's own strokes; `None` if some were cut anew.
     says: Option<Structure>,
 }
 
-/// A plant by the structure of its strokes, where that explains the drawing clearly better than another reading does.
-/// `likely`: the share of a kind.
+/// Reads a plant by the structure of its strokes, if that explains the drawing clearly better than another reading
+/// does. `likely`: the share of a kind.
 fn by_structure(
     asked: &Asked<'_>,
     (facts, classes): (&SheetOnce<'_>, &[Classified]),
@@ -652,12 +663,12 @@ fn by_structure(
     if !sheet.is_careful() {
         return None;
     }
-    // What a stroke is was said of it: none is taken for the side of something else.
+    // The user gave the classes of strokes: none is taken for the side of something else.
     let by_user = classes.iter().any(|c| c.source == Source::User);
     let mut tubes = if by_user { Vec::new() } else { structure::tubes(ink, sheet) };
     let pot = structure::vessel(ink);
     tubes.retain(|t| !pot.iter().any(|&k| t.has(k)));
-    // Both sides of a trunk are read as its outline, and its limbs with it.
+    // Both sides of a trunk are read as its outline, together with its limbs.
     let is_trunk = |k: usize| {
         classes.get(k).is_some_and(|c| {
             c.class == StrokeClass::TrunkOutline && c.confidence > structure::LIMITS.believed
@@ -691,20 +702,22 @@ fn by_structure(
         let proposal = Proposal { structure: Some(says.clone()), ..Proposal::default() };
         (attempt(asked, &proposal, ink, classes, &mut report), Some(says))
     };
-    // Where the user said what strokes are, kinds learnt from doodles do not weigh against that.
+    // If the user gave the classes of strokes, kinds learnt from doodles do not count against them.
     let weight = if by_user { 0.0 } else { structure::LIMITS.weight_of_kind };
-    let score =
-        |r: &Reading, sides: &[usize]| structure::score(ink, sheet, r, sides) + weight * likely(Kind::of(r));
+    let score = |r: &Reading, sides: &[usize]| {
+        structure::score(ink, sheet, r, sides) + weight * likely(Kind::from_reading(r))
+    };
     let sides: Vec<usize> = tubes.iter().flat_map(structure::Tube::rows).collect();
-    // Classes that the user set are the same in both readings: then hidden outlines alone may decide.
-    // What was shown departs for clear evidence only.
+    // Classes that the user set are the same in both readings: then hidden outlines alone may decide. A class that was
+    // shown changes only on clear evidence.
     let is_new = classes.iter().all(|c| c.shown.is_none());
-    // A solid with so many strokes inside is a glance at a drawing of many organs.
+    // A solid with so many strokes inside is a hasty reading of a drawing of many organs.
     let is_solid_of_many =
-        is_new && count >= structure::LIMITS.many_strokes && Kind::of(reading).is_like(Kind::Fruit);
-    // Of a kind that many strokes show either way, the structure tells more.
-    let is_same_of_many =
-        is_new && count >= structure::LIMITS.no_doodle && Kind::of(&tried).is_like(Kind::of(reading));
+        is_new && count >= structure::LIMITS.many_strokes && Kind::from_reading(reading).is_like(Kind::Fruit);
+    // If both readings of many strokes are of one kind, the structure is better evidence.
+    let is_same_of_many = is_new
+        && count >= structure::LIMITS.no_doodle
+        && Kind::from_reading(&tried).is_like(Kind::from_reading(reading));
     let margin = if is_solid_of_many {
         -structure::LIMITS.solid_of_many
     } else if by_user || is_same_of_many {
@@ -716,7 +729,8 @@ fn by_structure(
     is_better.then_some(Structural { reading: tried, said: report, says })
 }
 
-/// The reading as the kind that is likelier than all others together, where that explains as much as one by structure does.
+/// Reads the plant as the kind that is likelier than all others together, if that explains as much as the reading by
+/// structure.
 fn as_likely(
     asked: &Asked<'_>,
     (facts, classes): (&SheetOnce<'_>, &[Classified]),
@@ -726,19 +740,19 @@ fn as_likely(
     let ink = facts.ink;
     let likely = scores.iter().map(|s| s.kind).find(|&k| share_of(scores, k) > LIKELY)?;
     let is_sure = likely == Kind::Palm || share_of(scores, likely) > SURELY;
-    // One solid explains little of what lies in it, whatever it scores.
+    // One solid explains little of the strokes inside it, whatever its score.
     let is_shown = classes.iter().any(|c| c.shown.is_some());
     if is_shown
         || ink.strokes.len() >= structure::LIMITS.no_doodle && !is_sure
         || likely.is_like(Kind::Fruit)
-        || likely.is_like(Kind::of(structural))
+        || likely.is_like(Kind::from_reading(structural))
         || !asked.is_free(ink, classes)
     {
         return None;
     }
     let (tried, said) = taken_for(asked, likely, ink, classes);
     let score = |r: &Reading| structure::score(ink, facts.sheet(), r, &[]);
-    // Crowns that became leaves explain as much, and less well.
+    // Crowns that became leaves explain as much, but less well.
     let keeps_crowns = structural.regions.is_empty() || !tried.regions.is_empty();
     // The fronds of a palm lie as petals do, and a kind that is surely meant may explain a little less.
     let slack = match likely {
@@ -750,17 +764,19 @@ fn as_likely(
     is_as_good.then_some((tried, said, likely))
 }
 
-/// A plant that one of the readers sees in the drawing's faces and lines, its proposal, and how sure that is; of the kind that was
-/// asked for, if one was.
+/// Returns a plant that one of the readers finds in the drawing's faces and lines, its proposal, and how sure that is;
+/// only of the requested kind, if there is one.
 ///
-/// `scores`: how likely each kind is otherwise. A reading stands where it is likelier than the likeliest of the others (Bayes): the
-/// share of its kind times the likelihood of the arrangement.
+/// `scores`: how likely each kind is otherwise. A proposal is accepted if it is likelier than the likeliest of the
+/// others (Bayes): the share of its kind times the likelihood of the arrangement.
 fn by_readers(
     asked: &Asked<'_>,
     (ink, classes): (&Ink, &[Classified]),
     scores: &[Scored],
 ) -> Option<(Reading, structure::readers::Proposal, f64)> {
-    if !asked.is_free(ink, classes) || classes.iter().any(Classified::is_sure) {
+    // A line that is the only one of its piece may be the side of something that the pieces make together.
+    let is_sure = |c: &Classified| c.is_sure() && c.source != Source::Rule(LONE_LINE);
+    if !asked.is_free(ink, classes) || classes.iter().any(is_sure) {
         return None;
     }
     let share = |kind: Kind| share_of(scores, kind);
@@ -772,7 +788,7 @@ fn by_readers(
     let chosen = structure::readers::propose(ink)
         .into_iter()
         .filter(|p| asked.kind.map_or(odds(p) > 1.0, |asked| asked == p.kind));
-    let proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
+    let mut proposal = chosen.max_by(|a, b| odds(a).total_cmp(&odds(b)))?;
     let score = odds(&proposal) / (1.0 + odds(&proposal));
     let composed = Composed::new(ink, &proposal);
     let kept = RefCell::default();
@@ -781,6 +797,10 @@ fn by_readers(
         Proposal { kind: Some(proposal.kind), structure: Some(composed.structure.clone()), is_cut: true };
     let parts = attempt(&own, &how, &composed.ink, &composed.classes, &mut Report::default());
     let reading = composed.back(ink, parts);
+    // A fruit and a root are built alike: unless its word says which it is, the shares decide.
+    if proposal.word.is_none() {
+        proposal.kind = told_apart(proposal.kind, scores);
+    }
     inertia::agrees(ink, classes, &reading).then_some((reading, proposal, score))
 }
 
@@ -788,6 +808,30 @@ fn by_readers(
 fn explains_better(facts: &SheetOnce<'_>, own: &Reading, other: &Reading) -> bool {
     let score = |r: &Reading| structure::score(facts.ink, facts.sheet(), r, &[]);
     score(own) > score(other) + structure::LIMITS.clearly_better
+}
+
+/// Whether a reader's proposal says more than another reading does: another kind, one thing of its kind, more leaves
+/// of a plant without flowers, flowers instead of a crown, or more of the ink.
+fn is_preferred(
+    facts: &SheetOnce<'_>,
+    (composed, proposal): (&Reading, &structure::readers::Proposal),
+    (other, kind): (&Reading, Kind),
+) -> bool {
+    proposal.kind != kind
+        || proposal.word.is_some()
+        || bears_no_flower(kind) && has_more_leaves(composed, other)
+        || has_flower_for_crown(composed, other)
+        || explains_better(facts, composed, other)
+}
+
+/// Whether a reading has flowers where another one has a crown.
+fn has_flower_for_crown(own: &Reading, other: &Reading) -> bool {
+    own.regions.is_empty() && !own.flowers.is_empty() && other.flowers.is_empty() && !other.regions.is_empty()
+}
+
+/// Whether a reading has more leaves than another one that has no flower.
+fn has_more_leaves(own: &Reading, other: &Reading) -> bool {
+    own.leaves.len() > other.leaves.len() && other.flowers.is_empty()
 }
 
 /// Gives a kind the score of its reader; the others share the rest.
@@ -798,16 +842,16 @@ fn decide_for(scores: &mut [Scored], kind: Kind, score: f64) {
     }
 }
 
-/// How one reading of a plant is to come about: taken for a kind, or by structure, or by whatever its strokes say.
+/// How one reading of a plant is made: for a kind, by structure, or by the strokes alone.
 #[derive(Clone, Debug, Default)]
 struct Proposal {
     kind: Option<Kind>,
     structure: Option<Structure>,
-    /// The strokes are parts already that a reader cut.
+    /// The strokes are already parts that a reader cut.
     is_cut: bool,
 }
 
-/// One reading of one plant; an empty one where it is no longer wanted.
+/// Makes one reading of one plant; an empty one if it was cancelled.
 fn attempt(
     asked: &Asked<'_>,
     proposal: &Proposal,

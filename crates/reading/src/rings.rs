@@ -1,4 +1,4 @@
-//! Open strokes to closed outlines: two lines are a trunk, an arc and a line are a crown.
+//! Joins open strokes into closed outlines: two lines are a trunk, an arc and a line are a crown.
 
 use geom::polyline_length;
 use glam::DVec2;
@@ -8,9 +8,9 @@ const MOST_PARTS: usize = 64;
 /// Two strokes are joined over a gap of at most this share of the shorter one. Flared trunks reach 1.2.
 const WIDEST_JOIN: f64 = 1.3;
 
-/// An end this near to a line lies on it, a share of the drawing's diagonal; the side of a line is without the first and last
-/// of so many parts.
+/// An end this near to a line lies on it, as a share of the drawing's diagonal.
 const TOUCHES: f64 = 0.03;
+/// The side of a line is the line without the first and the last of this number of parts.
 const SIDE_BEGINS: usize = 10;
 
 /// A closed outline made of one or more strokes.
@@ -25,12 +25,12 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// Both ends of a gap.
+    /// Returns both ends of a gap.
     pub(crate) fn gap(&self, i: usize) -> (DVec2, DVec2) {
         (self.points[i], self.points[(i + 1) % self.points.len()])
     }
 
-    /// The drawn lines: the outline without its gaps.
+    /// Returns the drawn lines: the outline without its gaps.
     pub(crate) fn drawn(&self) -> Vec<&[DVec2]> {
         let mut lines = Vec::new();
         let mut start = 0;
@@ -60,7 +60,8 @@ pub(crate) fn rings(strokes: &[&[DVec2]]) -> Vec<Ring> {
     out
 }
 
-/// [`rings`], but for strokes that begin and end on the side of another one: arms on a body, each a ring of its own.
+/// Joins strokes as [`rings`] does, but keeps strokes that begin and end on the side of another one as rings of their
+/// own: arms on a body.
 pub(crate) fn rings_and_arms(strokes: &[&[DVec2]]) -> Vec<Ring> {
     let few = strokes.len() <= MOST_PARTS;
     let (arms, rest): (Vec<usize>, Vec<usize>) = (0..strokes.len()).partition(|&k| few && is_arm(strokes, k));
@@ -89,12 +90,12 @@ fn is_arm(strokes: &[&[DVec2]], k: usize) -> bool {
     others.any(bears)
 }
 
-/// Every stroke's ends matched with one another.
+/// Matches each stroke's ends with one another.
 fn own(n: usize) -> Vec<usize> {
     (0..2 * n).map(|e| e ^ 1).collect()
 }
 
-/// End `2 k` is the first point of stroke k, `2 k + 1` its last.
+/// Matches ends with ends. End `2 k` is the first point of stroke k, `2 k + 1` its last.
 fn match_ends(strokes: &[&[DVec2]]) -> Vec<usize> {
     let end = |e: usize| {
         let s = strokes[e / 2];

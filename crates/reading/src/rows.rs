@@ -1,4 +1,4 @@
-//! What the drawing was understood as: still flat, in ink coordinates.
+//! The result of reading a drawing: still flat, in ink coordinates.
 //!
 //! `Ink + classes -> Reading -> Plant`
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Evidence, Kind, Scored};
 
-/// What became of one stroke. The words of the command line's contract.
+/// The organ that one stroke became. The words of the command line's contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -38,14 +38,14 @@ pub enum OrganWord {
     Root,
     /// Stamens or a pistil.
     Stamen,
-    /// Part of the pot that it stands in.
+    /// Part of the plant's pot.
     Pot,
     /// Recognised and left out.
     Ignored,
 }
 
 impl OrganWord {
-    /// The word in reports.
+    /// Returns the word in reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Petal => "petal",
@@ -73,17 +73,17 @@ pub struct StrokeReading {
     pub index: u32,
     /// Its class.
     pub class: StrokeClass,
-    /// What became of it.
+    /// The organ that it became.
     pub organ: OrganWord,
-    /// How sure this class is, 0 to 1: the share that the classifier gave it, also where a [rule](crate::RULES) chose it
-    /// against a larger one; 1 for a class that the user set and for a line by itself.
+    /// How sure this class is, 0 to 1: the share that the classifier gave it, even if a [rule](crate::RULES) chose it
+    /// over a larger one; 1 for a class that the user set and for a single line.
     pub confidence: f64,
-    /// What decided the class.
+    /// The source of the class.
     pub source: Source,
 }
 
 impl StrokeReading {
-    /// A stroke that nothing was made of.
+    /// Returns the row of a stroke that became nothing.
     pub(crate) const fn left_out(index: u32) -> Self {
         Self {
             index,
@@ -95,7 +95,7 @@ impl StrokeReading {
     }
 }
 
-/// Where something is borne: a place along an axis of the reading.
+/// The bearer of something: a place along an axis of the reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attachment {
     /// Row of [`Reading::axes`].
@@ -109,9 +109,9 @@ pub struct Attachment {
 pub struct AxisReading {
     /// The line, at least 2 points, ink coordinates.
     pub points: Vec<DVec2>,
-    /// What it is.
+    /// The kind of axis.
     pub kind: AxisKind,
-    /// Where it is borne; `None` for an axis that stands on the ground. Always an earlier row.
+    /// Its place on its bearer; `None` for an axis that stands on the ground. Always an earlier row.
     pub bearer: Option<Attachment>,
     /// Half width at each point where it was drawn as an outline; empty for a line.
     pub half_width: Vec<f64>,
@@ -132,11 +132,11 @@ pub struct BladeReading {
     pub midrib: Vec<DVec2>,
     /// Further veins drawn inside it.
     pub veins: Vec<VeinReading>,
-    /// Where it is borne (leaves; petals are borne by their flower).
+    /// Its place on its bearer (leaves; petals are borne by their flower).
     pub bearer: Option<Attachment>,
     /// Ring of the flower, 0 outermost (petals only).
     pub whorl: u32,
-    /// Where it lies among those that it overlaps: -1 behind all of them, 1 in front of all; `None` if it overlaps none.
+    /// Its layer among those that it overlaps: -1 behind all of them, 1 in front of all; `None` if it overlaps none.
     pub front: Option<f64>,
     /// The stroke it came from.
     pub source: Option<u32>,
@@ -144,7 +144,7 @@ pub struct BladeReading {
     pub color: Option<[u8; 3]>,
 }
 
-/// A vein besides the midrib.
+/// A vein other than the midrib.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VeinReading {
     /// At least 2 points, ink coordinates, as it was drawn.
@@ -175,11 +175,11 @@ pub struct FlowerReading {
     pub disc: Option<DiscReading>,
     /// Lines from the centre outwards that are stamens or a pistil.
     pub stamens: Vec<Vec<DVec2>>,
-    /// Where it is borne.
+    /// Its place on its bearer.
     pub bearer: Option<Attachment>,
 }
 
-/// What fills a region.
+/// The filling of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RegionKind {
     /// Twigs only (a branch contour).
@@ -195,7 +195,7 @@ pub enum RegionKind {
 pub struct RegionReading {
     /// A simple closed polygon, counter-clockwise, ink coordinates.
     pub outline: Vec<DVec2>,
-    /// What fills it.
+    /// Its filling.
     pub kind: RegionKind,
     /// Rows of [`Reading::axes`] that run into it: the growth starts from these. Never empty: where the drawing
     /// has no such axis, the reading adds a trunk.
@@ -211,7 +211,7 @@ pub struct RegionReading {
 pub struct FruitReading {
     /// A simple closed polygon, counter-clockwise, ink coordinates.
     pub outline: Vec<DVec2>,
-    /// Where it is borne.
+    /// Its place on its bearer.
     pub bearer: Option<Attachment>,
     /// The stroke it came from.
     pub source: Option<u32>,
@@ -219,7 +219,7 @@ pub struct FruitReading {
     pub color: Option<[u8; 3]>,
 }
 
-/// The pot or vase that a plant stands in, of all strokes that were drawn for it.
+/// The pot or vase of a plant, from all strokes that were drawn for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PotReading {
     /// Its lines, ink coordinates: outlines, sides, a rim.
@@ -230,7 +230,7 @@ pub struct PotReading {
     pub color: Option<[u8; 3]>,
 }
 
-/// What the drawing was understood as.
+/// The result of reading a drawing.
 ///
 /// Ink coordinates: y up, the drawing's bounding box has diagonal 1 and its lower left corner at the origin.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -249,11 +249,12 @@ pub struct Reading {
     pub fruits: Vec<FruitReading>,
     /// Pots.
     pub pots: Vec<PotReading>,
-    /// Thorns: root and tip, with what bears them.
+    /// Thorns: root and tip, with their bearers.
     pub thorns: Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)>,
-    /// It is a woody plant (trunk outline, crown, several orders of branches) rather than a herb.
+    /// Whether it is a woody plant (trunk outline, crown, several orders of branches) rather than a herb.
     pub woody: bool,
-    /// Strokes that were drawn more boldly or more lightly than usual, by their indices, and how much: 1 is as usual.
+    /// Strokes that were drawn more boldly or more lightly than usual, by their indices, and the factor: 1 is as
+    /// usual.
     pub pressed: Vec<(u32, f64)>,
     /// The plants that the drawing shows, from left to right.
     pub plants: Vec<PlantReading>,
@@ -266,13 +267,15 @@ pub struct PlantReading {
     pub strokes: Vec<u32>,
     /// Its height in the drawing, ink units.
     pub height: f64,
-    /// What it was read as.
+    /// The kind that it was read as.
     pub kind: Kind,
-    /// Which of its kind it looks like at a glance, by one of [`WORDS`](crate::glance::WORDS), such as a pear; `None` where no word is
-    /// likelier than all others of that kind together. 124 of 142 that were told of new drawings are right (`docs/strokes.md`).
+    /// The plant of its kind that it looks like at a glance, one of [`WORDS`](crate::glance::WORDS), such as a pear;
+    /// `None` if no word is likelier than all others of that kind together. Of 142 words that were given for new
+    /// drawings 124 are right (`docs/strokes.md`).
     pub word: Option<&'static str>,
-    /// What speaks for that kind.
+    /// Evidence for that kind.
     pub evidence: Evidence,
-    /// What it may be with how likely that is, at most three: what it was read as first, then the others, the best first.
+    /// Kinds that it may be with how likely each is, at most three: the kind that was read first, then the others, the
+    /// best first.
     pub readings: Vec<Scored>,
 }

@@ -1,7 +1,7 @@
-//! What lines enclose where they leave gaps: `lines + gap -> the largest piece, and its outline`.
+//! The area that lines enclose although they leave gaps: `lines + gap -> the largest piece, and its outline`.
 //!
-//! A ball that is larger than the gaps rolls round the drawing; what it cannot reach is inside (trapped-ball segmentation,
-//! Zhang, Chen, Zhang, Hu and Martin 2009, section 4). Bays that are wider than the ball stay bays.
+//! A ball larger than the gaps rolls round the drawing; the area that it cannot reach is inside (trapped-ball
+//! segmentation, Zhang, Chen, Zhang, Hu and Martin 2009, section 4). Bays wider than the ball stay bays.
 
 use geom::{simple_outline, simplify};
 use glam::DVec2;
@@ -10,8 +10,8 @@ use crate::raster::{Cells, around, ball, drawn, flood, grown, largest};
 
 /// Cells along the longer side of the drawing.
 const ALONG: usize = 96;
-/// Cells that the radius of a ball may have. One as wide as the drawing finds no way into any gap; of lines that are specks beside
-/// it, the picture would hold nothing else.
+/// Greatest radius of a ball in cells. A ball as wide as the drawing finds no way into any gap; if the lines are tiny
+/// compared with the ball, the picture would hold nothing else.
 const WIDEST_BALL: f64 = ALONG as f64;
 /// Corners of the outline lie within this of its cells, in cells.
 const CALM: f64 = 0.5;
@@ -23,8 +23,8 @@ pub(crate) struct Sealed {
 }
 
 impl Sealed {
-    /// The piece that a ball of a radius leaves; `None` where there is none, or the ball is larger than all the lines. Cost:
-    /// linear in points, and the picture times the ball.
+    /// Finds the piece that a ball of this radius leaves; `None` if there is none, or if the ball is larger than all
+    /// the lines. Cost: linear in points, and the picture times the ball.
     pub(crate) fn new(lines: &[&[DVec2]], radius: f64) -> Option<Self> {
         let size = Cells::size_for(lines, ALONG)?;
         let reach = radius / size;
@@ -40,13 +40,14 @@ impl Sealed {
         Some(Self { cells, piece })
     }
 
-    /// Its outline, counter-clockwise, without a crossing: it runs along the lines, off them by less than a hundredth of the
-    /// drawing.
+    /// Returns its outline, counter-clockwise, without a crossing: it runs along the lines, off them by less than a
+    /// hundredth of the drawing.
     pub(crate) fn outline(&self) -> Option<Vec<DVec2>> {
         simple_outline(&simplify(&around(&self.cells, &self.piece)?, CALM * self.cells.size))
     }
 
-    /// The largest piece of it in which a ball of a radius rolls, so that single lines are none (opening, Serra 1982).
+    /// Returns the largest piece of it in which a ball of this radius rolls, so that single lines drop out (opening,
+    /// Serra 1982).
     pub(crate) fn opened(&self, radius: f64) -> Option<Self> {
         let (cells, ball) = (self.cells.clone(), ball(radius / self.cells.size));
         let out: Vec<bool> = self.piece.iter().map(|p| !p).collect();

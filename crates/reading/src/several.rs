@@ -1,4 +1,4 @@
-//! Drawings of several plants: each is read by itself, and put back where it was drawn.
+//! Drawings of several plants: each is read separately, and put back where it was drawn.
 
 use base::Report;
 use glam::DVec2;
@@ -14,13 +14,14 @@ pub(crate) struct Part {
     pub(crate) classes: Vec<Classified>,
 }
 
-/// Some strokes of a drawing.
+/// Returns some strokes of a drawing as a part.
 pub(crate) fn part(ink: &Ink, classes: &[Classified], rows: Vec<usize>) -> Part {
     let own = rows.iter().map(|&row| classes.get(row).copied().unwrap_or_default()).collect();
     Part { ink: ink.part(&rows), classes: own, rows }
 }
 
-/// The pieces of a drawing, from left to right; what the user says is no ground belongs to the first.
+/// Returns the pieces of a drawing, from left to right; strokes that the user marks as something other than ground
+/// belong to the first.
 pub(crate) fn parts(ink: &Ink, classes: &[Classified]) -> Vec<Part> {
     let is_ground = |row: usize| classes.get(row).is_some_and(|c| c.class == StrokeClass::Ground);
     let other = ink.subjects.ground.iter().copied().filter(|&row| !is_ground(row));
@@ -40,13 +41,13 @@ pub(crate) fn parts(ink: &Ink, classes: &[Classified]) -> Vec<Part> {
     own.collect()
 }
 
-/// Lines that were drawn again: those of which the user says what they are, and are read, or the others.
+/// Finds lines that were drawn again: those whose class the user gave, which are read, or the others.
 fn again(ink: &Ink, classes: &[Classified], named: bool) -> impl Iterator<Item = (usize, usize)> {
     let by_user = |row: usize| classes.get(row).is_some_and(|c| c.source == Source::User);
     ink.subjects.again.iter().copied().filter(move |a| by_user(a.0) == named)
 }
 
-/// What was read of a drawing, piece by piece.
+/// Collects the readings of a drawing's pieces.
 pub(crate) struct Collected<'a> {
     ink: &'a Ink,
     classes: &'a [Classified],
@@ -64,12 +65,12 @@ impl<'a> Collected<'a> {
         back.add(&mut self.all, reading);
     }
 
-    /// Strokes that are of no plant.
+    /// Marks strokes that belong to no plant.
     pub(crate) fn leave(&mut self, rows: &[usize]) {
         self.left.extend(rows);
     }
 
-    /// All of it, with the ground and with what was left out.
+    /// Returns the whole reading, with the ground and with the strokes left out.
     pub(crate) fn finish(mut self, report: &mut Report) -> Reading {
         let (ink, all) = (self.ink, &mut self.all);
         if !self.left.is_empty() {
@@ -104,7 +105,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// From the ink of one plant to that of the whole drawing.
+/// Maps the ink of one plant back to that of the whole drawing.
 pub(crate) struct Back {
     pub(crate) whole: InkMap,
     pub(crate) part: InkMap,
@@ -137,7 +138,7 @@ impl Back {
         self.bearer(&mut blade.bearer, first);
     }
 
-    /// Adds one plant's reading to that of all.
+    /// Adds one plant's reading to the whole one.
     pub(crate) fn add(&self, all: &mut Reading, mut one: Reading) {
         let first = all.axes.len();
         for axis in &mut one.axes {

@@ -1,8 +1,8 @@
-//! A tree by its silhouette: what is left when its strokes say nothing together.
+//! A tree by its silhouette: used if its strokes do not form one together.
 //!
-//! Carefully drawn trees have a crown of many open arcs and a trunk of many lines, which join to no outlines. Seen from
-//! afar they are one shape with a neck, and that is read as a tree drawn in one line is. It also tells how well what was
-//! read of the strokes covers what was drawn.
+//! Carefully drawn trees have a crown of many open arcs and a trunk of many lines, which do not join to outlines. From
+//! afar they are one shape with a neck, and that is read like a tree drawn in one line. The silhouette also measures
+//! how well a reading of the strokes covers the drawing.
 
 use core::ops::Range;
 
@@ -20,53 +20,58 @@ use crate::rules::{IN_CROWN, SMALL, share_inside};
 use crate::sealed::Sealed;
 use crate::{OrganWord, READ_AS, Reading, RegionKind};
 
-/// Balls that find no way in through its gaps, shares of the drawing's diagonal: the first that gives a shape with a neck.
+/// Radii of balls that find no way in through its gaps, as shares of the drawing's diagonal: the first that gives a
+/// shape with a neck counts.
 pub(crate) const BALLS: [f64; 4] = [0.012, 0.025, 0.04, 0.06];
 /// The shape fills more than this share of its hull; bare branches fill less.
 const FULL: f64 = 0.5;
-/// Less than this share of what was drawn lies outside, farther than the second number: so far cells lie off the lines.
+/// Less than this share of the drawn points lies outside.
 const LEFT_OUT: f64 = 0.12;
+/// Points farther away than this lie outside: so far cells lie off the lines.
 pub(crate) const NEAR: f64 = 0.018;
-/// Every so many points of a line are looked at.
+/// Step between the points of a line that are looked at.
 const STRIDE: usize = 3;
-/// Along less than this share of the crown, and of the sides of the trunk above that share of its height, nothing was drawn.
+/// Less than this share of the crown, and of the sides of the trunk, was not drawn.
 const BARE: f64 = 0.07;
+/// The sides of the trunk count above this share of its height.
 const AT_FOOT: f64 = 0.3;
-/// A body of more parts is no single one, and one beside which less than this share of the lines lies is whole.
+/// Most parts of a single body.
 const MOST_PARTS: usize = 2;
+/// A body is whole if less than this share of the lines lies outside it.
 const LOOSE: f64 = 0.1;
-/// A line is of its outline with at least this share of its points.
+/// A line is on the outline if more than this share of its points is.
 const ON_OUTLINE: f64 = 0.6;
-/// A level line below this share of the height is the ground; it rises by less than that share of its width.
+/// A level line below this share of the height is the ground.
 const LOW: f64 = 0.2;
+/// The ground rises by less than this share of its width.
 const LEVEL: f64 = 0.25;
 /// Marks smaller than this, such as grass, do not shape it.
 const MARK: f64 = 0.06;
 /// Points along a trunk, and levels at which it, or a crown, is compared.
 const LEVELS: u32 = 16;
-/// What lies in this lowest share of the height is at the foot: without its roots, and with them.
+/// The lowest share of the height that is its foot: without roots, and with them.
 pub(crate) const FEET: [f64; 2] = [0.08, 0.15];
-/// This lowest share of a trunk is as wide as it is there.
+/// This lowest share of a trunk is taken to be as wide as at its upper end.
 const RAGGED: f64 = 0.16;
-/// How often each level of a trunk is brought towards those beside it.
+/// How often each level of a trunk is averaged with its neighbours.
 const CALM: usize = 6;
-/// What lies in this lowest share of a trunk stands on the ground.
+/// Parts in this lowest share of a trunk stand on the ground.
 const STANDS: f64 = 0.2;
 
 /// Trunk and crown of a drawing that has a neck.
 #[derive(Debug)]
 pub(crate) struct Silhouette {
-    /// What is below the neck.
+    /// Outline below the neck.
     below: Vec<DVec2>,
     trunk: Limb,
     crown: Vec<DVec2>,
 }
 
 impl Silhouette {
-    pub(crate) fn of(drawn: &Drawn<'_>) -> Option<Self> {
+    pub(crate) fn find(drawn: &Drawn<'_>) -> Option<Self> {
         FEET.iter().find_map(|&share| {
             let shut = drawn.shut(share)?;
-            // What the largest ball comes into, all do.
+            // Gaps that let the largest ball in let in all balls.
             let [balls @ .., largest] = BALLS;
             let widest = shut(largest)?;
             let narrower = balls.into_iter().find_map(|ball| Self::cut(drawn, &shut(ball)?, ball));
@@ -74,21 +79,22 @@ impl Silhouette {
         })
     }
 
-    /// An outline cut at its neck, if it is that of a tree with trunk and crown.
+    /// Cuts an outline at its neck, if it is that of a tree with trunk and crown.
     fn cut(drawn: &Drawn<'_>, outline: &[DVec2], ball: f64) -> Option<Self> {
         let (below, crown) = neck(outline, true)?;
         let (foot, low, top) = (bounds(&below)?.0.y, bounds(&crown)?.0.y, bounds(&crown)?.1.y);
         let trunk = limb(outline, low);
         let mut half = trunk.half_width.clone();
         base::sort_numbers(&mut half);
-        // Crown and trunk were drawn all round, but for gaps: between the tips of branches nothing is.
+        // Crown and trunk were drawn all round, but for gaps: between the tips of branches there are no lines.
         let wide = half.len() > 1 && half[half.len() / 2] > ball;
         let sides = foot + AT_FOOT * (low - foot)..low;
         let whole = wide && drawn.bare(&crown, &(low..top)) < BARE && drawn.bare(&below, &sides) < BARE;
         whole.then_some(Self { below, trunk, crown })
     }
 
-    /// How much of what the silhouette or a reading covers both do, 0 to 1: of the trunk or of the crown, whichever is less.
+    /// Returns how much of the area that the silhouette or a reading covers is covered by both, 0 to 1: of the trunk
+    /// or of the crown, whichever is less.
     pub(crate) fn fit(&self, reading: &Reading) -> f64 {
         let made = made(reading);
         let drawn = [self.below.clone(), self.crown.clone()];
@@ -97,8 +103,8 @@ impl Silhouette {
         common(&drawn, &made, low.y..neck).min(common(&drawn, &made, neck..high.y))
     }
 
-    /// Gives every stroke the class that it has in the silhouette, and reads that. Lines and fruits in the crown stay what they
-    /// are.
+    /// Gives every stroke the class that it has in the silhouette, and reads it. Lines and fruits in the crown keep
+    /// their classes.
     pub(crate) fn read(self, shaping: &Shaping<'_>, draft: &mut Draft<'_>) {
         use StrokeClass::{Axis, Crown, Disc, Fruit, TrunkOutline};
         let foot = bounds(&self.crown).map_or(0.0, |b| b.0.y);
@@ -132,7 +138,7 @@ impl Silhouette {
     }
 }
 
-/// What of a drawing shapes a tree.
+/// The lines of a drawing that shape a tree.
 pub(crate) struct Shaping<'a> {
     /// Which strokes are the line of the ground.
     ground: Vec<bool>,
@@ -143,8 +149,8 @@ pub(crate) struct Shaping<'a> {
 }
 
 impl<'a> Shaping<'a> {
-    /// Of a drawing whose ground and roots are known from a reading.
-    pub(crate) fn of(ink: &'a Ink, reading: &Reading) -> Option<Self> {
+    /// Finds the shaping lines of a drawing whose ground and roots are known from a reading.
+    pub(crate) fn find(ink: &'a Ink, reading: &Reading) -> Option<Self> {
         let is = |class: StrokeClass, stroke: u32| {
             reading.strokes.iter().any(|s| s.index == stroke && s.class == class)
         };
@@ -164,7 +170,7 @@ impl<'a> Shaping<'a> {
         Some(Self { lines: lines.collect(), ground, roots })
     }
 
-    /// Says that a stroke is ground or a root, if it is.
+    /// Marks a stroke as ground or root, if it is; returns whether it is.
     pub(crate) fn tells(&self, k: usize, draft: &mut Draft<'_>) -> bool {
         if !self.ground[k] && !self.roots[k] {
             return false;
@@ -180,14 +186,14 @@ impl<'a> Shaping<'a> {
     }
 }
 
-/// What a reading covers: its wood and its crowns.
+/// Returns the area that a reading covers: its wood and its crowns.
 pub(crate) fn made(reading: &Reading) -> Vec<Vec<DVec2>> {
     let wood = reading.axes.iter().filter(|a| a.kind != AxisKind::Root && !a.half_width.is_empty());
     let wood = wood.map(|a| ribbon(&a.points, &a.half_width));
     wood.chain(reading.regions.iter().map(|r| r.outline.clone())).collect()
 }
 
-/// Of what some shapes or others cover between two heights, how much both do: 0 to 1.
+/// Returns the share of the area covered by some shapes or others between two heights that both cover: 0 to 1.
 pub(crate) fn common(some: &[Vec<DVec2>], others: &[Vec<DVec2>], heights: Range<f64>) -> f64 {
     let (mut met, mut any) = (0.0, 0.0);
     for k in 0..LEVELS {
@@ -205,7 +211,7 @@ pub(crate) fn common(some: &[Vec<DVec2>], others: &[Vec<DVec2>], heights: Range<
 pub(crate) struct Drawn<'a> {
     pub(crate) lines: &'a [&'a [DVec2]],
     near: Near,
-    /// The area of the hull of all.
+    /// Area of the hull of all lines.
     pub(crate) hull: f64,
 }
 
@@ -216,19 +222,19 @@ impl<'a> Drawn<'a> {
         Self { lines, near, hull: signed_area(&convex_hull(&lines.concat())) }
     }
 
-    /// What a ball finds no way into, with the foot at a share of the height closed.
+    /// Returns a function from a ball to the area that it cannot enter, with the foot at a share of the height closed.
     pub(crate) fn sealed(&self, share: f64) -> Option<impl Fn(f64) -> Option<Sealed>> {
         let foot = foot(self.lines, share)?;
         Some(move |ball| Sealed::new(&[self.lines, &[&foot]].concat(), ball))
     }
 
-    /// The outline of that, where it holds the drawing.
+    /// Returns a function to the outline of that area, if it holds the drawing.
     fn shut(&self, share: f64) -> Option<impl Fn(f64) -> Option<Vec<DVec2>>> {
         let sealed = self.sealed(share)?;
         Some(move |ball| sealed(ball)?.outline().filter(|outline| self.lies_in(outline)))
     }
 
-    /// Whether an outline is full, stands where the drawing does, and nearly all that was drawn lies in it.
+    /// Whether an outline is full, stands where the drawing does, and holds nearly all drawn points.
     fn lies_in(&self, outline: &[DVec2]) -> bool {
         let low = |l: &[DVec2]| bounds(l).map_or(f64::INFINITY, |b| b.0.y);
         let foot = self.lines.iter().map(|l| low(l)).fold(f64::INFINITY, f64::min);
@@ -243,7 +249,7 @@ impl<'a> Drawn<'a> {
         self.lines.iter().flat_map(|l| l.iter().step_by(STRIDE))
     }
 
-    /// Along which share of an outline between two heights nothing was drawn.
+    /// Returns the share of an outline between two heights along which nothing was drawn.
     pub(crate) fn bare(&self, outline: &[DVec2], heights: &Range<f64>) -> f64 {
         let places = resample(outline, NEAR).into_iter();
         let places = places.filter(|p| p.y > heights.start + NEAR && p.y < heights.end - NEAR);
@@ -255,10 +261,10 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// One body for what was read as less than that: the cap of a mushroom without its stem. Only where no line leads out of it.
+/// Makes one body of a smaller one: the cap of a mushroom without its stem. Only if no line leads out of it.
 pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
     let parts = reading.leaves.len() + reading.flowers.len() + reading.thorns.len() + reading.pots.len();
-    // What was drawn as a contour that leaves or twigs fill is no skin.
+    // A contour that leaves or twigs fill is no skin.
     let filled = reading.regions.iter().any(|r| r.kind != RegionKind::Crown);
     if parts > 0 || filled || !(1..=MOST_PARTS).contains(&reading.fruits.len()) {
         return;
@@ -277,11 +283,11 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
         return;
     }
     reading.axes.clear();
-    // Crowns were borne by them.
+    // They bore the crowns.
     reading.regions.clear();
     reading.fruits.truncate(1);
     reading.fruits[0].bearer = None;
-    // What runs inside is on its skin.
+    // Lines inside are on its skin.
     let on_outline = |points: &[DVec2]| {
         let near = points.iter().filter(|p| nearest_on_ring(&outline, **p).1 < 2.0 * NEAR).count();
         near as f64 > ON_OUTLINE * points.len() as f64
@@ -300,12 +306,12 @@ pub(crate) fn one_body(ink: &Ink, reading: &mut Reading) {
     reading.fruits[0].outline = outline;
 }
 
-/// Whether a place lies in an outline, or on it as near as cells tell.
+/// Whether a point lies in an outline, or on it within the accuracy of cells.
 pub(crate) fn holds(outline: &[DVec2], p: DVec2) -> bool {
     contains(outline, p) || nearest_on_ring(outline, p).1 <= NEAR
 }
 
-/// How much of a line runs cover.
+/// Returns the length that intervals cover together.
 fn covered(mut runs: Vec<(f64, f64)>) -> f64 {
     base::sort_by(&mut runs, |a, b| a.0.total_cmp(&b.0));
     let mut end = f64::NEG_INFINITY;
@@ -317,7 +323,7 @@ fn covered(mut runs: Vec<(f64, f64)>) -> f64 {
     runs.into_iter().map(own).sum()
 }
 
-/// A line along the foot of a drawing, from its lower left to its lower right corner: a trunk is open below.
+/// Returns a line along the foot of a drawing, from its lower left to its lower right corner: a trunk is open below.
 fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
     let (low, high) = lines.iter().filter_map(|l| bounds(l)).reduce(around)?;
     let feet = || lines.iter().copied().flatten().filter(|p| p.y < low.y + share * (high.y - low.y));
@@ -326,8 +332,9 @@ fn foot(lines: &[&[DVec2]], share: f64) -> Option<[DVec2; 2]> {
     Some([*left, *right])
 }
 
-/// The trunk of an outline from its foot to the neck at `top`: all that stands on the ground, and at each level above what
-/// hangs together with the level below. So two sides are one trunk, and lobes of the crown that hang beside it no part of it.
+/// Returns the trunk of an outline from its foot to the neck at `top`: all parts that stand on the ground, and at each
+/// level above the parts connected with the level below. So two sides are one trunk, and lobes of the crown that hang
+/// next to it are not part of it.
 pub(crate) fn limb(outline: &[DVec2], top: f64) -> Limb {
     let low = bounds(outline).map_or(0.0, |b| b.0.y);
     let mut limb = Limb { points: Vec::new(), half_width: Vec::new(), parent: None, closed_end: false };
@@ -348,7 +355,7 @@ pub(crate) fn limb(outline: &[DVec2], top: f64) -> Limb {
     limb
 }
 
-/// The middle of a trunk runs as wood does, however ragged its sides are.
+/// Smooths the middle of a trunk and its sides, however ragged they are.
 fn calm(limb: &mut Limb) {
     let n = limb.points.len();
     for _ in 0..CALM {

@@ -1,22 +1,23 @@
-//! Tremor of the hand: a line that shakes to and fro in short waves is read as the line that was meant.
+//! Removes tremor of the hand: a line that shakes to and fro in short waves is read as the line that was meant.
 
 use glam::DVec2;
 
-/// The line that was meant lies within this share of the length around each point, weighted by a bell of that spread.
+/// Spread of the bell by which points are averaged, as a share of the length.
 const SPREAD: f64 = 0.022;
-/// Shorter lines are left as they are: there short waves are what was drawn.
+/// Shorter lines are not changed: their short waves were meant.
 const LEAST: f64 = 0.12;
 /// Fewer points show no waves: five waves of four points each, and some more (*geometry*).
 const FEWEST_POINTS: usize = 24;
-/// Waves of tremor: at least so many, each at most this high, as shares of the length.
+/// Fewest waves of tremor.
 const WAVES: usize = 5;
+/// Greatest height of a wave of tremor, as a share of the length.
 const HIGHEST: f64 = 0.012;
-/// What is lower was smoothed away already.
+/// Lower waves were smoothed away already.
 const LOWEST: f64 = 0.0008;
-/// In each of so many parts of the line the hand shakes.
+/// The hand shakes in each of this number of parts of the line.
 const PARTS: usize = 3;
 
-/// The line without tremor; none where the hand did not shake. Both ends stay where they are.
+/// Returns the line without tremor; `None` if the hand did not shake. Both ends stay where they are.
 ///
 /// `points`: even steps.
 pub(crate) fn steady(points: &[DVec2]) -> Option<Vec<DVec2>> {
@@ -45,7 +46,8 @@ pub(crate) fn steady(points: &[DVec2]) -> Option<Vec<DVec2>> {
     (turns.len() >= 2 * WAVES && everywhere && highest < HIGHEST).then_some(smooth)
 }
 
-/// Each point is a mean of its neighbours, weighted by a bell; beyond the ends the line goes on as its mirror image.
+/// Averages each point with its neighbours, weighted by a bell; beyond the ends the line continues as its mirror
+/// image.
 fn smoothed(points: &[DVec2], length: f64) -> Vec<DVec2> {
     let n = points.len();
     let step = length / (n - 1) as f64;
@@ -95,7 +97,7 @@ mod tests {
         (ink.strokes[0].points.iter().map(|&p| ink.map.to_drawing(p)).collect(), ink.map.scale)
     }
 
-    /// Apart from both ends, which stay where the pen was.
+    /// Returns the greatest tremor apart from both ends, which stay where the pen was.
     fn farthest(points: &[DVec2]) -> f64 {
         let points = points.iter().filter(|p| p.y > 50.0 && p.y < 710.0);
         let meant = |p: &DVec2| 60.0 * ops::sin((p.y / 760.0).clamp(0.0, 1.0) * ops::PI);

@@ -1,14 +1,15 @@
-//! Whether a drawing came out as a tangle of bare lines: `Reading -> how much of the ink is axes that lead to nothing`.
+//! Detects drawings that came out as a tangle of bare lines: `Reading -> length of axes that lead to nothing`.
 //!
-//! Engravings and traced scans are areas of ink whose centre lines run along outlines, shading and veins alike. The readers
-//! take most of these for axes. A plant of bare axes is a bare tree; a plant that has organs bears them on its axes.
+//! Engravings and traced scans are areas of ink whose centre lines run along outlines, shading and veins alike. The
+//! readers take most of these for axes. A plant of bare axes is a bare tree; a plant that has organs bears them on its
+//! axes.
 
 use geom::polyline_length;
 use plant::AxisKind;
 
 use crate::Reading;
 
-/// When bare lines are a tangle.
+/// Limits beyond which bare lines are a tangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangleLimits {
     /// The bare lines together are longer than this many diagonals of the drawing.
@@ -17,11 +18,12 @@ pub struct TangleLimits {
     pub share_most: f64,
 }
 
-/// The limits for all drawings. Measured on 88 pieces of line art by people and 16 illustrations: see `docs/strokes.md`.
+/// The limits for all drawings. Measured on 88 pieces of line art by people and 16 illustrations: see
+/// `docs/strokes.md`.
 pub const TANGLE_LIMITS: TangleLimits = TangleLimits { length_most: 3.0, share_most: 0.4 };
 
-/// The length of all axes that lead to no organ and no crown, in diagonals of the drawing, where that makes a tangle; 0 where
-/// it makes none. Roots are bare, and so are all axes of a plant without organs: these count for nothing. Cost: linear.
+/// Returns the length of all axes that lead to no organ and no crown, in diagonals of the drawing, if that makes a
+/// tangle; else 0. Roots are bare, and so are all axes of a plant without organs: these do not count. Cost: linear.
 pub fn tangled_length(reading: &Reading) -> f64 {
     let Reading { axes, leaves, flowers, fruits, regions, thorns, .. } = reading;
     let borne = leaves.iter().map(|l| l.bearer).chain(flowers.iter().map(|f| f.bearer));
@@ -31,7 +33,7 @@ pub fn tangled_length(reading: &Reading) -> f64 {
     let mut leads = vec![false; axes.len()];
     for bearer in bearers {
         let mut next = Some(bearer);
-        // A line of bearers that was followed already is known to lead somewhere.
+        // A chain of bearers that was followed already is known to lead somewhere.
         while let Some(k) = next.filter(|&k| leads.get(k) == Some(&false)) {
             leads[k] = true;
             next = axes[k].bearer.map(|b| b.axis);

@@ -61,7 +61,7 @@ fn reading(strokes: &[(StrokeClass, Vec<DVec2>)]) -> (Reading, Report) {
     (reading, report)
 }
 
-/// What a classifier says that is not sure.
+/// A class of a classifier that is not sure.
 fn perhaps(class: StrokeClass, confidence: f64) -> Classified {
     Classified { class, confidence, ..Classified::default() }
 }
@@ -361,12 +361,12 @@ fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
         guessed(&[(StrokeClass::TrunkOutline, flat.clone()), (StrokeClass::TrunkOutline, zigzag.clone())]);
     assert_eq!((r.axes.len(), r.strokes[0].class), (0, StrokeClass::Ground), "{:?}", r.strokes);
     assert!(r.leaves.len() >= 3, "{} blades", r.leaves.len());
-    // The kind of the whole does not see it without the rule: then it is a cactus.
+    // Without the rule the kind of the whole is a cactus.
     let kinds = ["", "zigzag"].map(|off| whole_without(off, &[zigzag.clone(), flat.clone()]).0);
     assert_eq!(kinds, [Kind::Grass, Kind::Cactus]);
 }
 
-/// The kind and the leaves of the one plant that programs read, with a rule switched off.
+/// Returns the kind and the leaf count of the one plant that programs read, with a rule switched off.
 fn whole_without(off: &str, lines: &[Vec<DVec2>]) -> (Kind, usize) {
     let ink = clean(&Drawing::from_polylines("whole", lines), &mut Report::default());
     let classes = ink::classify(&ink, &base::Run::plain());
@@ -380,11 +380,11 @@ fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
     let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
     let classes: Vec<Classified> =
         ink.strokes.iter().map(|s| perhaps(strokes[s.index as usize].0, 0.5)).collect();
-    // The kind of the whole would see them, too.
+    // The kind of the whole would recognise them, too.
     read_without(&[READ_AS], &ink, &classes, &mut Report::default())
 }
 
-/// As programs read a drawing.
+/// Reads a drawing as programs do.
 fn read_whole(name: &str, lines: &[Vec<DVec2>]) -> Reading {
     let ink = clean(&Drawing::from_polylines(name, lines), &mut Report::default());
     let classes = ink::classify(&ink, &base::Run::plain());
@@ -424,7 +424,7 @@ fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
     // Four of them are grass by the whole, too, but without the rule each is one broad blade.
     let four = [0.0, 3.0, 6.0, 9.0].map(v);
     assert_eq!(["", "tuft"].map(|off| whole_without(off, &four)), [(Kind::Grass, 8), (Kind::Grass, 4)]);
-    // A trough is no root: what is round below stays a crown.
+    // A trough is no root: an outline that is round below stays a crown.
     let bowl: Vec<DVec2> = (0..=40)
         .map(|i| ops::PI * f64::from(i) / 40.0)
         .map(|a| DVec2::new(-ops::cos(a), 1.0 - ops::sin(a)))
@@ -661,7 +661,7 @@ fn the_user_may_take_a_drawing_for_another_kind() {
     let r = read_as(Some(Kind::Fruit), &ink, &classes, &mut Report::default());
     assert_eq!((r.fruits.len(), r.regions.len()), (1, 0), "{:?}", r.strokes);
     assert!(r.strokes.iter().any(|s| s.source == Source::Rule(READ_AS)), "{:?}", r.strokes);
-    // The scores fall, and what was read comes first.
+    // The scores fall, and the kind that was read comes first.
     let r = read(&ink, &classes, &mut Report::default());
     let readings = &r.plants[0].readings;
     assert_eq!((readings.len(), readings[0].kind), (3, r.plants[0].kind));
@@ -686,7 +686,7 @@ fn the_documented_rules_are_these() {
     }
 }
 
-/// Read as a person would have drawn it, and whether that was called no plant.
+/// Reads lines as a person would have drawn them; returns whether the result was called no plant.
 fn drawn(lines: &[Vec<DVec2>]) -> (Reading, bool) {
     let mut report = Report::default();
     let ink = clean(&Drawing::from_polylines("drawn", lines), &mut report);

@@ -1,4 +1,4 @@
-//! What every reading guarantees.
+//! The guarantees of every reading.
 
 use core::fmt;
 
@@ -8,14 +8,14 @@ use glam::DVec2;
 use crate::thresholds::NO_LENGTH;
 use crate::{Attachment, BladeReading, Reading};
 
-/// Something that no reading may have.
+/// A fault that no reading may have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadingFault {
-    /// Which list of the reading.
+    /// List of the reading.
     pub part: &'static str,
     /// Row in that list.
     pub row: usize,
-    /// What is wrong.
+    /// Description of the fault.
     pub what: &'static str,
 }
 
@@ -26,7 +26,7 @@ impl fmt::Display for ReadingFault {
 }
 
 impl Reading {
-    /// Everything that is wrong with this reading; nothing for what [`crate::read`] makes.
+    /// Returns all faults of this reading; none for a reading that [`crate::read`] makes.
     ///
     /// Checks that bearers come first and bases lie on them, that numbers are finite, that outlines are simple,
     /// counter-clockwise and have 3 points or more, that lines have 2.

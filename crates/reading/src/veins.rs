@@ -1,4 +1,4 @@
-//! Veins: lines inside a blade. The one from root to tip becomes its midrib.
+//! Finds veins: lines inside a blade. The one from root to tip becomes its midrib.
 
 use geom::{contains, polyline_length};
 use glam::DVec2;
@@ -18,29 +18,31 @@ const SAMPLES: usize = 24;
 #[derive(Clone, Debug)]
 pub(crate) struct VeinLine {
     pub points: Vec<DVec2>,
-    /// The row of the stroke that it is, or is a part of.
+    /// Row of the stroke that it is, or is a part of.
     pub stroke: usize,
 }
 
 /// The veins of each blade.
 pub(crate) type Veins = Vec<Vec<VeinLine>>;
 
-/// What is surely a vein lies in its blade at least by this share of its length, and what is surely a stem by that.
+/// Least share of its length with which a line that is surely a vein lies in its blade.
 const VEIN_INSIDE: f64 = 0.25;
+/// Least share of its length with which a line that is surely a stem lies in a blade to be its vein.
 const STEM_INSIDE: f64 = 0.9;
-/// What is so surely a vein is one, though no blade was found around it.
+/// A line that is a vein with at least this share is one, though no blade was found around it.
 const SURE_VEIN: f64 = 0.8;
-/// What sticks out of a blade by more than this share of its size is its stalk.
+/// A part that sticks out of a blade by more than this share of the blade's size is its stalk.
 const STALK: f64 = 0.1;
-/// A midrib runs along more than this share of its blade, keeps this near to the line from root to tip, and begins within
-/// this share of the root; shares of the blade's length.
+/// A midrib runs along more than this share of its blade's length.
 const RIB_RUN: f64 = 0.4;
+/// A midrib keeps within this share of the blade's length of the line from root to tip.
 const RIB_ASIDE: f64 = 0.35;
+/// A midrib begins within this share of the blade's length of the root.
 const RIB_START: f64 = 0.4;
 
 /// Takes the lines that lie inside blades out of the draft's vein and axis strokes.
 ///
-/// A vein that runs on beyond its blade is its stalk out there.
+/// The part of a vein beyond its blade is the blade's stalk.
 pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
     use StrokeClass::{Axis, Vein};
     let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
@@ -52,7 +54,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
             let points = &ink.strokes[k].points;
             let decides = unsure(draft, k) && !off.contains(&VEINS_IN_BLADES);
             let vein = match draft.said[k].shares {
-                // Of what the classifier thinks of lines.
+                // The share of veins among the shares of both kinds of lines.
                 s if decides && s[Vein.place()] + s[Axis.place()] > 0.0 => {
                     s[Vein.place()] / (s[Vein.place()] + s[Axis.place()])
                 }
@@ -83,7 +85,7 @@ pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
     veins
 }
 
-/// The blade that holds at least `share` of a line; of several the smallest.
+/// Returns the blade that holds at least `share` of a line; the smallest of several.
 fn host(draft: &Draft<'_>, boxes: &Boxes, points: &[DVec2], share: f64) -> Option<usize> {
     let stride = (points.len() / SAMPLES).max(1);
     let mut hits: Vec<(usize, usize)> = Vec::new();
@@ -121,7 +123,8 @@ fn part(points: &[DVec2], outline: &[DVec2]) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
     (points[first..=last].to_vec(), [head, tail].into_iter().filter(|l| l.len() > 1).collect())
 }
 
-/// Of a blade's veins the midrib, root first: it leads from near the root towards the tip. The rest are side veins.
+/// Chooses the midrib among a blade's veins, root first: it leads from near the root towards the tip. The rest are
+/// side veins.
 pub(crate) fn choose_midrib(
     veins: Vec<VeinReading>,
     root: DVec2,

@@ -6,25 +6,25 @@ use base::{Cancelled, LiteMap, Report, Run, Seed};
 use geom::contains;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
-use reading::{BladeReading, Reading, RegionKind};
+use reading::{BladeReading, FruitReading, Reading, RegionKind};
 
 use crate::bodies::name_bodies;
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
-    leaf_shape, place_flower, place_fruit, place_leaf, place_pot, place_thorn, usual_colour,
+    fill_bunches, leaf_shape, place_flower, place_fruit, place_leaf, place_pot, place_thorn, usual_colour,
 };
 use crate::fill::{FillContext, GrownContour, KeptBodies, fill};
 use crate::front::Front;
 use crate::{PlantMap, SketchSpec};
 
-/// A plant and how it lies in the drawing.
+/// A plant and its place in the drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Built {
-    /// The plant: `plant.validate()` finds nothing wrong with it.
+    /// The plant: `plant.validate()` finds no fault in it.
     pub plant: Plant,
     /// From the drawing's ink to the plant's metres.
     pub map: PlantMap,
-    /// What grew in the drawing's contours.
+    /// Results of growth in the drawing's contours.
     pub grown: Vec<GrownContour>,
 }
 
@@ -68,11 +68,11 @@ pub fn build(
     build_again(reading, spec, seed, &mut KeptBodies::default(), run, report)
 }
 
-/// As [`build`], again for a reading that changed a little: what `kept` holds of the last time is not computed anew. The
-/// same plant comes out.
+/// Builds a plant as [`build`] does, again for a reading that changed a little: results in `kept` from the last time
+/// are not computed anew. The same plant comes out.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_again(
     reading: &Reading,
     spec: &SketchSpec,
@@ -102,7 +102,11 @@ pub fn build_again(
     let ids = add_axes(&mut plant, &plans, map);
     let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
     let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
-    let colors = blades.map(|b| b.color).chain(filled);
+    let colors = blades.map(|b| b.color).chain(filled.clone());
+    let petals = reading.flowers.iter().flat_map(|f| &f.petals).filter_map(|p| p.color);
+    let pots = reading.pots.iter().map(|p| p.color);
+    let others = reading.leaves.iter().map(|l| l.color).chain(filled).chain(pots).flatten();
+    let is_in_blue_pen = reading::is_in_blue_pen(petals, others);
     let pressed = base::map_of(reading.pressed.iter().copied().filter(|p| p.1.is_finite() && p.1 > 0.0));
     let scene = Scene {
         spec,
@@ -110,7 +114,7 @@ pub fn build_again(
         map,
         plans: &plans,
         ids: &ids,
-        coloured: coloured(colors),
+        coloured: coloured(colors) && !is_in_blue_pen,
         petals: usual_colour(reading.flowers.iter().flat_map(|f| &f.petals)),
         pressed: &pressed,
     };
@@ -129,8 +133,11 @@ pub fn build_again(
     for (i, thorn) in reading.thorns.iter().enumerate() {
         place_thorn(&mut plant, &scene, thorn, i);
     }
-    for (i, fruit) in reading.fruits.iter().enumerate().filter(|(_, f)| !crowned.holds(middle(&f.outline))) {
-        place_fruit(&mut plant, &scene, fruit, i, None);
+    let free = |f: &FruitReading| !crowned.holds(middle(&f.outline));
+    for (i, placed) in fill_bunches(&reading.fruits).iter().enumerate() {
+        if free(&reading.fruits[i]) {
+            place_fruit(&mut plant, &scene, (&placed.fruit, placed.depth), i, None);
+        }
     }
     reading.pots.iter().for_each(|pot| place_pot(&mut plant, &scene, pot));
     report.book("depth", run.clock.now_ms() - started);
@@ -160,12 +167,12 @@ pub fn build_again(
     Ok(Built { plant, map, grown })
 }
 
-/// Lines that were drawn boldly are thick, and so is what they bear; none is thicker than what bears it.
+/// Thickens axes that were drawn boldly, and the axes that they bear; no axis becomes thicker than its bearer.
 fn press(plant: &mut Plant, reading: &Reading, mut pressed: LiteMap<u32, f64>) {
     if pressed.is_empty() {
         return;
     }
-    // What was drawn as an outline has the width that was drawn.
+    // An axis drawn as an outline has the width that was drawn.
     for axis in reading.axes.iter().filter(|a| !a.half_width.is_empty()) {
         axis.source.and_then(|source| pressed.remove(&source));
     }
@@ -184,7 +191,7 @@ fn press(plant: &mut Plant, reading: &Reading, mut pressed: LiteMap<u32, f64>) {
     }
 }
 
-/// Scale and origin: the main axis stands at x = 0 on the ground, and the plant has the height asked for.
+/// Returns scale and origin: the main axis stands at x = 0 on the ground, and the plant has the requested height.
 fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     let sound = |p: &DVec2| p.is_finite() && p.abs().max_element() < 1e6;
     let standing = |a: &&reading::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
@@ -227,7 +234,7 @@ fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     PlantMap { metres_per_ink: height_m(reading, spec) / extent, origin_ink }
 }
 
-/// Height of the plant, metres: what was asked for, else 8 m of a tree and 0.5 m of a herb.
+/// Returns the height of the plant, metres: the requested one, else 8 m for a tree and 0.5 m for a herb.
 fn height_m(reading: &Reading, spec: &SketchSpec) -> f64 {
     let usual = if reading.woody { 8.0 } else { 0.5 };
     spec.height_m.filter(|h| h.is_finite() && (1e-6..1e6).contains(h)).unwrap_or(usual)
@@ -275,7 +282,7 @@ fn leaf_shapes<'a>(plant: &mut Plant, scene: &Scene<'_>, reading: &'a Reading) -
     leaves
 }
 
-/// The crowns of a reading: what was drawn inside one hangs at the front of what grows in it.
+/// The crowns of a reading: organs drawn inside one hang at the front of its growth.
 struct Crowned<'a>(Vec<Crown<'a>>);
 
 struct Crown<'a> {
@@ -310,7 +317,7 @@ fn middle(outline: &[DVec2]) -> DVec2 {
     outline.iter().sum::<DVec2>() / n
 }
 
-/// Places what was drawn inside crowns: on the twig that comes nearest to the viewer there.
+/// Places organs that were drawn inside crowns: on the twig that comes nearest to the viewer there.
 fn hang_in_crowns(
     plant: &mut Plant,
     scene: &Scene<'_>,
@@ -321,12 +328,12 @@ fn hang_in_crowns(
     if crowned.0.is_empty() {
         return;
     }
-    // What is hung does not bear what is hung after it.
+    // Organs that are hung here do not bear later ones.
     let grown = plant.nodes.position.clone();
     let nodes = Front::new(&grown);
     let front = |plant: &Plant, root: DVec2| -> Option<(Bearing, DVec3)> {
         let at = scene.map.plant_from_ink(root);
-        // Twice as far aside as it is nearer to the viewer: near twigs win over far ones in front.
+        // A distance aside counts twice as much as one towards the viewer: near twigs win over far ones in front.
         let node = nodes.nearest_to_viewer(at)?;
         let position = grown.get(node)?;
         let axis = plant.nodes.axis.get(node)?;
@@ -353,13 +360,13 @@ fn hang_in_crowns(
         let centre = middle(&fruit.outline);
         if crowned.holds(centre) {
             let seat = front(plant, centre);
-            place_fruit(plant, scene, fruit, i, seat);
+            place_fruit(plant, scene, (fruit, 0.0), i, seat);
         }
     }
 }
 
-/// The share of its drawn width that a trunk keeps at each node: it dissolves on its way through a crown, of
-/// which the drawing shows the outside only.
+/// Returns the share of its drawn width that a trunk keeps at each node: it dissolves on its way through a crown, and
+/// the drawing shows only the outside of a crown.
 fn thinned_in_crowns(points: &[DVec3], reading: &Reading, map: PlantMap) -> Vec<f64> {
     let crowns: Vec<(Vec<DVec2>, f64)> = (reading.regions.iter())
         .filter(|r| r.kind == RegionKind::Crown && r.outline.len() >= 3)
@@ -383,7 +390,7 @@ fn thinned_in_crowns(points: &[DVec3], reading: &Reading, map: PlantMap) -> Vec<
     points.iter().map(share).collect()
 }
 
-/// The pipe model of this plant: base radii from sizes, drawn half widths where there are some.
+/// Returns the pipe model of this plant: base radii from sizes, and drawn half widths if there are any.
 fn pipes(
     plant: &Plant,
     plans: &Plans,
@@ -394,8 +401,8 @@ fn pipes(
 ) -> PipeModel {
     let woody = reading.woody;
     let height = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
-    // Trees: a fortieth of the height. Herbs: a ninetieth. A longer axis than the plant is tall counts itself.
-    // A herb beside a tree stays one.
+    // Trees: a fortieth of the height. Herbs: a ninetieth. An axis longer than the plant's height uses its own length.
+    // A herb next to a tree stays one.
     let slender = |kind| if woody && kind != AxisKind::Stem { 1.0 / 40.0 } else { 1.0 / 90.0 };
     let mut ground = Vec::new();
     for (i, axis) in plant.axes.iter().enumerate().filter(|(_, a)| a.bearer.is_none()) {

@@ -1,4 +1,4 @@
-//! Points -> the one that comes nearest to the viewer around a place.
+//! Finds the point nearest to the viewer around a place.
 
 use glam::{DVec2, DVec3};
 
@@ -11,7 +11,7 @@ pub(crate) struct Front<'a> {
     points: &'a [DVec3],
     /// Indices of the points, box by box.
     order: Vec<usize>,
-    /// In the order of a walk: after a box that is divided comes its first half.
+    /// Boxes in the order of a walk: after a box that is divided comes its first half.
     boxes: Vec<Bounds>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Front<'a> {
         front
     }
 
-    // As deep as the logarithm of the number of points.
+    // Recursion depth: the logarithm of the number of points.
     fn divide(&mut self, from: usize, to: usize) -> usize {
         let part = &mut self.order[from..to];
         let mut bounds = Bounds {
@@ -70,8 +70,8 @@ impl<'a> Front<'a> {
         this
     }
 
-    /// The index of the point with the greatest z less twice its distance from `at` in the plane; of equals the
-    /// first. Cost: the logarithm of the number of points, where not all are equally good.
+    /// Returns the index of the point with the greatest z less twice its distance from `at` in the plane; on a tie the
+    /// first. Cost: the logarithm of the number of points, if not all are equally good.
     pub(crate) fn nearest_to_viewer(&self, at: DVec2) -> Option<usize> {
         let worth = |i: usize| self.points[i].z - 2.0 * self.points[i].truncate().distance(at);
         // No point of a box is worth more; a little is added for the rounding of the two ways to compute it.
@@ -118,7 +118,7 @@ mod tests {
             let mut points: Vec<DVec3> = (0..n)
                 .map(|_| DVec3::new(stream.range(0.0, 2.0), stream.range(0.0, 1.0), stream.range(-0.3, 0.3)))
                 .collect();
-            // Equals, and a wall of them.
+            // Ties, and a wall of them.
             points.extend_from_within(..n / 2);
             points.extend((0..n / 4).map(|_| DVec3::new(0.5, 0.5, 0.2)));
             let front = Front::new(&points);

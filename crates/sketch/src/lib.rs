@@ -7,7 +7,7 @@
 //! | fill contours | `fill` | section 4.3, Eq 2 |
 //! | depth | `depth` | section 5, Eq 3, 4 |
 //! | radii, plant | `build` | section 6, Eq 5 to 7 |
-//! | how true the plant is to the drawing | `fidelity` | |
+//! | fidelity of the plant to the drawing | `fidelity` | |
 
 mod bodies;
 mod build;

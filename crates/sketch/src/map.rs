@@ -1,4 +1,4 @@
-//! Ink coordinates <-> the plant's drawing plane.
+//! The map between ink coordinates and the plant's drawing plane.
 
 use glam::{DVec2, DVec3};
 
@@ -19,17 +19,17 @@ pub struct PlantMap {
 }
 
 impl PlantMap {
-    /// An ink point in the plane z = 0 of the plant, metres.
+    /// Returns an ink point in the plane z = 0 of the plant, metres.
     pub fn plant_from_ink(&self, ink: DVec2) -> DVec2 {
         (ink - self.origin_ink) * self.metres_per_ink
     }
 
-    /// An ink point at a given depth of the plant (`z` in metres).
+    /// Returns an ink point at a given depth of the plant (`z` in metres).
     pub fn plant_at_depth(&self, ink: DVec2, z: f64) -> DVec3 {
         self.plant_from_ink(ink).extend(z)
     }
 
-    /// The ink point of a plant point (its front view).
+    /// Returns the ink point of a plant point (its front view).
     pub fn ink_from_plant(&self, plant: DVec2) -> DVec2 {
         plant / self.metres_per_ink + self.origin_ink
     }

@@ -1,4 +1,4 @@
-//! What can be asked of the sketch maker.
+//! The settings of the sketch maker.
 
 use reading::Kind;
 use schemars::JsonSchema;
@@ -28,8 +28,8 @@ pub enum LeafDepth {
     Drawn,
 }
 
-/// The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand
-/// off from their bearer.
+/// The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs
+/// stand off from their bearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PullSet {
@@ -47,7 +47,7 @@ impl PullSet {
     /// Every set.
     pub const ALL: [Self; 4] = [Self::Fig2a, Self::Fig2b, Self::Fig2c, Self::Fig2cPrinted];
 
-    /// `contour_pull`, `bearer_pull` and `memory`.
+    /// Returns `contour_pull`, `bearer_pull` and `memory`.
     pub const fn coefficients(self) -> [f64; 3] {
         match self {
             Self::Fig2a => [0.45, 0.45, 0.1],
@@ -148,8 +148,8 @@ impl Default for ReliefSpec {
     }
 }
 
-/// Everything that can be asked of the sketch maker; saved with the document. The maker itself takes any numbers: it
-/// clamps what would break it.
+/// All settings of the sketch maker; saved with the document. The maker itself accepts any numbers: it clamps those
+/// that would break it.
 ///
 /// ```
 /// use sketch::SketchSpec;
@@ -160,7 +160,7 @@ impl Default for ReliefSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SketchSpec {
-    /// What every plant of the drawing is taken for, whatever it looks like. `None`: what explains it best.
+    /// The kind that every plant is taken for, whatever it looks like. `None`: the kind that explains it best.
     pub read_as: Option<Kind>,
     /// Height of the plant in metres, above 0. `None`: 8 m for a tree, 0.5 m for a herb.
     #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "m"))]

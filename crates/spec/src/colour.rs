@@ -9,12 +9,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub struct Colour(pub [u8; 3]);
 
 impl Colour {
-    /// As shares of light, 0 to 1.
+    /// Returns the colour in linear light, each channel 0 to 1.
     pub fn linear(self) -> [f64; 3] {
         self.srgb().map(base::linear_of_srgb)
     }
 
-    /// As written, 0 to 1.
+    /// Returns the channels as written, each 0 to 1.
     pub fn srgb(self) -> [f64; 3] {
         self.0.map(|b| f64::from(b) / 255.0)
     }

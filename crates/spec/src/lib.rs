@@ -1,9 +1,9 @@
-//! What people ask of a maker: read from text, described by a JSON Schema, checked by that schema.
+//! Specs, which say what people ask of a maker: read from text, described by a JSON Schema and checked against it.
 //!
 //! `TOML | JSON -> Node -> a maker's spec -> ranges of its schema`
 //!
-//! A spec is plain data in its maker's own crate. Ranges, units and meaning stand on its fields and nowhere else: the
-//! schema is derived from them, and [`check`] holds every number against it.
+//! A spec is plain data in its maker's own crate. Ranges, units and meaning are given on its fields and nowhere else:
+//! the schema is derived from them, and [`check`] compares every number with it.
 //!
 //! | module | owns |
 //! |---|---|

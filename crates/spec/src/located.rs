@@ -1,7 +1,7 @@
 //! Text that people wrote, as a tree whose nodes know where they stand: `TOML | JSON value -> Node -> spec`.
 //!
-//! Both forms are read through this one reader: every further one would be a copy of the code that reads specs, which
-//! is a good part of what a browser downloads.
+//! Both forms are read through this one reader: a second reader would be another copy of the code that reads specs,
+//! which is a good part of what a browser downloads.
 
 use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer};
 use serde::de::{
@@ -13,13 +13,13 @@ use toml::de::{DeTable, DeValue};
 /// A value and the byte of the text where it starts; 0 where there is no text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// What is there.
+    /// The value itself.
     pub kind: Kind,
     /// Byte of the text.
     pub at: usize,
 }
 
-/// What a node holds.
+/// The value of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// JSON's `null`.
@@ -51,22 +51,22 @@ pub struct Entry {
     pub node: Node,
 }
 
-/// What is wrong, and the byte of the text where.
+/// A fault in a text, with the byte at which it lies.
 #[derive(Debug)]
 pub struct TextFault {
     /// Names and rows that lead to it: `method.tropisms[1]`; empty for the whole.
     pub path: String,
-    /// In words.
+    /// The fault in words.
     pub message: String,
     /// Byte of the text.
     pub at: usize,
 }
 
 impl Node {
-    /// Of a TOML file. Depth is bounded by TOML's own reader.
+    /// Reads a TOML file. TOML's own reader bounds the depth.
     ///
     /// # Errors
-    /// [`TextFault`] for what is no TOML, for dates, and for numbers that have no room.
+    /// [`TextFault`] for text that is not TOML, for dates, and for numbers that do not fit.
     pub fn from_toml(text: &str) -> Result<Self, TextFault> {
         let parsed = DeTable::parse(text).map_err(|e| TextFault {
             path: String::new(),
@@ -77,7 +77,7 @@ impl Node {
         Ok(Self { kind: Kind::of_table(parsed.get_ref())?, at })
     }
 
-    /// Of a JSON value.
+    /// Builds the tree of a JSON value.
     pub fn from_json(value: &serde_json::Value) -> Self {
         let kind = match value {
             serde_json::Value::Null => Kind::Nothing,
@@ -125,11 +125,11 @@ impl Node {
         Ok(Self { kind, at })
     }
 
-    /// Reads what the tree describes.
+    /// Reads the type that the tree describes.
     ///
     /// # Errors
-    /// [`TextFault`] with the names of the fields that lead to it. Serde's own readers forget where they are inside of
-    /// tables that say by a tag what they are, so the place is searched for: by reading again without parts of the tree.
+    /// [`TextFault`] with the names of the fields that lead to the fault. Serde's own readers lose their place inside
+    /// tables whose form is given by a tag, so the place is searched for by reading again without parts of the tree.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, TextFault> {
         T::deserialize(Reader { node: self }).map_err(|e| {
             let message = e.to_string();
@@ -139,7 +139,7 @@ impl Node {
         })
     }
 
-    /// The names and the place of the innermost node that is at fault: `says` is what the reader says of a tree.
+    /// Returns the names and the place of the innermost faulty node; `says` returns the reader's message for a tree.
     fn culprit(&self, message: &str, says: &dyn Fn(&Self) -> Option<String>) -> (String, usize) {
         let named = |what: &str| message.strip_prefix(what)?.strip_prefix(" field `")?.split('`').next();
         if let Some(name) = named("missing") {
@@ -159,14 +159,14 @@ impl Node {
             };
             let all = whole.parts();
             if all == 0 || with(0) {
-                // A tag is kept all the way: is it the one?
+                // A tag is kept throughout the search, so it is tried first.
                 let tag = whole.entries().iter().find(|e| e.is_tag());
                 return match tag.filter(|_| all > 0 && message.starts_with("unknown variant")) {
                     Some(tag) => (joined(&path, &tag.key), tag.at),
                     None => (path, at),
                 };
             }
-            // The fewest parts that still have it: the last of them is it.
+            // Finds the fewest leading parts that still show the fault: the last of them causes it.
             let (mut without, mut enough) = (0, all);
             while enough - without > 1 {
                 let middle = usize::midpoint(without, enough);
@@ -180,7 +180,7 @@ impl Node {
                     }
                     (path, at) = (joined(&path, &entry.key), entry.node.at);
                 }
-                // A list that is too short or too long is at fault itself, not a number of it.
+                // A list that is too short or too long is at fault itself, not one of its numbers.
                 Kind::List(nodes) if message.starts_with("invalid length") && nodes[without].parts() == 0 => {
                     return (path, at);
                 }
@@ -194,7 +194,7 @@ impl Node {
         }
     }
 
-    /// The table in which a field is missing.
+    /// Finds the table in which a field is missing.
     fn lacks(&self, name: &str, message: &str, says: &dyn Fn(&Self) -> Option<String>) -> (String, usize) {
         let mut tree = self.clone();
         let mut waiting: Vec<(Vec<usize>, String)> = vec![(Vec::new(), String::new())];
@@ -203,7 +203,7 @@ impl Node {
             let at = node.at;
             if let Kind::Table(entries) = &mut node.kind {
                 entries.push(Entry { key: name.to_owned(), at, node: Self { kind: Kind::Nothing, at } });
-                // Put where it is missing, it is only of another kind; elsewhere it is not known.
+                // Where the field is missing, adding it gives another fault; elsewhere the field is unknown.
                 let unknown = format!("unknown field `{name}`");
                 if says(&tree).is_none_or(|now| now != message && !now.starts_with(&unknown)) {
                     return (path, at);
@@ -213,7 +213,7 @@ impl Node {
                 }
             }
             let Some(node) = tree.on(&route) else { continue };
-            // Of lists only those of tables: a mesh has millions of numbers.
+            // Only lists of tables are searched: a mesh has millions of numbers.
             let tables = match &node.kind {
                 Kind::List(all) => all.first().is_some_and(|n| matches!(n.kind, Kind::Table(_))),
                 _ => true,
@@ -229,7 +229,7 @@ impl Node {
         (String::new(), self.at)
     }
 
-    /// The node that numbers of parts lead to.
+    /// Returns the node at the end of a route of part numbers.
     fn on(&mut self, route: &[usize]) -> Option<&mut Self> {
         route.iter().try_fold(self, |node, &k| match &mut node.kind {
             Kind::Table(entries) => entries.get_mut(k).map(|e| &mut e.node),
@@ -242,17 +242,17 @@ impl Node {
         if let Kind::List(nodes) = &self.kind { nodes.len() } else { self.entries().len() }
     }
 
-    /// The rows of a table; none of anything else.
+    /// Returns the rows of a table; empty for any other node.
     pub fn entries(&self) -> &[Entry] {
         if let Kind::Table(entries) = &self.kind { entries } else { &[] }
     }
 
-    /// The value of a field of a table.
+    /// Returns the value of a field of a table.
     pub fn field(&self, name: &str) -> Option<&Self> {
         self.entries().iter().find(|e| e.key == name).map(|e| &e.node)
     }
 
-    /// The node that a path such as `method.tropisms[1].strength` leads to.
+    /// Returns the node at a path such as `method.tropisms[1].strength`.
     pub fn at_path(&self, path: &str) -> Option<&Self> {
         path.split(['.', '[']).filter(|step| !step.is_empty()).try_fold(self, |node, step| {
             match (&node.kind, step.strip_suffix(']')) {
@@ -263,7 +263,7 @@ impl Node {
         })
     }
 
-    /// With the first `m` parts only, and with tags.
+    /// Returns the node with its first `m` parts and its tags only.
     fn first(&self, m: usize) -> Self {
         let kind = match &self.kind {
             Kind::Table(all) => {
@@ -282,14 +282,14 @@ fn joined(path: &str, key: &str) -> String {
 }
 
 impl Entry {
-    /// Whether it says what its table is.
+    /// Whether the entry is a tag that gives the form of its table.
     fn is_tag(&self) -> bool {
         matches!(self.key.as_str(), "kind" | "shape")
     }
 }
 
 impl Kind {
-    /// As messages name it.
+    /// Returns the value as messages name it.
     fn found(&self) -> Unexpected<'_> {
         match self {
             Self::Nothing => Unexpected::Unit,
@@ -329,7 +329,8 @@ impl<'de> Reader<'de> {
     }
 }
 
-// Each way in offers a visitor only what it may take: one that offered all would be code for all, for each type.
+// Each method offers a visitor only the kinds of value that it accepts: offering all of them would compile all that
+// code for each type.
 impl<'de> Deserializer<'de> for Reader<'de> {
     type Error = Error;
 
@@ -370,7 +371,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        // Never as a list of values without names, which nobody writes: that would be as much code again for each type.
+        // Never reads a list of values without names, which nobody writes: that would double the code for each type.
         self.deserialize_map(visitor)
     }
 

@@ -1,7 +1,7 @@
 //! One check of ranges for all specs: `value + its schema -> the first number out of range`.
 //!
-//! The value is written by serde into a writer that keeps nothing: it only follows the schema down and looks at numbers.
-//! So a mesh of a million vertices costs no memory, and a spec is what its file would be.
+//! Serde writes the value into a writer that keeps nothing: the writer only follows the schema down and checks numbers.
+//! So a mesh of a million vertices costs no memory, and the spec is checked in the form of its file.
 
 use core::fmt;
 
@@ -19,20 +19,20 @@ use crate::Spec;
 pub struct RangeFault {
     /// Names and rows that lead to it: `method.tropisms[1].strength`.
     pub path: String,
-    /// What it is.
+    /// The value found.
     pub value: f64,
-    /// The least that is allowed.
+    /// The least value allowed.
     pub least: Option<f64>,
-    /// The most.
+    /// The largest value allowed.
     pub most: Option<f64>,
-    /// What it must be more than.
+    /// The bound that the value must exceed.
     pub above: Option<f64>,
     /// Its unit; empty for none.
     pub unit: &'static str,
 }
 
 impl RangeFault {
-    /// The range in words: `0 to 2 m`.
+    /// Returns the range in words: `0 to 2 m`.
     pub fn range(&self) -> String {
         let range = match (self.least, self.most, self.above) {
             (_, Some(most), Some(above)) => format!("above {} and at most {}", short(above), short(most)),
@@ -50,7 +50,7 @@ base::coded!(RangeFault {
     fault => "field-range" { field = fault.path, range = fault.range(), value = fault.value },
 });
 
-/// Large and small numbers as people write them.
+/// Formats large and small numbers as people write them.
 fn short(x: f64) -> String {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e15")]
     let whole = |x: f64| base::grouped(x.abs() as u64);
@@ -65,20 +65,20 @@ fn short(x: f64) -> String {
 
 /// Fails on the first number that lies outside of the range that the schema gives it.
 ///
-/// Looks at `minimum`, `maximum` and `exclusiveMinimum`, through references, lists and forms that are told apart by a tag. Not looked at: what
-/// fields must be to one another. Cost: linear in the numbers of the spec.
+/// Checks `minimum`, `maximum` and `exclusiveMinimum`, through references, lists and tagged forms. Relations between
+/// fields are not checked. Cost: linear in the numbers of the spec.
 ///
 /// # Errors
 /// [`RangeFault`] with the path, the value and the range.
 pub fn check<T: Spec>(value: &T) -> Result<(), RangeFault> {
     let root = T::schema();
     let look = Look { root, at: root.pointer(T::PART), trail: &Trail::Root, tag: None };
-    // Nothing else can stop the writer: it takes whatever serde writes.
+    // Only a range fault stops the writer: it accepts everything else that serde writes.
     value.serialize(look).map(|_| ()).or_else(|Stop(fault)| fault.map_or(Ok(()), |f| Err(*f)))
 }
 
-/// The least and the most that the schema allows in a field, `leaf.fold` in dots; `None` for a field that is not there
-/// or is not bounded both ways.
+/// Returns the least and the largest value that the schema allows in a field such as `leaf.fold`; `None` for a field
+/// that does not exist or is not bounded on both sides.
 ///
 /// ```
 /// #[derive(Default, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -98,7 +98,7 @@ pub fn range<T: Spec>(path: &str) -> Option<[f64; 2]> {
     Some([limit("minimum")?, limit("maximum")?])
 }
 
-/// The way from the root to a value, on the stack.
+/// The path from the root to a value, kept on the stack.
 enum Trail<'a> {
     Root,
     Field(&'a Self, &'a str),
@@ -116,7 +116,7 @@ impl fmt::Display for Trail<'_> {
     }
 }
 
-/// Why the writer stopped.
+/// Reason why the writer stopped.
 #[derive(Debug)]
 struct Stop(Option<Box<RangeFault>>);
 
@@ -134,26 +134,26 @@ impl serde::ser::Error for Stop {
     }
 }
 
-/// The row of a variant whose tag was written.
+/// Row of the variant whose tag was written.
 type Variant = Option<usize>;
 
-/// Looks at one value.
+/// Checks one value.
 #[derive(Clone, Copy)]
 struct Look<'a> {
     root: &'static Value,
-    /// The schema of the value; none where the schema says nothing.
+    /// Schema of the value; `None` where the schema says nothing.
     at: Option<&'static Value>,
     trail: &'a Trail<'a>,
-    /// The value is the tag of one of these forms.
+    /// Key and forms, where the value is the tag of one of them.
     tag: Option<(&'static str, &'static [Value])>,
 }
 
-/// What a reference leads to.
+/// Returns the schema that a reference points to.
 fn target(root: &'static Value, at: &'static Value) -> Option<&'static Value> {
     root.pointer(at.get("$ref")?.as_str()?.strip_prefix('#')?)
 }
 
-/// The first of a schema, what it refers to, and the one form beside null that it may be, of which `find` gives something.
+/// Returns the first result of `find` for a schema, for its target, and for its only form other than null.
 fn found<T>(
     root: &'static Value,
     at: &'static Value,
@@ -165,14 +165,14 @@ fn found<T>(
     })
 }
 
-/// Whether a schema has a range anywhere; what is nested deeper than `depth` counts as having one.
+/// Whether a schema has a range anywhere; parts nested deeper than `depth` count as having one.
 fn ranged(root: &'static Value, at: &'static Value, depth: u32) -> bool {
     const LIMITS: [&str; 3] = ["minimum", "maximum", "exclusiveMinimum"];
     match at {
         _ if depth == 0 => true,
         Value::Array(parts) => parts.iter().any(|part| ranged(root, part, depth)),
         Value::Object(fields) => {
-            // What has no sign needs no least of 0.
+            // An unsigned number needs no least value of 0.
             let unsigned = at["minimum"] == 0 && at["format"].as_str().is_some_and(|f| f.starts_with("uint"));
             LIMITS[usize::from(unsigned)..].iter().any(|limit| fields.contains_key(*limit))
                 || fields.values().any(|part| ranged(root, part, depth - 1))
@@ -210,7 +210,7 @@ impl<'a> Look<'a> {
 
     fn rows(self) -> Rows<'a> {
         let part = |name| self.at.and_then(|at| found(self.root, at, &|s| s.get(name)));
-        // A mesh has millions of numbers without a range: they are not looked at one by one.
+        // A mesh has millions of numbers without a range: they are not checked one by one.
         let all = part("items").filter(|s| ranged(self.root, s, 8));
         Rows { look: self, row: 0, own: part("prefixItems"), all }
     }
@@ -219,18 +219,18 @@ impl<'a> Look<'a> {
         Fields { look: self, key: String::new() }
     }
 
-    /// The schema of a field.
+    /// Returns the schema of a field.
     fn field(&self, key: &str) -> Option<&'static Value> {
         found(self.root, self.at?, &|s| s.get("properties")?.get(key))
     }
 
-    /// The forms that are told apart by what stands in `key`.
+    /// Returns the forms that the value of `key` distinguishes.
     fn forms(&self, key: &str) -> Option<&'static [Value]> {
         let forms = found(self.root, self.at?, &|s| s.get("oneOf")?.as_array())?;
         forms.iter().any(|f| f["properties"][key].get("const").is_some()).then_some(&forms[..])
     }
 
-    /// The form that is written as a table with its name as the only key.
+    /// Returns the form that is written as a table with its name as the only key.
     fn variant(self, name: &'static str) -> Option<&'static Value> {
         found(self.root, self.at?, &|s| {
             s.get("oneOf")?.as_array()?.iter().find_map(|f| f.get("properties")?.get(name))
@@ -366,13 +366,13 @@ impl<'a> Serializer for Look<'a> {
     }
 }
 
-/// Looks at the rows of a list.
+/// Checks the rows of a list.
 struct Rows<'a> {
     look: Look<'a>,
     row: usize,
     /// The schemas of single rows.
     own: Option<&'static Value>,
-    /// The schema of all others, where it has a range.
+    /// The schema of all other rows, where it has a range.
     all: Option<&'static Value>,
 }
 
@@ -405,7 +405,7 @@ macro_rules! rows {
 rows!(SerializeSeq serialize_element, SerializeTuple serialize_element, SerializeTupleStruct serialize_field,
     SerializeTupleVariant serialize_field);
 
-/// Looks at the fields of a table.
+/// Checks the fields of a table.
 struct Fields<'a> {
     look: Look<'a>,
     /// The last key of a map.
@@ -418,7 +418,7 @@ impl Fields<'_> {
         // Serde writes the tag first.
         if let Some(forms) = self.look.forms(key) {
             let tag = self.look.within(&trail, None);
-            // Keys of schemas live as long as the schemas: this one is a form's.
+            // Keys of schemas live as long as the schemas, and this key is that of a form.
             let key =
                 forms.iter().find_map(|f| Some(f["properties"].as_object()?.get_key_value(key)?.0.as_str()));
             let form = value.serialize(Look { tag: key.map(|k| (k, forms)), ..tag })?;
@@ -462,7 +462,7 @@ impl SerializeMap for Fields<'_> {
     }
 }
 
-/// Looks at the fields of a form that is written as a table with its name as the only key.
+/// Checks the fields of a form that is written as a table with its name as the only key.
 struct Inner<'a> {
     look: Look<'a>,
     variant: &'static str,

@@ -5,29 +5,29 @@ use serde_json::Value;
 
 use crate::{Node, RangeFault, Spec, TextFault, check};
 
-/// What is wrong with a spec that somebody wrote.
+/// A fault in a spec that somebody wrote.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpecFault {
-    /// It is no such spec: not TOML, a field that is not known or missing, or a value of another kind.
+    /// The text is not such a spec: it is not TOML, a field is unknown or missing, or a value is of the wrong kind.
     #[error("{}{}{}{}", on(*line), lead(path), base::plainly(message), Slip::in_field(path, None, message).hint())]
     Text {
-        /// From 1; none where there is no text.
+        /// Line, from 1; `None` where there is no text.
         line: Option<usize>,
-        /// Names and rows that lead to it; empty for the whole.
+        /// Names and rows that lead to the fault; empty for the whole spec.
         path: String,
-        /// What is wrong, in words.
+        /// The fault in words.
         message: String,
     },
     /// A number is out of its range.
     #[error("{}{fault}", on(*line))]
     Range {
-        /// From 1; none where there is no text.
+        /// Line, from 1; `None` where there is no text.
         line: Option<usize>,
         /// Path, value and range.
         fault: RangeFault,
     },
-    /// A field was to be set that is not there.
+    /// The field to be set does not exist.
     #[error("the spec has no {0}")]
     Pointer(String),
 }
@@ -48,7 +48,7 @@ fn lead(path: &str) -> String {
 }
 
 impl SpecFault {
-    /// The fault of a text that was read.
+    /// Makes the fault of a text that was read.
     pub fn in_text(text: &str, fault: TextFault) -> Self {
         let TextFault { path, message, at } = fault;
         Self::Text { line: Some(line_at(text, at)), path, message }
@@ -61,7 +61,7 @@ impl From<RangeFault> for SpecFault {
     }
 }
 
-/// The line (from 1) of a byte.
+/// Returns the line (from 1) of a byte.
 pub fn line_at(text: &str, at: usize) -> usize {
     text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
 }
@@ -69,7 +69,7 @@ pub fn line_at(text: &str, at: usize) -> usize {
 /// Reads a spec from TOML and checks its ranges.
 ///
 /// # Errors
-/// [`SpecFault`] with the line of what is wrong.
+/// [`SpecFault`] with the line of the fault.
 pub fn from_toml<T: Spec>(text: &str) -> Result<T, SpecFault> {
     let tree = Node::from_toml(text).map_err(|fault| SpecFault::in_text(text, fault))?;
     let spec = tree.read().map_err(|fault| SpecFault::in_text(text, fault))?;
@@ -80,14 +80,14 @@ pub fn from_toml<T: Spec>(text: &str) -> Result<T, SpecFault> {
     Ok(spec)
 }
 
-/// Reads a spec that is kept as JSON. Ranges are not looked at: a file of an earlier version opens whatever its numbers
-/// are, and its maker reports what is wrong.
+/// Reads a spec that is kept as JSON. Ranges are not checked: a file of an earlier version opens whatever its numbers
+/// are, and its maker reports any fault.
 ///
 /// # Errors
-/// [`SpecFault::Text`] with the names of the fields that lead to what is wrong.
+/// [`SpecFault::Text`] with the names of the fields that lead to the fault.
 pub fn from_json<T: Spec>(value: &Value) -> Result<T, SpecFault> {
     if !value.is_object() {
-        // Serde would take a list for the first fields.
+        // Serde would read a list as the first fields.
         let message = "a spec is a JSON object with a field for each thing that is asked for".into();
         return Err(SpecFault::Text { line: None, path: String::new(), message });
     }
@@ -95,16 +95,16 @@ pub fn from_json<T: Spec>(value: &Value) -> Result<T, SpecFault> {
     read.map_err(|TextFault { path, message, .. }| SpecFault::Text { line: None, path, message })
 }
 
-/// A spec as JSON.
+/// Returns a spec as JSON.
 pub fn to_json<T: Spec>(spec: &T) -> Value {
     serde_json::to_value(spec).unwrap_or_default()
 }
 
-/// The spec with one field changed, named by a JSON pointer such as `/method/points`. What commands, panels and options
-/// that name a field share.
+/// Returns the spec with one field changed, named by a JSON pointer such as `/method/points`. Commands, panels and
+/// options that name a field share this function.
 ///
 /// # Errors
-/// [`SpecFault`]: there is no such field, the value is of another kind, or it is out of range.
+/// [`SpecFault`]: the field does not exist, the value is of the wrong kind, or it is out of range.
 ///
 /// ```
 /// # #[derive(Clone, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
@@ -136,10 +136,10 @@ pub fn set<T: Spec>(spec: &T, pointer: &str, value: Value) -> Result<T, SpecFaul
     Ok(spec)
 }
 
-/// Words by which forms are told apart: what belongs to one form does not fit another.
+/// Keys whose values distinguish forms: fields of one form do not fit another.
 const TAGS: [&str; 2] = ["kind", "shape"];
 
-/// Puts `fields` in the place of those of `into`, table by table; a table of another form replaces the one that is there.
+/// Puts `fields` in the place of those of `into`, table by table; a table of another form replaces the existing one.
 fn merge(into: &mut Value, fields: Value) {
     match (into, fields) {
         (Value::Object(old), Value::Object(new)) => {
@@ -159,11 +159,11 @@ fn merge(into: &mut Value, fields: Value) {
     }
 }
 
-/// The spec with some fields in the place of its own, table by table: what programs ask for beside a preset. A table of
-/// another form (`kind`, `shape`) replaces the one that is there.
+/// Returns the spec with some fields replaced, table by table, as programs ask for in addition to a preset. A table of
+/// another form (`kind`, `shape`) replaces the existing one.
 ///
 /// # Errors
-/// [`SpecFault`]: there is no such field, a value is of another kind, or one is out of range.
+/// [`SpecFault`]: a field does not exist, a value is of the wrong kind, or one is out of range.
 ///
 /// ```
 /// # #[derive(Clone, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
@@ -238,16 +238,16 @@ mod tests {
                 vec![("choices", "sand, loam"), ("name", "clay"), ("path", "soil")],
             ),
         ] {
-            let told = from_toml::<Bed>(text).expect_err("not sound").told();
+            let told = from_toml::<Bed>(text).expect_err("not sound").details();
             assert_eq!(
                 (told.code, told.fields.iter().map(|(k, v)| (*k, v.as_str())).collect::<Vec<_>>()),
                 (code, fields),
                 "{text}"
             );
         }
-        let told = from_toml::<Bed>("width_m = 1\nsoil = ").expect_err("no TOML").told();
+        let told = from_toml::<Bed>("width_m = 1\nsoil = ").expect_err("no TOML").details();
         assert_eq!((told.code, told.fields["line"].as_str()), ("spec-syntax", "2"));
-        let told = from_toml::<Bed>("width_m = true\nsoil = \"loam\"").expect_err("no number").told();
+        let told = from_toml::<Bed>("width_m = true\nsoil = \"loam\"").expect_err("no number").details();
         assert_eq!((told.code, told.fields["path"].as_str()), ("spec-kind", "width_m"));
     }
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// A maker's spec, or a part of one that is checked by itself. [`schemas!`](crate::schemas) implements it.
 pub trait Spec: JsonSchema + Serialize + DeserializeOwned {
-    /// Where its schema stands in [`schema`](Self::schema), as a JSON pointer; empty for the whole.
+    /// Place of its schema in [`schema`](Self::schema), as a JSON pointer; empty for the whole.
     const PART: &'static str = "";
 
     /// Its JSON Schema, with meaning, unit (`x-unit`), range and default of each field. Made at the first call.
@@ -18,7 +18,7 @@ pub trait Spec: JsonSchema + Serialize + DeserializeOwned {
 ///
 /// | form | where the schema comes from |
 /// |---|---|
-/// | `schemas!(Pot)` | derived when it is first wanted |
+/// | `schemas!(Pot)` | derived at its first use |
 /// | `schemas!(TreeSpec = include_str!("../schemas/tree.json"))` | a file: a browser downloads no code that derives it |
 /// | `schemas!(WoodSpec => TreeSpec, "/$defs/WoodSpec")` | a part of that of another spec |
 ///
@@ -64,21 +64,21 @@ macro_rules! schemas {
     )*};
 }
 
-/// The schema in a file that comes with the program.
+/// Reads the schema in a file that comes with the program.
 pub fn kept_schema(text: &str) -> Value {
     let read = serde_json::from_str(text);
     debug_assert!(read.is_ok(), "{read:?}");
     read.unwrap_or_default()
 }
 
-/// The schema of a type, made anew.
+/// Derives the schema of a type anew.
 pub fn made_schema<T: JsonSchema>() -> Value {
     let mut schema = schemars::SchemaGenerator::default().into_root_schema_for::<T>().to_value();
     unlink(&mut schema);
     schema
 }
 
-/// Takes the links out of all descriptions: people read them who do not have these docs.
+/// Removes the links from all descriptions: their readers do not have these docs.
 fn unlink(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {
@@ -94,8 +94,8 @@ fn unlink(schema: &mut Value) {
     }
 }
 
-/// The text up to its example, with each link of rustdoc replaced by the last name of what it shows: ``[`Look::ribs`]``
-/// by `` `ribs` ``, ``[`years`](Self::years)`` by `` `years` ``.
+/// Returns the text up to its example, with each link of rustdoc replaced by the last name that it shows:
+/// ``[`Look::ribs`]`` by `` `ribs` ``, ``[`years`](Self::years)`` by `` `years` ``.
 fn without_links(text: &str) -> String {
     let text = text.split_once("\n\n```").map_or(text, |(text, _)| text);
     let (mut out, mut rest) = (String::with_capacity(text.len()), text);

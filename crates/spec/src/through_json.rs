@@ -1,8 +1,8 @@
-//! A spec inside of something else that serde reads and writes: `#[serde(with = "spec::through_json")]`; anything else
-//! that is read from JSON: `#[serde(deserialize_with = "spec::through_json::read")]`, or [`from_text`].
+//! Reads and writes a spec inside another serde type: `#[serde(with = "spec::through_json")]`; reads anything else from
+//! JSON: `#[serde(deserialize_with = "spec::through_json::read")]`, or [`from_text`].
 //!
-//! By way of a JSON value, so that a spec is read by one reader only: each further one would be a copy of the code that
-//! reads all its fields, which is a good part of what a browser downloads.
+//! The spec passes through a JSON value, so that one reader reads all specs: a second reader would be another copy of
+//! the code that reads all their fields, which is a good part of what a browser downloads.
 
 use core::ops::Deref;
 use std::sync::Arc;
@@ -24,15 +24,15 @@ pub fn serialize<P: Deref<Target: Spec>, S: Serializer>(spec: &P, to: S) -> Resu
 /// Reads a spec; ranges are not looked at ([`from_json`]).
 ///
 /// # Errors
-/// What is wrong, with the names of the fields that lead to it.
+/// A message with the names of the fields that lead to the fault.
 pub fn deserialize<'de, T: Spec, D: Deserializer<'de>>(from: D) -> Result<Arc<T>, D::Error> {
     from_json(&Value::deserialize(from)?).map(Arc::new).map_err(D::Error::custom)
 }
 
-/// Reads anything.
+/// Reads any type.
 ///
 /// # Errors
-/// What is wrong, with the names of the fields that lead to it.
+/// A message with the names of the fields that lead to the fault.
 pub fn read<'de, T: DeserializeOwned, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
     Node::from_json(&Value::deserialize(from)?).read().map_err(|TextFault { path, message, .. }| {
         if path.is_empty() {
@@ -43,10 +43,10 @@ pub fn read<'de, T: DeserializeOwned, D: Deserializer<'de>>(from: D) -> Result<T
     })
 }
 
-/// Reads anything from JSON.
+/// Reads any type from JSON text.
 ///
 /// # Errors
-/// What is wrong, with the names of the fields that lead to it; for what is no JSON, with the place.
+/// A message with the names of the fields that lead to the fault; for text that is not JSON, with the place.
 ///
 /// ```
 /// let pairs: Vec<(u8, bool)> = spec::through_json::from_text("[[1, true], [2, false]]")?;

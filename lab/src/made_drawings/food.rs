@@ -259,7 +259,7 @@ pub(super) fn pear(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Spears: a long body with scales and a head of buds; one, or some side by side, with or without a band.
+/// Draws spears: a long body with scales and a head of buds; one, or several in a row, with or without a band.
 pub(super) fn spears(r: &mut Stream) -> Lines {
     let n = if r.chance(0.5) { 1 } else { 2 + r.below(4) };
     let head = r.below(4);
@@ -323,7 +323,7 @@ pub(super) fn spears(r: &mut Stream) -> Lines {
     turned(r, lines, 1.2)
 }
 
-/// A bent body, long and thin.
+/// Draws a bent body, long and thin.
 pub(super) fn bean(r: &mut Stream) -> Lines {
     let n = 1 + if r.chance(0.3) { r.below(3) } else { 0 };
     let mut lines = Lines::new();
@@ -359,7 +359,7 @@ pub(super) fn bean(r: &mut Stream) -> Lines {
     turned(r, lines, PI)
 }
 
-/// An open pod: two arcs and peas between them; or peas alone.
+/// Draws an open pod: two arcs and peas between them; or peas alone.
 pub(super) fn open_pod(r: &mut Stream) -> Lines {
     let (up, down, n) = (r.range(0.08, 0.25), r.range(0.08, 0.25), 2 + r.below(6));
     let mut lines = Lines::new();
@@ -392,7 +392,7 @@ fn tendril(r: &mut Stream, at: DVec2) -> Vec<DVec2> {
         .collect()
 }
 
-/// Round berries, each with a small star or ring: one, or some that touch.
+/// Draws round berries, each with a small star or ring: one, or some that touch.
 pub(super) fn round_berries(r: &mut Stream) -> Lines {
     let n = 1 + r.below(5);
     let mut lines = Lines::new();
@@ -426,7 +426,7 @@ pub(super) fn round_berries(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Berries hang from a stalk each, as cherries.
+/// Draws berries that hang from a stalk each, as cherries do.
 pub(super) fn hanging(r: &mut Stream) -> Lines {
     let n = 2 + r.below(2);
     let mut lines = Lines::new();
@@ -444,7 +444,7 @@ pub(super) fn hanging(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A berry of bumps: the outline alone, or with arcs inside.
+/// Draws a berry of bumps: the outline alone, or with arcs inside.
 pub(super) fn bumpy_berry(r: &mut Stream) -> Lines {
     let size = v(r.range(0.25, 0.38), r.range(0.3, 0.45));
     let bumps = 9 + r.below(8);
@@ -467,7 +467,7 @@ pub(super) fn bumpy_berry(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A round root with a tail, and leaves.
+/// Draws a round root with a tail, and leaves.
 pub(super) fn round_root(r: &mut Stream) -> Lines {
     let size = v(r.range(0.2, 0.32), r.range(0.2, 0.3));
     let mut lines = vec![round(v(0.0, 0.0), size, 0, 0.0, r)];
@@ -479,7 +479,7 @@ pub(super) fn round_root(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A gourd with ribs.
+/// Draws a gourd with ribs.
 pub(super) fn ribbed(r: &mut Stream) -> Lines {
     let size = v(r.range(0.45, 0.6), r.range(0.35, 0.45));
     let mut lines = vec![round(DVec2::ZERO, size, if r.chance(0.4) { 6 } else { 0 }, 0.08, r)];
@@ -507,7 +507,7 @@ pub(super) fn ribbed(r: &mut Stream) -> Lines {
     turned(r, lines, 0.2)
 }
 
-/// A body with nothing but its outline, of any length.
+/// Draws a body with nothing but its outline, of any length.
 pub(super) fn bare_body(r: &mut Stream) -> Lines {
     let size = v(0.5, r.range(0.14, 0.42));
     let mut lines = vec![arc(DVec2::ZERO, size, 0.0, TAU * r.range(0.95, 1.05), 0, 0.0, r)];
@@ -517,7 +517,7 @@ pub(super) fn bare_body(r: &mut Stream) -> Lines {
     turned(r, lines, PI)
 }
 
-/// A root in one line, with or without green: wide at one end, pointed at the other.
+/// Draws a root in one line, with or without green: wide at one end, pointed at the other.
 pub(super) fn pointed_root(r: &mut Stream) -> Lines {
     let (half, tall) = (r.range(0.1, 0.24), r.range(0.7, 1.0));
     let body = if r.chance(0.5) {
@@ -549,7 +549,7 @@ pub(super) fn pointed_root(r: &mut Stream) -> Lines {
     turned(r, lines, 1.8)
 }
 
-/// Caps with gills, with a ring, two beside one another.
+/// Draws caps with gills, with a ring, or two next to each other.
 pub(super) fn other_mushroom(r: &mut Stream) -> Lines {
     let mut lines = Lines::new();
     for k in 0..1 + r.below(2) {

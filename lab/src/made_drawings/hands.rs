@@ -1,8 +1,8 @@
 //! A drawing as other people might have drawn it.
 //!
-//! Drawings to learn from are few, and no two people draw alike: what a model learns from one drawing must not hang on how
-//! that hand moved. So every variation is bent as a whole, each of its strokes a little by itself, and pens are lifted,
-//! not lifted, or set down twice where another person would.
+//! Drawings for training are few, and no two people draw alike: a model should not depend on the movement of one hand
+//! in a drawing. So every variation is bent as a whole, each of its strokes is changed a little by itself, and strokes
+//! are split, joined or repeated where another person would do so.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use ink::{Drawing, InkSample, Stroke};
 
 type Lines = Vec<Vec<DVec2>>;
 
-/// `copy` tells the variations apart; the same in every call.
+/// Returns a variation of a drawing. `copy` distinguishes the variations; the same in every call.
 pub(crate) fn varied(drawing: &Drawing, copy: u64) -> Drawing {
     let r = &mut Seed::new(copy).child(hash(&drawing.name)).stream(Draw::Template);
     let lines: Lines = drawing.strokes.iter().map(|s| s.samples.iter().map(|p| p.at).collect()).collect();
@@ -25,7 +25,7 @@ pub(crate) fn varied(drawing: &Drawing, copy: u64) -> Drawing {
     Drawing { name: drawing.name.clone(), strokes, ..Drawing::default() }
 }
 
-/// Lines in another order, bent and slanted, some in two strokes, some two in one, one drawn twice or not at all.
+/// Returns lines in another order, bent and slanted, some split in two, some two joined, one repeated or omitted.
 pub(crate) fn drawn_again(r: &mut Stream, mut lines: Lines) -> Lines {
     lines.retain(|l| l.len() > 1);
     let Some((lo, hi)) = extent(&lines) else { return lines };
@@ -60,7 +60,7 @@ pub(crate) fn drawn_again(r: &mut Stream, mut lines: Lines) -> Lines {
     lines
 }
 
-/// A stroke becomes two: the pen was lifted on the way.
+/// Splits a stroke, as if the pen had been lifted.
 fn lifted(r: &mut Stream, lines: &mut Lines) {
     let k = r.below(lines.len());
     let n = lines[k].len();
@@ -72,7 +72,7 @@ fn lifted(r: &mut Stream, lines: &mut Lines) {
     }
 }
 
-/// Two strokes that end near one another become one.
+/// Joins two strokes that end near each other.
 fn not_lifted(r: &mut Stream, lines: &mut Lines, near: f64) {
     let first = r.below(lines.len());
     let Some(&end) = lines[first].last() else { return };
@@ -84,7 +84,7 @@ fn not_lifted(r: &mut Stream, lines: &mut Lines, near: f64) {
     }
 }
 
-/// Ends that do not meet.
+/// Shortens a line, so that ends do not meet.
 fn shorter(r: &mut Stream, line: &mut Vec<DVec2>) {
     let n = line.len();
     let cut = n / 25;
@@ -93,7 +93,7 @@ fn shorter(r: &mut Stream, line: &mut Vec<DVec2>) {
     }
 }
 
-/// One stroke, a little larger, turned and moved.
+/// Makes one stroke a little larger, turned and moved.
 fn by_itself(r: &mut Stream, line: &mut [DVec2], by: f64) {
     let mean = line.iter().copied().sum::<DVec2>() / line.len().max(1) as f64;
     let (lo, hi) = line.iter().fold((mean, mean), |(lo, hi), &p| (lo.min(p), hi.max(p)));
@@ -104,7 +104,7 @@ fn by_itself(r: &mut Stream, line: &mut [DVec2], by: f64) {
     line.iter_mut().for_each(|p| *p = to + turn.rotate((*p - mean) * grown));
 }
 
-/// The whole, turned, stretched, slanted, and bent by slow waves.
+/// Turns, stretches, slants, and bends the whole by slow waves.
 fn bent(r: &mut Stream, lines: &mut Lines, (lo, hi): (DVec2, DVec2)) {
     let long = (hi - lo).max_element().max(1e-9);
     let (stretch, slant) = (r.range(0.82, 1.22), r.range(-0.1, 0.1));
@@ -134,7 +134,7 @@ fn length(line: &[DVec2]) -> f64 {
     line.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
-/// A number for a name.
+/// Returns a number for a name.
 fn hash(name: &str) -> u64 {
     name.bytes().fold(7, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)))
 }

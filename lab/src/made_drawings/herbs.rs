@@ -241,7 +241,7 @@ pub(super) fn potted(r: &mut Stream) -> Lines {
     }
 }
 
-/// A stem and its leaves in one line: round each leaf on the way up, the last at the top or below it.
+/// Draws a stem and its leaves in one line: round each leaf on the way up, the last at the top or below it.
 fn sprout_in_one_go(r: &mut Stream) -> Lines {
     let (top, n) = (v(r.range(-0.15, 0.15), 1.0), 1 + r.below(5));
     let mut line = vec![DVec2::ZERO];
@@ -285,7 +285,7 @@ pub(super) fn sprout(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A body with arms in one outline; or each part in one; with ribs, thorns, a pot.
+/// Draws a body with arms in one outline; or each part in one; with ribs, thorns, a pot.
 pub(super) fn saguaro(r: &mut Stream) -> Lines {
     let half = r.range(0.07, 0.16);
     let apart = r.chance(0.5);
@@ -330,7 +330,7 @@ pub(super) fn saguaro(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A pot, a ground, or nothing.
+/// Draws a pot, a ground, or nothing.
 fn foot_of(r: &mut Stream, lines: &mut Lines, half: f64) {
     match r.below(4) {
         0 => {
@@ -345,7 +345,7 @@ fn foot_of(r: &mut Stream, lines: &mut Lines, half: f64) {
     }
 }
 
-/// A round body with ribs or thorns; pads upon pads.
+/// Draws a round body with ribs or thorns; pads upon pads.
 pub(super) fn round_cactus(r: &mut Stream) -> Lines {
     let mut lines = Lines::new();
     if r.chance(0.5) {
@@ -377,7 +377,7 @@ pub(super) fn round_cactus(r: &mut Stream) -> Lines {
     lines
 }
 
-/// An open bell and its rim.
+/// Draws an open bell and its rim.
 fn bell(r: &mut Stream, centre: DVec2, size: f64) -> Lines {
     let mut head = Lines::new();
     let half = size * r.range(0.7, 1.0);
@@ -404,7 +404,7 @@ fn bell(r: &mut Stream, centre: DVec2, size: f64) -> Lines {
     head
 }
 
-/// A head of open arcs, of lines or of a spiral on a stem.
+/// Draws a head of open arcs, of lines or of a spiral on a stem.
 pub(super) fn other_flower(r: &mut Stream) -> Lines {
     let centre = v(r.range(-0.08, 0.08), r.range(0.7, 1.0));
     let n = 5 + r.below(8);
@@ -489,7 +489,7 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Flowers in a vase; blades in a pot.
+/// Draws flowers in a vase; blades in a pot.
 pub(super) fn vase(r: &mut Stream) -> Lines {
     let (neck, belly, tall) = (r.range(0.08, 0.2), r.range(0.15, 0.3), r.range(0.35, 0.6));
     let mut lines = match r.below(2) {
@@ -536,7 +536,7 @@ pub(super) fn vase(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Tufts in one stroke, or blades that bend.
+/// Draws tufts in one stroke, or blades that bend.
 pub(super) fn tufts(r: &mut Stream) -> Lines {
     let n = 1 + r.below(3);
     let mut lines = Lines::new();
@@ -557,7 +557,7 @@ pub(super) fn tufts(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A heart, a drop, or a leaf in one go with its stalk and its rib.
+/// Draws a heart, a drop, or a leaf in one stroke with its stalk and its rib.
 pub(super) fn other_leaf(r: &mut Stream) -> Lines {
     let half = r.range(0.22, 0.45);
     let mut lines = match r.below(3) {
@@ -622,7 +622,7 @@ pub(super) fn other_leaf(r: &mut Stream) -> Lines {
     turned(r, lines, PI)
 }
 
-/// A bush of a scribble, of arcs, or of leaves.
+/// Draws a bush of a scribble, of arcs, or of leaves.
 pub(super) fn other_bush(r: &mut Stream) -> Lines {
     let size = v(r.range(0.4, 0.6), r.range(0.22, 0.38));
     let mut lines = match r.below(3) {
@@ -654,7 +654,7 @@ pub(super) fn other_bush(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A frond, a vine, a stem with leaves in pairs or of lines.
+/// Draws a frond, a vine, a stem with leaves in pairs or of lines.
 pub(super) fn other_stem(r: &mut Stream) -> Lines {
     let tip = v(r.range(-0.3, 0.3), 1.0);
     let bend = v(r.range(-0.25, 0.25), 0.5);
@@ -688,7 +688,7 @@ pub(super) fn other_stem(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A cup with points above, and leaves as tall as the stem.
+/// Draws a cup with points above, and leaves as tall as the stem.
 pub(super) fn tall_tulip(r: &mut Stream) -> Lines {
     let (half, low) = (r.range(0.1, 0.2), r.range(0.6, 0.72));
     let points = 2 + r.below(3);
@@ -729,7 +729,7 @@ pub(super) fn tall_tulip(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Several flowers of petals or cups out of one vase, their heads close together.
+/// Draws several flowers of petals or cups in one vase, their heads close together.
 pub(super) fn bouquet(r: &mut Stream) -> Lines {
     let (neck, belly, tall) = (r.range(0.07, 0.18), r.range(0.15, 0.3), r.range(0.3, 0.6));
     let half = [v(-neck, 0.0), v(-r.range(0.6, 1.0) * neck, -0.2 * tall), v(-belly, -0.6 * tall)];

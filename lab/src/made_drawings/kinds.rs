@@ -1,7 +1,7 @@
-//! Made drawings of every kind of plant, and of what is no plant: for the model of kinds, where people's drawings of the
-//! part to learn from are few.
+//! Made drawings of every kind of plant, and of other things: for the model of kinds, where people's drawings for
+//! training are few.
 //!
-//! They say how something is built, not how it was drawn in any one drawing.
+//! They show the structure of a kind, not the manner of any one drawing.
 
 use base::{Draw, Seed, Stream};
 use reading::Kind;
@@ -11,7 +11,7 @@ use super::{Lines, flower, food, grass, herbs, leafy, things, trees};
 /// Makes the lines of one drawing.
 type Making = fn(&mut Stream) -> Lines;
 
-/// What is made: a word for it, its kind, how it is made.
+/// Makers, each with a word, a kind and a function.
 const MAKERS: [(&str, Kind, Making); 71] = [
     ("tree, crown open below", Kind::Tree, trees::open_tree),
     ("tree, crown open below again", Kind::Tree, trees::open_tree),
@@ -86,7 +86,7 @@ const MAKERS: [(&str, Kind, Making); 71] = [
     ("bouquet", Kind::HousePlant, herbs::bouquet),
 ];
 
-/// Things that are no plants: a word, how it is made.
+/// Makers of things other than plants, each with a word and a function.
 const OTHERS: [(&str, Making); 21] = [
     ("house", things::house),
     ("cat", things::cat),
@@ -111,7 +111,7 @@ const OTHERS: [(&str, Making); 21] = [
     ("fence", things::fence),
 ];
 
-/// Drawings of each maker, with their words and kinds; [`Kind::None`] is no plant.
+/// Makes drawings of each maker, with their words and kinds; [`Kind::None`] is not a plant.
 pub(crate) fn of_kinds(salt: u64, each: u64) -> Vec<(&'static str, Kind, Lines)> {
     let others = OTHERS.iter().map(|&(word, make)| (word, Kind::None, make));
     let makers = MAKERS.iter().copied().chain(others);

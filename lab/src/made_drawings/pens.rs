@@ -1,4 +1,4 @@
-//! What made drawings are drawn with: lines as a pen draws them, and parts that many kinds have.
+//! Elements of made drawings: lines as a pen draws them, and parts that many kinds share.
 
 use std::f64::consts::PI;
 
@@ -11,17 +11,17 @@ pub(super) fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// A line of a hand through points.
+/// Returns a hand-drawn line through points.
 pub(super) fn pen(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
     hand(r, corners)
 }
 
-/// A wobbly ring.
+/// Returns a wobbly ring.
 pub(super) fn round(centre: DVec2, size: DVec2, bumps: usize, depth: f64, r: &mut Stream) -> Vec<DVec2> {
     ring(r, centre, size, bumps, depth)
 }
 
-/// A petal or leaf as an outline.
+/// Returns a petal or leaf as an outline.
 pub(super) fn leafy_blade(root: DVec2, way: DVec2, half: f64, r: &mut Stream) -> Vec<DVec2> {
     blade(r, root, way, half)
 }
@@ -30,7 +30,7 @@ pub(super) fn scribbled(centre: DVec2, size: DVec2, r: &mut Stream) -> Vec<DVec2
     scribble(r, centre, size)
 }
 
-/// A soft line of a hand: corners are rounded.
+/// Returns a soft hand-drawn line with rounded corners.
 pub(super) fn soft(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
     let (first, last) = (corners[0], corners[corners.len() - 1]);
     let mut points = vec![first];
@@ -44,7 +44,7 @@ pub(super) fn soft(corners: &[DVec2], r: &mut Stream) -> Vec<DVec2> {
     points.iter().map(|p| *p + v(r.normal(), r.normal()) * shake).collect()
 }
 
-/// Part of a lobed ring, from one angle to another.
+/// Returns part of a lobed ring, from one angle to another.
 pub(super) fn arc(
     centre: DVec2,
     size: DVec2,
@@ -67,7 +67,7 @@ pub(super) fn arc(
         .collect()
 }
 
-/// Left and right side of a trunk, from the neck down, flaring.
+/// Returns the left and right side of a trunk, from the neck down, flaring.
 pub(super) fn sides(r: &mut Stream, half: f64, top: f64) -> [Vec<DVec2>; 2] {
     let flare = r.range(1.0, 2.6);
     let lean = r.range(-0.05, 0.05);
@@ -94,7 +94,7 @@ pub(super) fn turned(r: &mut Stream, lines: Lines, most: f64) -> Lines {
         .collect()
 }
 
-/// A tuft of green at a place.
+/// Draws a tuft of green at a place.
 pub(super) fn tuft(r: &mut Stream, at: DVec2, size: f64) -> Lines {
     let n = 3 + r.below(4);
     match r.below(3) {

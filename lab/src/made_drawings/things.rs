@@ -1,4 +1,4 @@
-//! Made drawings of what is no plant.
+//! Made drawings of things other than plants.
 
 use std::f64::consts::{PI, TAU};
 
@@ -303,7 +303,7 @@ pub(super) fn hills(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Two or four wings on a body, with or without feelers.
+/// Draws two or four wings on a body, with or without feelers.
 pub(super) fn butterfly(r: &mut Stream) -> Lines {
     let mut lines = Lines::new();
     let (tall, wide) = (r.range(0.25, 0.45), r.range(0.3, 0.5));
@@ -336,7 +336,7 @@ pub(super) fn butterfly(r: &mut Stream) -> Lines {
     turned(r, lines, 0.7)
 }
 
-/// One or some birds far away.
+/// Draws one or some distant birds.
 pub(super) fn birds(r: &mut Stream) -> Lines {
     (0..1 + r.below(4))
         .map(|k| {
@@ -355,7 +355,7 @@ pub(super) fn birds(r: &mut Stream) -> Lines {
         .collect()
 }
 
-/// A quarter of a sun, in the corner of the sheet.
+/// Draws a quarter of a sun, in the corner of the sheet.
 pub(super) fn corner_sun(r: &mut Stream) -> Lines {
     let size = r.range(0.3, 0.5);
     let s = if r.chance(0.5) { 1.0 } else { -1.0 };
@@ -370,7 +370,7 @@ pub(super) fn corner_sun(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A word in one stroke or in some, as a name under a picture.
+/// Draws a word in one stroke or in some, as a name under a picture.
 pub(super) fn written(r: &mut Stream) -> Lines {
     let mut lines = Lines::new();
     let mut line = vec![v(0.0, 0.1)];
@@ -408,7 +408,7 @@ pub(super) fn written(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Posts and rails.
+/// Draws posts and rails.
 pub(super) fn fence(r: &mut Stream) -> Lines {
     let n = 3 + r.below(4);
     let mut lines: Lines = (0..n)

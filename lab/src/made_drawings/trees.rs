@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::pens::{arc, leafy_blade, pen, round, scribbled, sides, soft, v};
 use super::{Lines, direction, extent};
 
-/// Roots, ground, bark, a hole: what people add below.
+/// Draws roots, ground, bark, a hole, as people add them below.
 fn extras(r: &mut Stream, lines: &mut Lines, half: f64, top: f64) {
     if r.chance(0.2) {
         lines.push(pen(&[v(-0.4, 0.0), v(0.4, r.range(-0.03, 0.03))], r));
@@ -39,7 +39,7 @@ pub(super) fn open_tree(r: &mut Stream) -> Lines {
     let mut lines = match r.below(4) {
         0 => vec![left, right, crown],
         1 => vec![crown, left, right],
-        // Crown and one side in one go.
+        // Crown and one side in one stroke.
         2 => {
             let mut both = crown;
             both.extend(left);
@@ -57,7 +57,7 @@ pub(super) fn open_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// What people put into a crown.
+/// Draws things that people put into a crown.
 fn inside(r: &mut Stream, lines: &mut Lines, centre: DVec2, size: DVec2) {
     let n = 2 + r.below(7);
     let what = r.below(10);
@@ -95,7 +95,7 @@ pub(super) fn one_line_tree(r: &mut Stream) -> Lines {
     vec![line]
 }
 
-/// Branches from a place, and theirs.
+/// Draws branches from a place, and theirs.
 fn branches(r: &mut Stream, from: DVec2, angle: f64, length: f64, depth: usize, lines: &mut Lines) {
     let tip = from + direction(angle) * length;
     let bend = from.lerp(tip, 0.5) + direction(angle + 0.5 * PI) * (r.range(-0.15, 0.15) * length);
@@ -146,7 +146,7 @@ pub(super) fn twiggy_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A crown much higher than wide.
+/// Draws a crown much higher than wide.
 pub(super) fn narrow_tree(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.015, 0.05), r.range(0.12, 0.3));
     let mut lines: Lines =
@@ -164,7 +164,7 @@ pub(super) fn narrow_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Several heads with many petals each, on stems that part.
+/// Draws several heads with many petals each, on stems that fork.
 pub(super) fn spray(r: &mut Stream) -> Lines {
     let fork = v(r.range(-0.05, 0.05), r.range(0.3, 0.6));
     let mut lines = vec![soft(&[v(0.0, 0.0), fork * 0.5 + v(0.03, 0.0), fork], r)];
@@ -198,7 +198,7 @@ pub(super) fn spray(r: &mut Stream) -> Lines {
     lines
 }
 
-/// The outline of a trunk that parts into branches, or into roots as well.
+/// Draws the outline of a trunk that divides into branches, or into roots as well.
 pub(super) fn outlined_tree(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.06, 0.14), r.range(0.35, 0.55));
     let mut corners = vec![v(-half * r.range(1.2, 2.2), 0.0), v(-half, 0.4 * top), v(-half, top)];
@@ -224,7 +224,7 @@ pub(super) fn outlined_tree(r: &mut Stream) -> Lines {
     vec![if r.chance(0.5) { soft(&corners, r) } else { pen(&corners, r) }]
 }
 
-/// A trunk under loops that run on and on.
+/// Draws a trunk under loops that continue without a gap.
 pub(super) fn looped_tree(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.04, 0.12), r.range(0.3, 0.5));
     let mut lines: Lines = sides(r, half, top).into();
@@ -274,7 +274,7 @@ pub(super) fn lobed_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// The side of a fir from its top down, to the right.
+/// Returns the side of a fir from its top down, to the right.
 fn fir_side(r: &mut Stream, s: f64, top: f64, foot: f64, half: f64) -> Vec<DVec2> {
     let n = 3 + r.below(4);
     let mut corners = vec![v(0.0, top)];
@@ -413,7 +413,7 @@ pub(super) fn palm(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Where fronds hang from, and the trunk below.
+/// Returns the trunk of a palm, and the point from which fronds hang.
 fn palm_trunk(r: &mut Stream) -> (Lines, DVec2) {
     let top = v(r.range(-0.25, 0.25), r.range(0.5, 0.75));
     let (half, bow) = (r.range(0.015, 0.06), r.range(-0.15, 0.15));
@@ -439,7 +439,7 @@ fn palm_trunk(r: &mut Stream) -> (Lines, DVec2) {
     (lines, top)
 }
 
-/// Fronds in one stroke, there and back again and again; or with teeth.
+/// Draws fronds in one stroke, there and back repeatedly; or with teeth.
 pub(super) fn palm_in_few(r: &mut Stream) -> Lines {
     let (trunk, top) = palm_trunk(r);
     let n = 3 + r.below(5);
@@ -478,7 +478,7 @@ pub(super) fn palm_in_few(r: &mut Stream) -> Lines {
     if r.chance(0.6) { [trunk, crown].concat() } else { [crown, trunk].concat() }
 }
 
-/// A trunk and two to five branches, with few twigs.
+/// Draws a trunk and two to five branches, with few twigs.
 pub(super) fn sparse_tree(r: &mut Stream) -> Lines {
     let top = v(r.range(-0.06, 0.06), r.range(0.4, 0.9));
     let half = r.range(0.03, 0.1);
@@ -505,7 +505,7 @@ pub(super) fn sparse_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// Long twigs hang down all round.
+/// Draws long twigs that hang down all round.
 pub(super) fn willow(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.03, 0.09), r.range(0.5, 0.75));
     let mut lines = Vec::from(sides(r, half, top));
@@ -519,7 +519,7 @@ pub(super) fn willow(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A crown of a spiral, of loose arcs or of hatching over a trunk.
+/// Draws a crown of a spiral, of loose arcs or of hatching over a trunk.
 pub(super) fn loose_tree(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.03, 0.1), r.range(0.3, 0.55));
     let mut lines = if r.chance(0.7) {
@@ -565,7 +565,7 @@ pub(super) fn loose_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A triangle, a rounded one, or a drop on a trunk.
+/// Draws a triangle, a rounded one, or a drop on a trunk.
 pub(super) fn pointed_tree(r: &mut Stream) -> Lines {
     let (half, foot) = (r.range(0.02, 0.07), r.range(0.1, 0.3));
     let wide = r.range(0.15, 0.4);
@@ -586,7 +586,8 @@ pub(super) fn pointed_tree(r: &mut Stream) -> Lines {
     lines
 }
 
-/// A crown as an uneven outline without lobes, and a trunk that goes on a little behind it, with limbs in the gaps.
+/// Draws a crown as an uneven outline without lobes, and a trunk that continues a little behind it, with limbs in the
+/// gaps.
 pub(super) fn hidden_trunk(r: &mut Stream) -> Lines {
     let low = r.range(0.05, 0.5);
     let (half, into) = (r.range(0.015, 0.06), low + (1.0 - low) * r.range(0.05, 0.35));
@@ -606,7 +607,7 @@ pub(super) fn hidden_trunk(r: &mut Stream) -> Lines {
             for (wave, (phase, depth)) in (1_u32..).zip(&uneven) {
                 reach += depth * ops::sin(f64::from(wave) * angle + phase);
             }
-            // Broader below than above, or the other way round.
+            // Broader below than above, or the reverse.
             let broad = 1.0 - shoulder * way.y;
             centre + way * size * reach.clamp(0.5, 1.4) * v(broad, 1.0)
         })

@@ -1,7 +1,7 @@
-//! Whether a drawing is read alike when it is drawn in another way that says the same: smaller, with fewer points, the other
-//! way round, by a hand that shakes.
+//! Whether a drawing is read alike when it is drawn differently with the same meaning: smaller, with fewer points, in
+//! the opposite direction, by a trembling hand.
 //!
-//! `drawings -> for each way, how many are then read as something else`
+//! `drawings -> for each change, the number that are then read as something else`
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use glam::DVec2;
 use ink::{Drawing, InkSample, Stroke, StrokeClass};
 use reading::Kind;
 
-/// A line, and which of the drawing's lines it is.
+/// A line, and its number in the drawing.
 #[derive(Clone)]
 struct Line {
     place: usize,
@@ -22,7 +22,7 @@ struct Line {
 
 type Lines = Vec<Line>;
 
-/// Draws lines again, of a drawing with a diagonal of 1.
+/// Redraws lines, of a drawing with a diagonal of 1.
 type Again = fn(&mut Stream, &mut Lines);
 
 /// Ways to draw the same.
@@ -52,7 +52,7 @@ fn lines(lines: &mut Lines, to: impl Fn(&[DVec2]) -> Vec<DVec2>) {
     lines.iter_mut().for_each(|l| l.points = to(&l.points));
 }
 
-/// Of lines with few points each one tells.
+/// Keeps every third point of a line with many points; in a line with few, each matters.
 fn every_third(line: &[DVec2]) -> Vec<DVec2> {
     const MANY: usize = 30;
     let last = line.len() - 1;
@@ -71,7 +71,7 @@ fn shuffled(r: &mut Stream, lines: &mut Lines) {
     }
 }
 
-/// A wave along the line, as fast as a hand shakes.
+/// Adds a wave along the line, at the rate of a trembling hand.
 fn shaken(r: &mut Stream, line: &mut [DVec2]) {
     const WIDE: f64 = 0.003;
     const LONG: f64 = 0.03;
@@ -103,7 +103,7 @@ fn shorter(line: &[DVec2]) -> Vec<DVec2> {
     if kept.len() > 1 { kept } else { line.to_vec() }
 }
 
-/// The longest stroke again, beside itself, at the end.
+/// Repeats the longest stroke with a shift, at the end.
 fn retraced(_: &mut Stream, lines: &mut Lines) {
     let longest = lines.iter().max_by(|a, b| length(&a.points).total_cmp(&length(&b.points))).cloned();
     lines.extend(longest.map(|l| Line {
@@ -112,14 +112,14 @@ fn retraced(_: &mut Stream, lines: &mut Lines) {
     }));
 }
 
-/// What was read: the kinds of the plants, sorted, and the class of each line of the drawing.
+/// Result of reading: the kinds of the plants, sorted, and the class of each line of the drawing.
 struct Read {
     kinds: Vec<Kind>,
     classes: BTreeMap<usize, StrokeClass>,
 }
 
 impl Read {
-    fn of(lines: &Lines) -> Self {
+    fn from_lines(lines: &Lines) -> Self {
         let samples = |l: &Line| l.points.iter().map(|&p| InkSample::from(p)).collect();
         let strokes = lines.iter().map(|l| Stroke { samples: samples(l), ..Stroke::default() }).collect();
         let drawing = Drawing { strokes, ..Drawing::default() };
@@ -138,7 +138,7 @@ impl Read {
     }
 }
 
-/// The lines of a drawing, its diagonal 1; strokes of one point are left out.
+/// Returns the lines of a drawing, its diagonal 1; strokes of one point are left out.
 fn lines_of(drawing: &Drawing) -> Lines {
     let strokes = drawing.strokes.iter().filter(|s| s.samples.len() > 1).enumerate();
     let mut lines: Lines =
@@ -151,7 +151,8 @@ fn lines_of(drawing: &Drawing) -> Lines {
     lines
 }
 
-/// Of one way: drawings whose number of plants, kinds, or class of any stroke changes; strokes whose class changes, and all.
+/// Effects of one change: drawings whose number of plants, kinds, or class of any stroke changes; strokes whose class
+/// changes, and all.
 #[derive(Clone, Copy, Default)]
 struct Changes {
     number: usize,
@@ -161,14 +162,14 @@ struct Changes {
     all: usize,
 }
 
-/// One drawing, in each of the [`WAYS`].
+/// Applies each of the [`WAYS`] to one drawing.
 fn changes(place: u64, drawing: &Drawing) -> [Changes; WAYS.len()] {
     let lines = lines_of(drawing);
-    let plain = Read::of(&lines);
+    let plain = Read::from_lines(&lines);
     WAYS.map(|(_, again)| {
         let mut drawn = lines.clone();
         again(&mut Seed::new(300).child(place).stream(Draw::Template), &mut drawn);
-        let now = Read::of(&drawn);
+        let now = Read::from_lines(&drawn);
         let both = |(k, class): (&usize, &StrokeClass)| Some((*class, *now.classes.get(k)?));
         let both: Vec<(StrokeClass, StrokeClass)> = plain.classes.iter().filter_map(both).collect();
         let strokes = both.iter().filter(|(a, b)| a != b).count();
@@ -182,7 +183,7 @@ fn changes(place: u64, drawing: &Drawing) -> [Changes; WAYS.len()] {
     })
 }
 
-/// For each way to draw the same, the share of drawings that are then read as something else.
+/// Returns for each way to draw the same the share of drawings that are then read as something else.
 pub(super) fn table(drawings: &[Drawing]) -> String {
     const HANDS: usize = 2;
     let mut found: Vec<[Changes; WAYS.len()]> = vec![[Changes::default(); WAYS.len()]; drawings.len()];

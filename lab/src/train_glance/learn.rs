@@ -1,32 +1,37 @@
-//! Learns the network of [`reading::glance`]: the slope of its error, batch by batch.
+//! Training of the network of [`reading::glance`]: the gradient of its error, batch by batch.
 
 use base::{Draw, Seed, Stream, ops};
 use reading::glance::{HIDDEN, Picture, SIDE, Sight};
 
 use crate::adam::{self, ByWeight, Coefficient, Moments};
 
-/// Steps, and pictures of each.
+/// Number of steps.
 const STEPS: usize = 3000;
+/// Number of pictures in each step.
 const BATCH: usize = 256;
-/// Length of the first step, and the pull towards 0.
+/// Length of the first step.
 const RATE: f64 = 2e-3;
+/// Decay of coefficients towards 0.
 const PULL: f64 = 1e-3;
-/// Share of what the units see, and of the units, that is left out of each look.
+/// Share of the inputs of the units, and of the units, that is dropped in each look.
 const DROP: f64 = 0.2;
-/// How each look differs from the picture: spreads of turn, stretch and slant; cells that it is moved by.
+/// Standard deviation of the rotation of each look, radians.
 const TURN: f64 = 0.1;
+/// Standard deviation of the logarithm of the stretch of each look.
 const STRETCH: f64 = 0.1;
+/// Standard deviation of the slant of each look.
 const SLANT: f64 = 0.1;
+/// Largest shift of each look, cells.
 const MOVED: f64 = 1.0;
 
-/// A picture, the word that it shows, how often it is looked at.
+/// A picture, its word, and its weight.
 pub(super) struct Example {
     pub(super) picture: Picture,
     pub(super) word: usize,
     pub(super) weight: f64,
 }
 
-/// The network that says of a picture what it shows.
+/// Trains the network that recognises the word of a picture.
 pub(super) fn learn(examples: &[Example], words: usize) -> Sight {
     learn_in(examples, words, STEPS)
 }
@@ -37,7 +42,7 @@ fn learn_in(examples: &[Example], words: usize, steps: usize) -> Sight {
     let r = &mut seed.stream(Draw::Template);
     for layer in sight.layers_mut() {
         let spread = (2.0 / (layer.cells * layer.inputs) as f64).sqrt();
-        layer.weights.iter_mut().for_each(|w| *w = f32::of(r.normal() * spread));
+        layer.weights.iter_mut().for_each(|w| *w = f32::from_f64(r.normal() * spread));
     }
     let drawn = ByWeight::new(examples.iter().map(|e| e.weight));
     let mut moments = sight.layers().map(|l| [Moments::new(l.weights.len()), Moments::new(l.bias.len())]);
@@ -63,10 +68,10 @@ fn learn_in(examples: &[Example], words: usize, steps: usize) -> Sight {
     sight
 }
 
-/// Parts of a batch, each by a thread.
+/// Number of parts of a batch, each computed by a thread.
 const HANDS: usize = 2;
 
-/// The sum of the slopes of both parts, in one order.
+/// Returns the sum of the gradients of both parts, in one order.
 fn both(part: &(dyn Fn(u64) -> Sight + Sync)) -> Sight {
     let (mut sum, other) = std::thread::scope(|scope| {
         let other = scope.spawn(|| part(1));
@@ -79,11 +84,11 @@ fn both(part: &(dyn Fn(u64) -> Sight + Sync)) -> Sight {
     sum
 }
 
-/// Adds the slope of one look at an example.
+/// Adds the gradient of one look at an example.
 fn look(sight: &Sight, example: &Example, r: &mut Stream, slope: &mut Sight) {
     let mut seen = sight.look(&varied(&example.picture, r));
-    // What is dropped is 0, as if it had not been stirred.
-    let keep = |r: &mut Stream| if r.chance(DROP) { 0.0 } else { f32::of(1.0 / (1.0 - DROP)) };
+    // Dropped inputs are 0, as if they had not been active.
+    let keep = |r: &mut Stream| if r.chance(DROP) { 0.0 } else { f32::from_f64(1.0 / (1.0 - DROP)) };
     seen.looked[3].iter_mut().for_each(|x| *x *= keep(r));
     let mask: Vec<f32> = (0..HIDDEN).map(|_| keep(r)).collect();
     let units = sight.hidden.join(&seen.looked[3]);
@@ -92,14 +97,14 @@ fn look(sight: &Sight, example: &Example, r: &mut Stream, slope: &mut Sight) {
     let most = sums.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let powers: Vec<f64> = sums.iter().map(|s| ops::exp(f64::from(s - most))).collect();
     let total: f64 = powers.iter().sum();
-    let part = |p: f64| f32::of(p / total / BATCH as f64);
+    let part = |p: f64| f32::from_f64(p / total / BATCH as f64);
     let mut miss: Vec<f32> = powers.iter().map(|p| part(*p)).collect();
-    miss[example.word] -= f32::of(1.0 / BATCH as f64);
+    miss[example.word] -= f32::from_f64(1.0 / BATCH as f64);
     let mut back = sight.words.back(1, &units, &miss, &mut slope.words);
     back.iter_mut().zip(&mask).for_each(|(b, m)| *b *= m);
     let mut back = sight.hidden.back(1, &seen.looked[3], &back, &mut slope.hidden);
-    // Numbers that were dropped are 0 and pass nothing; the others are as much larger.
-    back.iter_mut().for_each(|b| *b *= f32::of(1.0 / (1.0 - DROP)));
+    // Dropped numbers are 0 and pass nothing; the others are scaled up accordingly.
+    back.iter_mut().for_each(|b| *b *= f32::from_f64(1.0 / (1.0 - DROP)));
     for k in (0..sight.convolutions.len()).rev() {
         let (side, layer) = (SIDE >> k, &sight.convolutions[k]);
         let mut whole = vec![0.0; side * side * layer.outputs];
@@ -112,7 +117,7 @@ fn look(sight: &Sight, example: &Example, r: &mut Stream, slope: &mut Sight) {
     }
 }
 
-/// A picture as another hand would have drawn it: turned, stretched, slanted, moved, or its mirror image.
+/// Returns a picture as another hand would have drawn it: turned, stretched, slanted, moved, or mirrored.
 fn varied(picture: &[f32], r: &mut Stream) -> Picture {
     let (sin, cos) = ops::sin_cos(r.normal() * TURN);
     let (wide, tall) = (ops::exp(r.normal() * STRETCH), ops::exp(r.normal() * STRETCH));
@@ -133,7 +138,7 @@ fn varied(picture: &[f32], r: &mut Stream) -> Picture {
         #[expect(clippy::cast_possible_truncation, reason = "a few cells beyond the picture at most")]
         let (left, top) = (left as isize, top as isize);
         let row = |y: isize| at(y, left) * (1.0 - right) + at(y, left + 1) * right;
-        f32::of(row(top) * (1.0 - down) + row(top + 1) * down)
+        f32::from_f64(row(top) * (1.0 - down) + row(top + 1) * down)
     };
     (0..SIDE * SIDE).map(cell).collect()
 }
@@ -147,9 +152,9 @@ mod tests {
     fn the_slope_is_that_of_the_error() {
         let r = &mut Seed::new(4).stream(Draw::Template);
         let mut layer = Layer { cells: 9, inputs: 2, outputs: 3, weights: vec![0.0; 54], bias: vec![0.1; 3] };
-        layer.weights.iter_mut().for_each(|w| *w = f32::of(r.normal()));
-        let input: Vec<f32> = (0..4 * 4 * 2).map(|_| f32::of(r.uniform() + 0.1)).collect();
-        let wanted: Vec<f32> = (0..4 * 4 * 3).map(|_| f32::of(r.normal())).collect();
+        layer.weights.iter_mut().for_each(|w| *w = f32::from_f64(r.normal()));
+        let input: Vec<f32> = (0..4 * 4 * 2).map(|_| f32::from_f64(r.uniform() + 0.1)).collect();
+        let wanted: Vec<f32> = (0..4 * 4 * 3).map(|_| f32::from_f64(r.normal())).collect();
         let error = |layer: &Layer, input: &[f32]| -> f64 {
             let out = layer.convolve(4, input);
             out.iter().zip(&wanted).map(|(o, w)| f64::from(o - w) * f64::from(o - w) / 2.0).sum()

@@ -1,32 +1,35 @@
-//! Learns a small network: a softmax over what is linear in the numbers, and over some units that are linear in them
-//! where they are above 0.
+//! Training of a small network: a softmax over a linear function of the numbers, and over some units that are linear in
+//! them where they are above 0.
 //!
-//! Two networks that begin with other coefficients err in other drawings, so several are learnt and their sums averaged. Sums
-//! are linear in units: the mean of networks is one network with the units of all.
+//! Two networks that begin with different coefficients err in different drawings, so several are trained and their sums
+//! averaged. Sums are linear in units: the mean of networks is one network with the units of all.
 //!
-//! [Adam](crate::adam) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units. The same rows
-//! give the same network.
+//! [Adam](crate::adam) on batches drawn by weight, with dropout (Srivastava et al. 2014) of numbers and units. The same
+//! rows give the same network.
 
 use base::{Draw, Seed, Stream, ops};
 
 use crate::adam::{self, ByWeight, Moments};
 
-/// Networks whose mean is taken, and units of each.
+/// Number of networks that are averaged.
 const NETWORKS: usize = 3;
+/// Number of units of each network.
 const OWN_UNITS: usize = 48;
-/// Units of the mean.
+/// Number of units of the mean.
 pub(super) const UNITS: usize = NETWORKS * OWN_UNITS;
-/// Times that each row is looked at, on the average.
+/// Number of times that each row is used, on the average.
 const ROUNDS: usize = 40;
+/// Number of rows in each step.
 const BATCH: usize = 256;
 /// Length of the first step; later ones are shorter, along half a cosine.
 const RATE: f64 = 2e-3;
-/// Pull towards 0, a share of the step.
+/// Decay of coefficients towards 0, a share of the step.
 const PULL: f64 = 0.01;
-/// Share of numbers and of units that is left out of each look.
+/// Share of numbers that is dropped in each look.
 const DROP_NUMBERS: f64 = 0.2;
+/// Share of units that is dropped in each look.
 const DROP_UNITS: f64 = 0.3;
-/// Noise on numbers whose spread is 1.
+/// Noise on numbers whose standard deviation is 1.
 const NOISE: f64 = 0.4;
 
 /// Coefficients, row by row.
@@ -41,11 +44,11 @@ pub(super) struct Network {
     pub(super) outer: Vec<f64>,
 }
 
-/// One example: its numbers, its column, how much it counts.
+/// One example: its numbers, its column, its weight.
 pub(super) type Example<'a> = (&'a [f64], usize, f64);
 
 impl Network {
-    /// The mean of [`NETWORKS`]; two hands learn them.
+    /// Trains the mean of [`NETWORKS`] networks on two threads.
     pub(super) fn learn(examples: &[Example<'_>], columns: usize) -> Self {
         const HANDS: usize = 2;
         let mut all: Vec<(usize, Self)> = std::thread::scope(|scope| {
@@ -62,7 +65,7 @@ impl Network {
         Self::mean(&all.into_iter().map(|(_, net)| net).collect::<Vec<_>>())
     }
 
-    /// One network whose sums are the means of the sums of several that are alike.
+    /// Returns one network whose sums are the means of the sums of several of equal form.
     fn mean(nets: &[Self]) -> Self {
         let part = 1.0 / nets.len() as f64;
         let (columns, units) = (nets[0].columns, nets[0].units);
@@ -95,8 +98,10 @@ impl Network {
         let steps = ROUNDS * examples.len() / BATCH;
         let mut moments = [&net.direct, &net.inner, &net.outer].map(|c| Moments::new(c.len()));
         for step in 0..steps {
-            let mut slope =
-                Self::of((columns, UNITS), [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
+            let mut slope = Self::from_weights(
+                (columns, UNITS),
+                [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]),
+            );
             for _ in 0..BATCH {
                 if let Some(at) = drawn.draw(r) {
                     net.look(examples[at], r, &mut slope);
@@ -112,11 +117,11 @@ impl Network {
         net
     }
 
-    fn of((columns, units): (usize, usize), [direct, inner, outer]: [Vec<f64>; 3]) -> Self {
+    fn from_weights((columns, units): (usize, usize), [direct, inner, outer]: [Vec<f64>; 3]) -> Self {
         Self { columns, units, direct, inner, outer }
     }
 
-    /// Adds the slope of one example.
+    /// Adds the gradient of one example.
     fn look(&self, (numbers, column, _): Example<'_>, r: &mut Stream, slope: &mut Self) {
         let keep = |r: &mut Stream, drop: f64| if r.chance(drop) { 0.0 } else { 1.0 / (1.0 - drop) };
         let x: Vec<f64> = numbers.iter().map(|x| (x + NOISE * r.normal()) * keep(r, DROP_NUMBERS)).collect();
@@ -164,8 +169,8 @@ impl Network {
         powers.into_iter().map(|p| p / total).collect()
     }
 
-    /// What the network says of a row of numbers.
-    pub(super) fn told(&self, x: &[f64]) -> Vec<f64> {
+    /// Returns the output of the network for a row of numbers.
+    pub(super) fn evaluate(&self, x: &[f64]) -> Vec<f64> {
         let heard: Vec<f64> = self.units(x).into_iter().map(|u| u.max(0.0)).collect();
         self.shares(x, &heard)
     }
@@ -185,7 +190,7 @@ mod tests {
         let mean = Network::mean(&nets);
         for row in &rows {
             let apart = |net: &Network, k: usize| {
-                let told = net.told(row);
+                let told = net.evaluate(row);
                 ops::ln(told[k] / told[0])
             };
             for k in 1..3 {

@@ -1,4 +1,4 @@
-//! How programs put the lines of a drawing down: with colour, in pieces, as outlines of their ink, hatched.
+//! Lines of a drawing as programs write them: with colour, in pieces, as outlines of their ink, hatched.
 
 use std::fmt::Write as _;
 
@@ -9,12 +9,12 @@ use super::page::{
     Line, PEN, Page, Written, expanded, filled, hatches, path_data, pieces, ring, shaken, stroked, traced,
 };
 
-/// Where there is no outline, there is nothing to fill.
+/// Writes the page if it has an outline; otherwise there is nothing to fill.
 fn with_outlines(page: &Page, body: &str) -> Option<Written> {
     page.outlines().next().is_some().then(|| page.svg(body))
 }
 
-/// A colour of its own for the area of a line.
+/// Returns the colour for the area of a line.
 fn tint(line: &Line) -> &'static str {
     const TINTS: [&str; 4] = ["#8fbf6a", "#e8b0c8", "#f2d16b", "#c98b5a"];
     TINTS[line.points.len() % TINTS.len()]
@@ -32,7 +32,7 @@ pub(super) fn fill_below_line(page: &Page, _: &mut Stream) -> Option<Written> {
     with_outlines(page, &body)
 }
 
-/// A layer of colours that do not quite lie under the lines.
+/// Writes a layer of colours that do not quite lie under the lines.
 pub(super) fn layer_of_colours(page: &Page, _: &mut Stream) -> Option<Written> {
     let moved = |l: &Line| {
         let points: Vec<DVec2> = l.points.iter().map(|p| *p + DVec2::new(4.0, -3.0)).collect();
@@ -56,7 +56,7 @@ pub(super) fn hachure_below_line(page: &Page, r: &mut Stream) -> Option<Written>
     with_outlines(page, &body)
 }
 
-/// The part of an outline to one side of the line from where it begins to the other end.
+/// Returns the part of an outline to one side of the chord from its beginning to the opposite end.
 fn half(line: &Line) -> Vec<DVec2> {
     let mut half = pieces(&line.points, 2, 0.0).swap_remove(0);
     half.push(half[0]);
@@ -100,13 +100,13 @@ pub(super) fn gradients(page: &Page, _: &mut Stream) -> Option<Written> {
     with_outlines(page, &(defs.to_owned() + &body))
 }
 
-/// Outlines as areas without lines, all else as lines.
+/// Writes outlines as areas without lines, all else as lines.
 pub(super) fn flat_areas(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| if l.closed { filled(&path_data(&l.points), tint(l)) } else { line_of(l) });
     with_outlines(page, &body)
 }
 
-/// A light spot in each outline.
+/// Writes a light spot in each outline.
 pub(super) fn highlights(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         if !l.closed {
@@ -140,7 +140,7 @@ pub(super) fn a_line_a_segment(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&body))
 }
 
-/// Segments whose widths follow the pressure of the pen.
+/// Writes segments whose widths follow the pressure of the pen.
 pub(super) fn a_path_a_segment(page: &Page, r: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         let mut out = String::new();
@@ -158,7 +158,7 @@ pub(super) fn a_path_a_segment(page: &Page, r: &mut Stream) -> Option<Written> {
     Some(page.svg(&body))
 }
 
-/// Curves of a few points, each a path of its own.
+/// Writes curves of a few points, each a path of its own.
 pub(super) fn a_path_a_few_points(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         let even = geom::resample(&l.points, 6.0);
@@ -199,7 +199,7 @@ pub(super) fn outlines_in_thirds_with_gaps(page: &Page, _: &mut Stream) -> Optio
     in_pieces(page, 3, 0.008)
 }
 
-/// Both halves from the base to the tip, as people draw leaves.
+/// Writes both halves from the base to the tip, as people draw leaves.
 pub(super) fn halves_the_same_way(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         if !l.closed {
@@ -214,7 +214,7 @@ pub(super) fn halves_the_same_way(page: &Page, _: &mut Stream) -> Option<Written
     with_outlines(page, &body)
 }
 
-/// Stems and veins in two pieces that meet.
+/// Writes stems and veins in two pieces that meet.
 pub(super) fn open_lines_in_two(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         if l.closed || l.length() < 60.0 {
@@ -233,7 +233,7 @@ pub(super) fn expanded_strokes(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&page.each(|l| filled(&outline_of_ink(l, |_| PEN), &l.color))))
 }
 
-/// A pen of felt, twice as wide.
+/// Writes a felt pen, twice as wide.
 pub(super) fn expanded_broad_strokes(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&page.each(|l| filled(&outline_of_ink(l, |_| 2.5 * PEN), &l.color))))
 }
@@ -253,7 +253,7 @@ pub(super) fn traced_bitmap(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&format!("<path d=\"{data}\" fill=\"#000000\" fill-rule=\"evenodd\"/>\n")))
 }
 
-/// Each line twice in one path, as programs that imitate a hand draw it.
+/// Writes each line twice in one path, as programs that imitate a hand draw it.
 pub(super) fn doubled_in_one_path(page: &Page, r: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         let data = path_data(&shaken(r, &l.points, 1.6)) + &path_data(&shaken(r, &l.points, 1.6));
@@ -262,7 +262,7 @@ pub(super) fn doubled_in_one_path(page: &Page, r: &mut Stream) -> Option<Written
     Some(page.svg(&body))
 }
 
-/// Each line twice, one element after the other.
+/// Writes each line twice, one element after the other.
 pub(super) fn doubled_in_two_paths(page: &Page, r: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         let mut again = || stroked(&path_data(&shaken(r, &l.points, 1.6)), &l.color);
@@ -271,7 +271,7 @@ pub(super) fn doubled_in_two_paths(page: &Page, r: &mut Stream) -> Option<Writte
     Some(page.svg(&body))
 }
 
-/// What is written within each outline, after it.
+/// Writes shading within each outline, after it.
 fn shaded(page: &Page, mut shade: impl FnMut(&Line) -> String) -> Option<Written> {
     let body = page.each(|l| if l.closed { line_of(l) + &shade(l) } else { line_of(l) });
     with_outlines(page, &body)
@@ -291,7 +291,7 @@ pub(super) fn hatched_line_by_line(page: &Page, r: &mut Stream) -> Option<Writte
     })
 }
 
-/// A hatch that a hand begins and ends near the edge.
+/// Returns a hatch that a hand begins and ends near the edge.
 fn inset(r: &mut Stream, [a, b]: [DVec2; 2]) -> [DVec2; 2] {
     [a.lerp(b, r.range(0.0, 0.08)), b.lerp(a, r.range(0.0, 0.08))]
 }
@@ -313,7 +313,7 @@ pub(super) fn zigzag(page: &Page, _: &mut Stream) -> Option<Written> {
     })
 }
 
-/// Shading along one side of the outline only, as engravers do.
+/// Writes shading along one side of the outline only, as engravers do.
 pub(super) fn half_hatched(page: &Page, _: &mut Stream) -> Option<Written> {
     shaded(page, |l| {
         let lines = hatches(&l.points, 0.6, 7.0);
@@ -321,7 +321,7 @@ pub(super) fn half_hatched(page: &Page, _: &mut Stream) -> Option<Written> {
     })
 }
 
-/// Short strokes along the outline that reach no edge, as bark is drawn.
+/// Writes short strokes along the outline that reach no edge, as bark is drawn.
 pub(super) fn short_strokes(page: &Page, r: &mut Stream) -> Option<Written> {
     shaded(page, |l| {
         let lines = hatches(&l.points, 1.4, 14.0);

@@ -1,6 +1,8 @@
-//! `cargo xtask read-drawings --written`: whether a drawing gives the same plant in all the ways that programs write it.
+//! `cargo xtask read-drawings --written`: whether a drawing gives the same plant in all the ways in which programs
+//! write it.
 //!
-//! `drawings -> for each way, the file that a program writes -> its strokes and its plant beside those of plain strokes`
+//! `drawings -> for each way, the file that a program writes -> its strokes and its plant, compared with those of plain
+//! strokes`
 
 mod lines;
 mod page;
@@ -23,16 +25,17 @@ use page::Page;
 use ways::WAYS;
 use xtask::shell::{Outcome, repository};
 
-/// Lengths are compared within this share of the sheet's diagonal, and the width of a broad pen.
+/// Distance within which lengths are compared, as a share of the sheet's diagonal, and the width of a broad pen.
 const NEAR: f64 = 0.012;
-/// Lines are compared at places this far from each other, as a share of the diagonal.
+/// Distance between the places at which lines are compared, as a share of the diagonal.
 const STEP: f64 = 0.004;
 /// A stroke is the plain one if its points are nearer than this, in units of the sheet.
 const SAME_PLACE: f64 = 0.05;
 /// Ink is missing or foreign if it is more than this share of all.
 const MUCH_INK: f64 = 0.02;
-/// Numbers of organs from this one on may differ by one, and by this share.
+/// Least number of organs from which on it may differ by one, or by [`FEW_OF_MANY`].
 const MANY: usize = 5;
+/// Share by which the numbers of many organs may differ.
 const FEW_OF_MANY: f64 = 0.1;
 
 /// A plant in numbers: kinds sorted; axes, leaves, flowers, petals, fruits, pots, contours.
@@ -59,7 +62,7 @@ impl Numbers {
         Self { kinds, organs }
     }
 
-    /// The same kinds, and as many organs: of five and more one or a tenth of them more or less.
+    /// Whether it has the same kinds, and as many organs: of five or more, one or a tenth of them more or less.
     fn is_same_plant(&self, other: &Self) -> bool {
         let is_as_many = |(a, b): (&usize, &usize)| {
             let most = *a.max(b);
@@ -82,7 +85,7 @@ impl core::fmt::Display for Numbers {
     }
 }
 
-/// A file as it is read.
+/// A file as read.
 struct ReadFile {
     drawing: Drawing,
     codes: Vec<String>,
@@ -119,7 +122,7 @@ impl ReadFile {
     }
 }
 
-/// The share of the length of some lines that is near no other line.
+/// Returns the share of the length of some lines that is near no other line.
 fn ink_apart(lines: &[Vec<DVec2>], others: &[Vec<DVec2>], diagonal: f64) -> f64 {
     let (near, step) = (NEAR * diagonal, STEP * diagonal);
     let boxes: Vec<(DVec2, DVec2)> = others.iter().filter_map(|l| geom::bounds(l)).collect();
@@ -138,7 +141,7 @@ fn ink_apart(lines: &[Vec<DVec2>], others: &[Vec<DVec2>], diagonal: f64) -> f64 
     apart as f64 / all.max(1) as f64
 }
 
-/// What one way does to drawings.
+/// Effects of one way on drawings.
 #[derive(Clone, Default)]
 struct Tally {
     drawings: usize,
@@ -146,9 +149,9 @@ struct Tally {
     other_strokes: usize,
     missing: usize,
     foreign: usize,
-    /// Strokes differ and nothing is said.
+    /// Number of drawings whose strokes differ without a warning.
     silent: usize,
-    /// In words, of those whose plant is another one.
+    /// Descriptions of those with a different plant.
     faults: Vec<String>,
 }
 
@@ -190,7 +193,7 @@ impl Plain {
         Some(Self { name: name.to_owned(), lines: file.lines(), page, file, numbers })
     }
 
-    /// Compares what is read of one way with the plain strokes.
+    /// Compares the result of one way with the plain strokes.
     fn judge(&self, way: usize, keep: Option<&Path>) -> Tally {
         let stream = &mut Seed::new(77).child(way as u64).stream(Draw::Test);
         let Some(written) = (WAYS[way].2)(&self.page, stream) else { return Tally::default() };
@@ -230,7 +233,7 @@ impl Plain {
             if let Some(folder) = keep {
                 let ending = written.format.extension();
                 let file = format!("{} {}.{ending}", self.name, WAYS[way].1.replace(['<', '>'], ""));
-                // A picture to look at; where it cannot be written, the table still stands.
+                // A picture for inspection; if it cannot be written, the table is still valid.
                 let _ = fs::write(folder.join(file), &written.bytes);
             }
         }
@@ -238,13 +241,13 @@ impl Plain {
     }
 }
 
-/// For each way to write a drawing, in how many the plant is another one than that of plain strokes, and why.
+/// Returns for each way to write a drawing the number with a plant other than that of plain strokes, and the reasons.
 ///
 /// `only`: ways or kinds of faults with this in their names; their faults are listed one by one, and their files are
 /// written to `out/written`.
 ///
 /// # Errors
-/// A sentence: no such way, or a folder that cannot be made.
+/// A sentence: the way does not exist, or a folder cannot be made.
 pub(crate) fn table(drawings: &[(String, Drawing)], only: Option<&str>) -> Outcome<String> {
     const HANDS: usize = 2;
     let is_wanted = |way: &usize| only.is_none_or(|o| WAYS[*way].0.contains(o) || WAYS[*way].1.contains(o));
@@ -275,10 +278,10 @@ pub(crate) fn table(drawings: &[(String, Drawing)], only: Option<&str>) -> Outco
     for row in &found {
         sums.iter_mut().zip(row).for_each(|(sum, tally)| sum.add(tally));
     }
-    Ok(told(&ways, &sums, only.is_some()))
+    Ok(format_table(&ways, &sums, only.is_some()))
 }
 
-fn told(ways: &[usize], sums: &[Tally], each: bool) -> String {
+fn format_table(ways: &[usize], sums: &[Tally], each: bool) -> String {
     const HEAD: &str = "| drawings | another plant | share | another number of strokes | ink missing | ink foreign | silent |\n|---|---|---|---|---|---|---|---|\n";
     let mut out = format!("| way {HEAD}");
     let mut kinds: BTreeMap<&str, Tally> = BTreeMap::new();
@@ -302,10 +305,10 @@ fn told(ways: &[usize], sums: &[Tally], each: bool) -> String {
     out
 }
 
-/// How the daisy and the tree of `programs` compare with their controls, file by file.
+/// Compares the daisy and the tree of `programs` with their controls, file by file.
 ///
 /// # Errors
-/// A sentence: no control, or a file that cannot be read at all.
+/// A sentence: there is no control, or a file cannot be read at all.
 pub(crate) fn programs(folder: &Path) -> Outcome<String> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder)
         .map_err(|e| format!("{}: {e}", folder.display()))?
@@ -328,7 +331,7 @@ pub(crate) fn programs(folder: &Path) -> Outcome<String> {
     let (mut out, mut same, mut all) = (String::new(), 0, 0);
     for file in files.iter().filter(|f| !name(f).starts_with("00-control")) {
         let name = name(file);
-        // Of a file whose name does not say it, the daisy is meant.
+        // A file whose name does not say it shows the daisy.
         let named = |(plant, _): &&(&str, Numbers)| name.contains(&format!("_{plant}"));
         let meant = controls.iter().find(named).unwrap_or(&controls[0]);
         let (numbers, codes) = match read(file) {

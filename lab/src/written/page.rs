@@ -1,4 +1,4 @@
-//! A drawing on a sheet, and what it takes to write it down: path data, outlines of pens, hatches.
+//! A drawing on a sheet, and the elements for writing it: path data, outlines of pens, hatches.
 
 use std::fmt::Write as _;
 
@@ -7,8 +7,9 @@ use formats::DrawingFormat;
 use glam::DVec2;
 use ink::Drawing;
 
-/// The diagonal of the drawing on its sheet, and the room around it.
+/// Diagonal of the drawing on its sheet.
 const DIAGONAL: f64 = 800.0;
+/// Margin around the drawing.
 const MARGIN: f64 = 60.0;
 /// Width of the pen.
 pub(super) const PEN: f64 = 4.0;
@@ -20,7 +21,7 @@ const ROUND: f64 = 0.018;
 /// A line of the drawing, y down.
 pub(super) struct Line {
     pub(super) points: Vec<DVec2>,
-    /// It encloses an area, and its last point is its first one.
+    /// Whether it encloses an area, so that its last point is its first one.
     pub(super) closed: bool,
     pub(super) color: String,
 }
@@ -37,7 +38,7 @@ pub(super) struct Page {
     pub(super) size: DVec2,
 }
 
-/// What a program has written.
+/// Output of a program.
 pub(super) struct Written {
     pub(super) bytes: Vec<u8>,
     pub(super) format: DrawingFormat,
@@ -50,7 +51,7 @@ impl From<String> for Written {
 }
 
 impl Page {
-    /// Lays a drawing on a sheet; `None` where it has no size.
+    /// Puts a drawing on a sheet; `None` where it has no size.
     pub(super) fn new(drawing: &Drawing) -> Option<Self> {
         let lines: Vec<(Vec<DVec2>, Option<[u8; 3]>)> = (drawing.strokes.iter())
             .filter(|s| !s.hidden)
@@ -79,7 +80,7 @@ impl Page {
         self.lines.iter().filter(|l| l.closed)
     }
 
-    /// A document with this inside.
+    /// Returns a document with this content.
     pub(super) fn svg(&self, body: &str) -> Written {
         let DVec2 { x, y } = self.size;
         format!(
@@ -88,17 +89,17 @@ impl Page {
         .into()
     }
 
-    /// All lines, each as a path.
+    /// Returns all lines, each as a path.
     pub(super) fn paths(&self) -> String {
         self.each(|line| stroked(&path_data(&line.points), &line.color))
     }
 
-    /// What is written of each line.
+    /// Joins the output of `write` for each line.
     pub(super) fn each(&self, write: impl FnMut(&Line) -> String) -> String {
         self.lines.iter().map(write).collect()
     }
 
-    /// A rectangle this far within the sheet, with corners of this radius, as path data.
+    /// Returns a rectangle this far within the sheet, with corners of this radius, as path data.
     pub(super) fn frame(&self, inset: f64, radius: f64) -> String {
         path_data(&rounded(DVec2::splat(inset), self.size - inset, radius))
     }
@@ -112,7 +113,7 @@ pub(super) fn filled(data: &str, color: &str) -> String {
     format!("<path d=\"{data}\" fill=\"{color}\"/>\n")
 }
 
-/// `M` and lines; `Z` where the last point is the first one.
+/// Returns `M` and lines; `Z` where the last point is the first one.
 pub(super) fn path_data(points: &[DVec2]) -> String {
     let mut out = String::new();
     let closed = points.len() > 3 && points.first() == points.last();
@@ -126,7 +127,7 @@ pub(super) fn path_data(points: &[DVec2]) -> String {
     out
 }
 
-/// A rectangle with round corners, closed.
+/// Returns a rectangle with round corners, closed.
 fn rounded(lo: DVec2, hi: DVec2, radius: f64) -> Vec<DVec2> {
     let corners = [DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y), lo];
     let mut out = Vec::new();
@@ -151,8 +152,8 @@ pub(super) fn ring(centre: DVec2, radius: DVec2, n: u32) -> Vec<DVec2> {
     (0..=n).map(point).collect()
 }
 
-/// The outline of a pen that went along a line: one ring, or an outer and an inner one where the line is closed.
-/// `width`: of the pen, by the share of the way.
+/// Returns the outline of a pen that moved along a line: one ring, or an outer and an inner one where the line is
+/// closed. `width`: of the pen, by the share of the length.
 pub(super) fn expanded(line: &Line, width: impl Fn(f64) -> f64) -> Vec<Vec<DVec2>> {
     let way = geom::resample(&line.points, 1.5 * PEN);
     let n = way.len();
@@ -183,7 +184,7 @@ pub(super) fn expanded(line: &Line, width: impl Fn(f64) -> f64) -> Vec<Vec<DVec2
     vec![out]
 }
 
-/// Half a circle round the end of a pen's way, from its left to its right.
+/// Returns half a circle round the end of a pen's path, from its left to its right.
 fn cap(end: DVec2, way: DVec2, width: f64) -> Vec<DVec2> {
     let way = way.normalize_or_zero();
     let point = |k: u8| {
@@ -193,7 +194,7 @@ fn cap(end: DVec2, way: DVec2, width: f64) -> Vec<DVec2> {
     (1..6).map(point).collect()
 }
 
-/// Straight lines across an outline in one direction, from edge to edge.
+/// Returns straight lines across an outline in one direction, from edge to edge.
 pub(super) fn hatches(outline: &[DVec2], angle: f64, apart: f64) -> Vec<[DVec2; 2]> {
     let way = DVec2::new(ops::cos(angle), ops::sin(angle));
     let turned: Vec<DVec2> = outline.iter().map(|p| DVec2::new(p.dot(way), p.dot(way.perp()))).collect();
@@ -214,7 +215,7 @@ pub(super) fn hatches(outline: &[DVec2], angle: f64, apart: f64) -> Vec<[DVec2; 
     out
 }
 
-/// A line as a hand repeats it: moved by a slow wave of this width.
+/// Returns a line as a hand repeats it: moved by a slow wave of this width.
 pub(super) fn shaken(r: &mut Stream, line: &[DVec2], wide: f64) -> Vec<DVec2> {
     let phases = [r.range(0.0, ops::TAU), r.range(0.0, ops::TAU)];
     let closed = line.len() > 3 && line.first() == line.last();
@@ -233,7 +234,7 @@ pub(super) fn shaken(r: &mut Stream, line: &[DVec2], wide: f64) -> Vec<DVec2> {
     out
 }
 
-/// A line cut into so many pieces of one length, each shorter by `gap` at both ends.
+/// Cuts a line into `count` pieces of one length, each shortened by `gap` at both ends.
 pub(super) fn pieces(line: &[DVec2], count: u32, gap: f64) -> Vec<Vec<DVec2>> {
     let length = geom::polyline_length(line);
     let share = length / f64::from(count);
@@ -243,7 +244,7 @@ pub(super) fn pieces(line: &[DVec2], count: u32, gap: f64) -> Vec<Vec<DVec2>> {
         .collect()
 }
 
-/// The part of a line between two places on its way.
+/// Returns the part of a line between two shares of its length.
 fn part(line: &[DVec2], from: f64, to: f64) -> Vec<DVec2> {
     let mut out: Vec<DVec2> = geom::point_at(line, from.max(0.0)).into_iter().collect();
     let mut gone = 0.0;
@@ -257,7 +258,8 @@ fn part(line: &[DVec2], from: f64, to: f64) -> Vec<DVec2> {
     out
 }
 
-/// The edges of the ink of all lines on a raster, as a tracer of bitmaps finds them: closed rings, ink to one side.
+/// Returns the edges of the ink of all lines on a raster, as a tracer of bitmaps finds them: closed rings, ink to one
+/// side.
 pub(super) fn traced(page: &Page, cell: f64) -> Vec<Vec<DVec2>> {
     let size = (page.size / cell).ceil();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the size of a page")]
@@ -315,7 +317,7 @@ fn ink_disc(on: &mut [bool], wide: usize, middle: DVec2, reach: f64) {
     }
 }
 
-/// Means of five neighbours round a ring, every second one.
+/// Averages five neighbours round a ring, keeping every second one.
 fn smooth(ring: &[DVec2]) -> Vec<DVec2> {
     let n = ring.len();
     let mean = |k: usize| (0..5).map(|j| ring[(k + n + j - 2) % n]).sum::<DVec2>() / 5.0;

@@ -1,4 +1,4 @@
-//! Ways of SVG and other files to say the same.
+//! Ways of SVG and other files to express the same.
 
 use std::fmt::Write as _;
 
@@ -22,7 +22,7 @@ pub(super) fn a_steady_hand(page: &Page, r: &mut Stream) -> Option<Written> {
     Some(page.svg(&body))
 }
 
-/// The lines as they are before a transform of the page is undone.
+/// Returns the lines before a transform of the page is undone.
 fn moved(page: &Page, to: impl Fn(DVec2) -> DVec2) -> String {
     page.each(|l| {
         let points: Vec<DVec2> = l.points.iter().map(|p| to(*p)).collect();
@@ -42,13 +42,13 @@ pub(super) fn css_transform(page: &Page, _: &mut Stream) -> Option<Written> {
     )))
 }
 
-/// Turned about the middle of the sheet by half a turn, in CSS.
+/// Writes a half turn about the middle of the sheet, in CSS.
 pub(super) fn css_origin(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = moved(page, |p| page.size - p);
     Some(page.svg(&format!("<g style=\"transform-origin:50% 50%;transform:rotate(0.5turn)\">{body}</g>\n")))
 }
 
-/// The same about the middle of the drawing's own box.
+/// Writes the same about the middle of the drawing's own box.
 pub(super) fn css_fill_box(page: &Page, _: &mut Stream) -> Option<Written> {
     let all: Vec<DVec2> = page.lines.iter().flat_map(|l| &l.points).copied().collect();
     let (lo, hi) = geom::bounds(&all)?;
@@ -78,7 +78,7 @@ pub(super) fn stretched_sheet(page: &Page, _: &mut Stream) -> Option<Written> {
     )
 }
 
-/// An inner sheet that is pulled to its place, and a symbol with a sheet of its own.
+/// Writes an inner sheet that is moved to its place, and a symbol with a sheet of its own.
 pub(super) fn inner_sheets(page: &Page, _: &mut Stream) -> Option<Written> {
     let DVec2 { x, y } = page.size;
     let body = moved(page, |p| p * DVec2::new(0.25, 0.5));
@@ -106,19 +106,19 @@ pub(super) fn used_symbols(page: &Page, _: &mut Stream) -> Option<Written> {
     )
 }
 
-/// A `use` of its own group among good lines.
+/// Writes a `use` of its own group among good lines.
 pub(super) fn use_of_itself(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&format!("<g id=\"all\">{}<use href=\"#all\"/></g>\n", page.paths())))
 }
 
-/// Styles by descendants, in a sheet with rules for screens.
+/// Writes styles by descendants, in a sheet with rules for screens.
 pub(super) fn styled_by_descendants(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| format!("<path d=\"{}\"/>\n", path_data(&l.points)));
     let sheet = "<style><![CDATA[@charset \"utf-8\"; @media print { .no { display: none } } svg g.ink > path { fill: none !important; stroke: rgb(20% 30% 20%); stroke-width: 4px }]]></style>";
     Some(page.svg(&format!("{sheet}<g class=\"ink\">{body}</g>\n")))
 }
 
-/// Colours in all notations of CSS.
+/// Writes colours in all notations of CSS.
 pub(super) fn colours_of_css(page: &Page, _: &mut Stream) -> Option<Written> {
     const COLOURS: [&str; 5] =
         ["hsl(120 40% 30%)", "rgb(30, 60, 30, 1)", "darkolivegreen", "var(--ink, #234)", "currentColor"];
@@ -134,7 +134,7 @@ pub(super) fn colours_of_css(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&format!("<g color=\"#232\">{body}</g>\n")))
 }
 
-/// Relative commands, numbers that touch, and curves through the points.
+/// Writes relative commands, numbers without separators, and curves through the points.
 pub(super) fn short_numbers_and_curves(page: &Page, _: &mut Stream) -> Option<Written> {
     let body = page.each(|l| {
         let mut data = format!("M{:.1},{:.1}", l.points[0].x, l.points[0].y);
@@ -180,7 +180,7 @@ pub(super) fn excalidraw_filled_lines(page: &Page, _: &mut Stream) -> Option<Wri
     Some(excalidraw("excalidraw", &elements))
 }
 
-/// With a frame as a rectangle, words and arrows, and something deleted.
+/// Writes a frame as a rectangle, words and arrows, and something deleted.
 pub(super) fn excalidraw_clipboard(page: &Page, _: &mut Stream) -> Option<Written> {
     let mut elements = vec![
         json!({"type": "rectangle", "x": 10, "y": 10, "width": page.size.x - 20.0, "height": page.size.y - 20.0,

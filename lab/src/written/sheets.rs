@@ -1,4 +1,4 @@
-//! What programs put around a drawing: paper, ink that nobody sees, text and labels.
+//! Surroundings that programs add to a drawing: paper, invisible ink, text and labels.
 
 use std::fmt::Write as _;
 
@@ -55,7 +55,7 @@ pub(super) fn badge_with_rim(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&(disc + &page.paths())))
 }
 
-/// A circle around the drawing, by its line alone.
+/// Writes a circle around the drawing, by its line alone.
 pub(super) fn ring_around(page: &Page, _: &mut Stream) -> Option<Written> {
     let circle = ring(0.5 * page.size, DVec2::splat(0.5 * page.size.length()), 72);
     Some(page.svg(&(stroked(&path_data(&circle), "#3d405b") + &page.paths())))
@@ -86,7 +86,7 @@ pub(super) fn crop_marks(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&(page.paths() + &marks)))
 }
 
-/// Horizontal lines over the sheet, and a margin.
+/// Writes horizontal lines over the sheet, and a margin.
 pub(super) fn ruled(page: &Page, _: &mut Stream) -> Option<Written> {
     let mut lines = String::new();
     let DVec2 { x, y } = page.size;
@@ -102,7 +102,7 @@ pub(super) fn ruled(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&(lines + &page.paths())))
 }
 
-/// Squares over the sheet, all in one path.
+/// Writes squares over the sheet, all in one path.
 pub(super) fn squared(page: &Page, _: &mut Stream) -> Option<Written> {
     let mut data = String::new();
     let DVec2 { x, y } = page.size;
@@ -145,7 +145,7 @@ pub(super) fn sky_and_lawn(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&(sky + &filled(&(path_data(&lawn) + "Z"), "#8fc46a") + &page.paths())))
 }
 
-/// Scribbles all over the drawing, which are not to be seen.
+/// Returns scribbles all over the drawing, which must not be visible.
 fn scribbles(page: &Page, r: &mut Stream) -> Vec<Vec<DVec2>> {
     let somewhere = |r: &mut Stream| DVec2::new(r.range(0.1, 0.9), r.range(0.1, 0.9)) * page.size;
     (0..5)
@@ -209,7 +209,7 @@ pub(super) fn lines_without_width(page: &Page, r: &mut Stream) -> Option<Written
     Some(page.svg(&(lines + &page.paths())))
 }
 
-/// The same width given by a style sheet.
+/// Gives the same width by a style sheet.
 pub(super) fn lines_without_width_by_class(page: &Page, r: &mut Stream) -> Option<Written> {
     let line = |l: &Vec<DVec2>| format!("<path class=\"guide\" d=\"{}\"/>\n", path_data(l));
     let lines: String = scribbles(page, r).iter().map(line).collect();
@@ -217,13 +217,13 @@ pub(super) fn lines_without_width_by_class(page: &Page, r: &mut Stream) -> Optio
     Some(page.svg(&(style.to_owned() + &lines + &page.paths())))
 }
 
-/// Lines in the colour of the paper on a page of that colour.
+/// Writes lines in the colour of the paper on a page of that colour.
 pub(super) fn white_on_white(page: &Page, r: &mut Stream) -> Option<Written> {
     let lines: String = scribbles(page, r).iter().map(|l| stroked(&path_data(l), "#ffffff")).collect();
     Some(page.svg(&(filled(&page.frame(0.0, 0.0), "#ffffff") + &lines + &page.paths())))
 }
 
-/// Places beside the drawing, and the places in it that they name.
+/// Returns places next to the drawing, and the places in it that they label.
 fn labels(page: &Page) -> Vec<(DVec2, DVec2)> {
     let step = (page.lines.len() / 4).max(1);
     let named = page.lines.iter().step_by(step).take(4);
@@ -252,7 +252,7 @@ pub(super) fn text_with_marked_arrows(page: &Page, _: &mut Stream) -> Option<Wri
     Some(wide(page, &body))
 }
 
-/// Leaders without heads from words to organs.
+/// Writes leaders without heads from words to organs.
 pub(super) fn text_with_leaders(page: &Page, _: &mut Stream) -> Option<Written> {
     let mut body = page.paths();
     for (at, to) in labels(page) {
@@ -262,7 +262,7 @@ pub(super) fn text_with_leaders(page: &Page, _: &mut Stream) -> Option<Written> 
     Some(wide(page, &body))
 }
 
-/// Arrows whose heads are lines of their own.
+/// Writes arrows whose heads are lines of their own.
 pub(super) fn text_with_drawn_arrows(page: &Page, _: &mut Stream) -> Option<Written> {
     let mut body = page.paths();
     for (at, to) in labels(page) {
@@ -276,7 +276,8 @@ pub(super) fn text_with_drawn_arrows(page: &Page, _: &mut Stream) -> Option<Writ
     Some(wide(page, &body))
 }
 
-/// A title under the drawing in letters that are areas, as programs write text that shall look the same everywhere.
+/// Writes a title under the drawing in letters that are areas, as programs write text that must look the same
+/// everywhere.
 pub(super) fn title_as_outlines(page: &Page, _: &mut Stream) -> Option<Written> {
     const LETTERS: [&[[f64; 2]]; 4] = [
         &[[0.0, 0.0], [2.0, 0.0], [2.0, 8.0], [7.0, 8.0], [7.0, 10.0], [0.0, 10.0], [0.0, 0.0]],
@@ -323,7 +324,7 @@ pub(super) fn title_as_outlines(page: &Page, _: &mut Stream) -> Option<Written> 
     )
 }
 
-/// A signature in the corner, as a pen that writes.
+/// Writes a signature in the corner.
 pub(super) fn signature(page: &Page, _: &mut Stream) -> Option<Written> {
     let wave = |k: u8| {
         let t = f64::from(k) / 60.0;
@@ -333,7 +334,7 @@ pub(super) fn signature(page: &Page, _: &mut Stream) -> Option<Written> {
     Some(page.svg(&(page.paths() + &stroked(&path_data(&line), "#222"))))
 }
 
-/// A halo of paper round each line, as makers of maps and stickers draw it below the line.
+/// Writes a halo of paper round each line, as makers of maps and stickers draw it below the line.
 pub(super) fn white_halo(page: &Page, _: &mut Stream) -> Option<Written> {
     let halo = page.each(|l| {
         let rings: String = expanded(l, |_| 4.0 * PEN).iter().map(|ring| path_data(ring)).collect();

@@ -1,11 +1,11 @@
-//! The ways that programs write a drawing.
+//! Ways in which programs write a drawing.
 
 use base::Stream;
 
 use super::page::{Page, Written};
 use super::{lines, programs, sheets};
 
-/// Writes a page; `None` where it has nothing that is written so.
+/// Writes a page; `None` where nothing in it is written so.
 pub(super) type Write = fn(&Page, &mut Stream) -> Option<Written>;
 
 /// The ways, each with the kind of fault that it may show.

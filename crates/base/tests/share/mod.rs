@@ -1,6 +1,7 @@
-//! How much tests ask where a part of it says nearly as much as all.
+//! Samples of test cases, for tests whose sample is nearly as informative as the whole.
 
-/// Every `step`th of all, from row `first` on; all of them where `BURGEON_TESTS=all` asks for it, as `cargo xtask test --all` does.
+/// Returns every `step`th item from `first` on, or all items if `BURGEON_TESTS=all` is set, as `cargo xtask test --all`
+/// does.
 pub(crate) fn sample<T>(all: &[T], first: usize, step: usize) -> Vec<&T> {
     let [first, step] = if is_all() { [0, 1] } else { [first, step] };
     all.iter().skip(first).step_by(step).collect()

@@ -16,12 +16,12 @@ use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, Tree
 use crate::names::shortened;
 use crate::{Document, DocumentPlant, PlantId, SettingFault};
 
-/// What can be asked of a tree.
+/// Commands of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum TreeCommand {
-    /// Takes another spec, such as that of a preset. Obstacles stay.
+    /// Replaces the spec, for example by that of a preset. Obstacles stay.
     SetSpec(
         Option<String>,
         #[serde(with = "spec::through_json")]
@@ -34,23 +34,23 @@ pub enum TreeCommand {
     AddObstacle(NamedObstacle),
     /// Replaces the obstacle of a row.
     SetObstacle(usize, NamedObstacle),
-    /// Moves the obstacle of a row by so many metres, in the coordinates of the tree.
+    /// Moves the obstacle of a row by an offset in metres, in the coordinates of the tree.
     MoveObstacle(usize, #[schemars(with = "[f64; 3]")] DVec3),
-    /// Sets the obstacle of a row down elsewhere, turned and larger or smaller, in the coordinates of the tree.
+    /// Moves, turns and scales the obstacle of a row, in the coordinates of the tree.
     SetDownObstacle(usize, SetDown),
-    /// Names the obstacle of a row.
+    /// Renames the obstacle of a row.
     RenameObstacle(usize, String),
-    /// Takes the obstacle of a row away.
+    /// Removes the obstacle of a row.
     RemoveObstacle(usize),
-    /// Sets how it is meshed.
+    /// Sets how the tree is meshed.
     SetSkin(SkinSpec),
-    /// Bears the leaf of another plant, or its own again.
+    /// Takes the leaf of another plant, or its own again.
     SetLeaf(Option<PlantId>),
 }
 
 impl TreeCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Tree(plant, self)
     }
 
@@ -102,7 +102,7 @@ impl TreeCommand {
                 let obstacle = tree.obstacles.get_mut(row).ok_or(gone)?;
                 let strange = || CommandError::OutOfRange(SettingFault::Place);
                 let shape = obstacle.shape.placed(&how.sound().ok_or_else(strange)?);
-                // Larger or smaller again and again, it would leave what a spec may say.
+                // Scaled repeatedly, it would leave the range of a spec.
                 growth::Obstacles::new(core::slice::from_ref(&shape), 0.0).ok().ok_or_else(strange)?;
                 obstacle.shape = Arc::new(shape);
             }
@@ -126,20 +126,20 @@ fn named(new: NamedObstacle) -> NamedObstacle {
     NamedObstacle { name: shortened(&new.name), ..new }
 }
 
-/// What can be asked of a measured leaf.
+/// Commands of a measured leaf.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LeafCommand {
-    /// Takes other measurements, none of whose control balls was moved. The sender has checked that they make a leaf.
+    /// Replaces the measurements by others, with no control ball moved. The sender has checked that they make a leaf.
     SetData(LeafData),
     /// Sets how the leaf is made.
     Set(Box<leaf::LeafSpec>),
 }
 
 impl LeafCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Leaf(plant, self)
     }
 
@@ -169,12 +169,12 @@ impl LeafCommand {
     }
 }
 
-/// What can be asked of a flower.
+/// Commands of a flower.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FlowerCommand {
-    /// Takes another spec, such as that of a species.
+    /// Replaces the spec, for example by that of a species.
     SetSpec(
         Option<String>,
         #[serde(with = "spec::through_json")]
@@ -183,15 +183,15 @@ pub enum FlowerCommand {
     ),
     /// Sets one field of the spec, named by a JSON pointer such as `/whorls/0/count`.
     SetField(String, Value),
-    /// Shows it on a day.
+    /// Sets the day on which it is shown.
     SetDay(f64),
-    /// Takes a fitted law, or the species' own pace again.
+    /// Sets a fitted law, or the species' own pace again.
     SetLaw(#[schemars(with = "Option<Value>")] Option<Arc<GrowthLaw>>),
 }
 
 impl FlowerCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Flower(plant, self)
     }
 

@@ -1,4 +1,4 @@
-//! What can be asked of a document. A command is checked and becomes events, or an error and nothing.
+//! Commands on a document. A command is checked and becomes events, or an error and no change.
 
 mod makers;
 mod scene;
@@ -17,26 +17,26 @@ pub use makers::{FlowerCommand, LeafCommand, TreeCommand};
 pub use scene::{Carry, NewPlant, PlantCommand, SceneCommand};
 pub use sketch::{NewStroke, SketchCommand};
 
-/// What can be asked of a document: of the scene, of any plant, or of a plant of one maker.
+/// A command on a document: on the scene, on any plant, or on a plant of one maker.
 ///
-/// As JSON, nested by maker: `{"sketch": [0, {"move-strokes": [[3, 4], [0.5, 0]]}]}`. What carries strokes, pictures or
-/// whole documents has no JSON: it travels as bytes.
+/// As JSON, nested by maker: `{"sketch": [0, {"move-strokes": [[3, 4], [0.5, 0]]}]}`. Commands that carry strokes,
+/// pictures or whole documents have no JSON form: they travel as bytes.
 ///
 /// ```
 /// use document::{Command, PlantCommand, PlantId};
 /// let command: Command = serde_json::from_str(r#"{"plant":[0,{"set-seed":"18446744073709551615"}]}"#)?;
-/// assert_eq!(command, PlantCommand::SetSeed(base::Seed::new(u64::MAX)).of(PlantId(0)));
+/// assert_eq!(command, PlantCommand::SetSeed(base::Seed::new(u64::MAX)).for_plant(PlantId(0)));
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Command {
-    /// Plants come and go.
+    /// Adds, removes and moves plants.
     Scene(SceneCommand),
-    /// Name, seed, place of a plant.
+    /// Name, seed and place of a plant.
     Plant(PlantId, PlantCommand),
-    /// Edits by hand of a plant with branches.
+    /// Hand edits of a plant with branches.
     Shape(PlantId, ShapeCommand),
     /// Strokes and settings of a sketch.
     Sketch(PlantId, SketchCommand),
@@ -48,34 +48,34 @@ pub enum Command {
     Flower(PlantId, FlowerCommand),
 }
 
-/// Why a command was refused; the document is as it was.
+/// Reason why a command was refused; the document is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
-    /// A stroke is named that is not there.
+    /// There is no stroke of this number.
     #[error("there is no stroke {}; it may have been erased", .0.0)]
     NoSuchStroke(StrokeId),
-    /// A plant is named that is not there.
+    /// There is no plant of this number.
     #[error("there is no plant {}; it may have been deleted", .0.0)]
     NoSuchPlant(PlantId),
-    /// The plant is of another maker.
+    /// The plant has another maker.
     #[error("the plant is a {found}, not a {wanted}")]
     OtherMaker {
-        /// The maker asked.
+        /// The maker that the command needs.
         wanted: &'static str,
-        /// The plant's own.
+        /// The maker of the plant.
         found: &'static str,
     },
-    /// The plant whose leaf is wanted has none to lend.
+    /// The chosen plant has no leaf to lend.
     #[error("that plant has no leaf of its own to lend; choose a measured leaf or a sketch")]
     NoLeaf,
-    /// A photograph is to be moved and there is none.
+    /// There is no photograph to move.
     #[error("there is no photograph under the drawing")]
     NoPhoto,
-    /// It is to stand elsewhere and was told to stay.
+    /// The place of the plant is locked.
     #[error("the place of the plant is locked; unlock it to move, turn or size it")]
     Fixed,
-    /// It lies on a layer that is hidden or locked.
+    /// The stroke lies on a layer that is hidden or locked.
     #[error("the layer {0:?} is hidden or locked; show and unlock it first")]
     Locked(String),
     /// Nothing would change.
@@ -84,22 +84,22 @@ pub enum CommandError {
     /// A setting is out of its range.
     #[error(transparent)]
     OutOfRange(SettingFault),
-    /// A field of a spec cannot be set so.
+    /// A field of a spec cannot be set to this value.
     #[error(transparent)]
     Spec(#[from] spec::SpecFault),
-    /// A point would leave the range of numbers.
+    /// A coordinate would leave the range of numbers.
     #[error("a stroke cannot be moved that far")]
     TooFar,
     /// Strokes and plants are numbered with 32 bits; a scene holds 200 plants.
     #[error("the document holds as many {0} as it can; start a new one")]
     Full(&'static str),
-    /// A gesture is open and this needs it closed, or the other way round.
+    /// A gesture is open and this command needs it closed, or the reverse.
     #[error("{0}")]
     Gesture(&'static str),
 }
 
 impl Command {
-    /// The name of its undo step: a key that the user interface translates.
+    /// Returns the name of its undo step: a key that the user interface translates.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Scene(c) => c.name(),
@@ -112,7 +112,7 @@ impl Command {
         }
     }
 
-    /// Checks the command against a document and says what would happen.
+    /// Checks the command against a document and returns its events.
     pub(crate) fn decide(self, document: &Document) -> Result<Vec<Event>, CommandError> {
         let one = |event| vec![event];
         match self {
@@ -131,7 +131,7 @@ fn plant(id: PlantId, document: &Document) -> Result<&DocumentPlant, CommandErro
     document.plant(id).ok_or(CommandError::NoSuchPlant(id))
 }
 
-/// The event of changed settings.
+/// Returns the event of changed settings.
 fn set(
     plant: &DocumentPlant,
     change: impl FnOnce(&mut Settings) -> Result<(), CommandError>,
@@ -151,7 +151,7 @@ fn set(
 /// Whether a plant may bear the leaf of another.
 fn may_bear(plant: &DocumentPlant, leaf: Option<PlantId>, document: &Document) -> Result<(), CommandError> {
     let Some(lender) = leaf else { return Ok(()) };
-    // A plant that lends its leaf bears its own: so no plant waits for itself.
+    // A plant that lends its leaf bears its own, so dependencies cannot form a cycle.
     let lent = document.plants.iter().any(|p| p.settings.maker.leaf() == Some(plant.id));
     if lender == plant.id || lent || !document.lends_leaf(lender) {
         return Err(CommandError::NoLeaf);

@@ -1,4 +1,4 @@
-//! Commands of the scene, and those that every plant takes.
+//! Commands of the scene, and those common to all plants.
 
 use base::{Seed, ops};
 use glam::DVec3;
@@ -12,35 +12,35 @@ use crate::names::{NAME_LENGTH, shortened};
 use crate::state::{MAX_PLANTS, Placement, Settings, range_fault, sound};
 use crate::{Document, DocumentPlant, DocumentStroke, PlantId, StrokeId, WornPicture};
 
-/// A plant that is to come in.
+/// A plant to be added.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NewPlant {
-    /// Everything but its strokes.
+    /// All its data except the strokes.
     pub settings: Settings,
-    /// Strokes of a sketch; left out for other makers.
+    /// Strokes of a sketch; ignored for other makers.
     pub strokes: Vec<NewStroke>,
 }
 
-/// What can be asked of the scene.
+/// Commands of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SceneCommand {
-    /// Names the scene.
+    /// Renames the scene.
     Rename(String),
     /// Adds a plant after the others.
     #[serde(skip)]
     Add(Box<NewPlant>),
-    /// Adds a moved copy of a plant after the others, metres.
+    /// Adds a copy of a plant after the others, moved by an offset in metres.
     Duplicate(PlantId, #[schemars(with = "[f64; 3]")] DVec3),
-    /// Adds moved copies of plants after the others, metres. They are a new group, named after that of the first plant; of
-    /// plants without one, none.
+    /// Adds copies of plants after the others, moved by an offset in metres. They form a new group, named after that of
+    /// the first plant; copies of plants without a group have none.
     DuplicateAll(Vec<PlantId>, #[schemars(with = "[f64; 3]")] DVec3),
-    /// Moves, turns and sizes plants as one thing.
+    /// Moves, turns and scales plants as one unit.
     Carry(Vec<PlantId>, Carry),
     /// Deletes plants; a plant that bore the leaf of one bears its own again.
     Remove(Vec<PlantId>),
-    /// Puts another document in the place of this one.
+    /// Replaces this document by another.
     #[serde(skip)]
     Open(Box<Document>),
 }
@@ -82,25 +82,26 @@ impl From<SceneCommand> for Command {
     }
 }
 
-/// How plants are carried: sized and turned about a point, then moved. Every plant keeps its place among the others.
+/// A common movement of plants: scaled and turned about a point, then moved. Every plant keeps its place among the
+/// others.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Carry {
-    /// What stays where it is while they are sized and turned, metres.
+    /// Fixed point of the scaling and turning, metres.
     #[schemars(with = "[f64; 3]")]
     pub about: DVec3,
-    /// Metres.
+    /// Offset, metres.
     #[schemars(with = "[f64; 3]")]
     pub by: DVec3,
-    /// About +Y, degrees, counter-clockwise seen from above.
+    /// Turn about +Y, degrees, counter-clockwise seen from above.
     pub turn_deg: f64,
-    /// Times their size, above 0.
+    /// Factor on their size, above 0.
     pub scale: f64,
 }
 
 impl Carry {
-    /// Where a plant stands that stood at `from`. To the millimetre, the tenth of a degree and the thousandth, as people
-    /// place plants.
+    /// Returns the new placement of a plant that stood at `from`, rounded to the millimetre, the tenth of a degree and
+    /// the thousandth, as people place plants.
     fn place(&self, from: Placement) -> Placement {
         let (sin, cos) = ops::sin_cos(self.turn_deg.to_radians());
         let arm = (from.position - self.about) * self.scale;
@@ -132,10 +133,10 @@ fn carry(ids: &[PlantId], how: Carry, document: &Document) -> Result<Vec<Event>,
     if events.is_empty() { Err(CommandError::Nothing("they stand like that already")) } else { Ok(events) }
 }
 
-/// A plant as a moved copy, free to go.
+/// Makes a moved copy of a plant, with its place unlocked.
 fn copy(id: PlantId, by: DVec3, document: &Document) -> Result<NewPlant, CommandError> {
     let DocumentPlant { settings, strokes, .. } = plant(id, document)?.clone();
-    let mut new = NewPlant { settings, strokes: strokes.iter().map(NewStroke::of).collect() };
+    let mut new = NewPlant { settings, strokes: strokes.iter().map(NewStroke::from_stroke).collect() };
     new.settings.placement.position += by;
     new.settings.fixed = false;
     Ok(new)
@@ -218,19 +219,19 @@ fn remove(ids: &[PlantId], document: &Document) -> Result<Vec<Event>, CommandErr
             });
         }
     }
-    // From the last to the first: each row is that of the scene before its own event.
+    // From the last to the first: each row refers to the scene before its own event.
     events.extend(
         gone.into_iter().rev().map(|(row, p)| Event::PlantRemoved { row, plant: Box::new(p.clone()) }),
     );
     Ok(events)
 }
 
-/// What can be asked of any plant.
+/// Commands of any plant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PlantCommand {
-    /// Names it.
+    /// Renames it.
     Rename(String),
     /// Sets its seed; text as JSON, because JavaScript's numbers hold 53 bits.
     SetSeed(
@@ -238,26 +239,27 @@ pub enum PlantCommand {
         #[schemars(with = "String")]
         Seed,
     ),
-    /// Keeps its seed from dice, or no longer.
+    /// Locks or unlocks its seed for dice.
     Lock(bool),
-    /// Takes it out of the view, or back.
+    /// Hides it from the view, or shows it again.
     Hide(bool),
-    /// Puts it into the group of a name; an empty one takes it out of its group.
+    /// Puts it into the group of a name; an empty name takes it out of its group.
     Group(String),
-    /// Sets where it stands.
+    /// Sets its placement.
     Place(Placement),
-    /// Keeps it where it stands, or no longer. A copy is free to go.
+    /// Locks or unlocks its place. A copy is always unlocked.
     Fix(bool),
-    /// Gives the organs of a kind a material, or takes it away. A picture that it names is one of the plant's.
+    /// Gives the organs of a kind a material, or takes it away. A picture that the material names is one of the
+    /// plant's.
     Wear(Wearer, Option<OrganMaterial>),
-    /// Takes in a picture that materials may name.
+    /// Adds a picture that materials may name.
     #[serde(skip)]
     AddPicture(WornPicture),
 }
 
 impl PlantCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Plant(plant, self)
     }
 

@@ -1,4 +1,4 @@
-//! Commands of edits by hand: of every plant that has branches.
+//! Commands of hand edits, for every plant with branches.
 
 use std::sync::Arc;
 
@@ -11,24 +11,24 @@ use crate::event::Event;
 use crate::state::PlantEdit;
 use crate::{DocumentPlant, PlantId};
 
-/// What can be asked of the edits by hand of a plant. They are named by their rows, from 0.
+/// Commands on the hand edits of a plant. Edits are named by their rows, from 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ShapeCommand {
-    /// Does one more, after the others.
+    /// Adds an edit after the others.
     Add(Arc<HandEdit>),
-    /// Does another in the place of that of a row.
+    /// Replaces the edit of a row.
     Replace(usize, Arc<HandEdit>),
-    /// Leaves the edit of a row out, or does it again.
+    /// Switches the edit of a row off or on.
     Leave(usize, bool),
-    /// Takes those of these rows away.
+    /// Removes the edits of these rows.
     Remove(Vec<usize>),
 }
 
 impl ShapeCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Shape(plant, self)
     }
 

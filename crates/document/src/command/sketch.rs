@@ -1,4 +1,4 @@
-//! Commands of sketches: strokes and how they are understood.
+//! Commands of sketches: strokes and their interpretation.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,34 +18,41 @@ use crate::picture::material_fault;
 use crate::state::{is_width, sound};
 use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoPlace, PlantId, StrokeId};
 
-/// A stroke that is to be added.
+/// A stroke to be added.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NewStroke {
-    /// What the pen left.
+    /// The line as drawn.
     pub stroke: Stroke,
-    /// The class, if the person set it.
+    /// The class, if the user set it.
     pub class: Option<StrokeClass>,
-    /// What the person was shown it as; of strokes that are copied with all others.
+    /// The class that the user was shown; only of strokes that are copied with all others.
     pub shown: Option<StrokeClass>,
-    /// The material, if the person chose one.
+    /// The material, if the user chose one.
     pub material: Option<Arc<OrganMaterial>>,
 }
 
 impl NewStroke {
-    /// A bare line in `parts` mode.
+    /// Makes a bare line in `parts` mode.
     pub fn line(points: &[DVec2]) -> Self {
         let samples = points.iter().map(|&p| InkSample::from(p)).collect();
-        Self { stroke: Stroke { samples, ..Stroke::default() }, ..Self::default() }
+        Self::from(Stroke { samples, ..Stroke::default() })
     }
 
-    /// A copy of a stroke for another plant, with what was said of it.
-    pub fn of(stroke: &DocumentStroke) -> Self {
+    /// Makes a copy of a stroke for another plant, with its class and material.
+    pub fn from_stroke(stroke: &DocumentStroke) -> Self {
         let DocumentStroke { stroke, class, shown, material, .. } = stroke;
         Self { stroke: Stroke::clone(stroke), class: *class, shown: *shown, material: material.clone() }
     }
 }
 
-/// What can be asked of a sketch.
+impl From<Stroke> for NewStroke {
+    /// A stroke of which nothing was said.
+    fn from(stroke: Stroke) -> Self {
+        Self { stroke, ..Self::default() }
+    }
+}
+
+/// Commands that change a sketch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -53,10 +60,10 @@ pub enum SketchCommand {
     /// Adds strokes after the others. Points that are not finite are left out.
     #[serde(skip)]
     AddStrokes(Vec<NewStroke>),
-    /// Adds a stroke that was drawn, and keeps what strokes were shown as when it was drawn: a class, or nothing for those
-    /// of which that was not clear. Others keep what they have.
+    /// Adds a drawn stroke, and records the classes in which strokes were shown when it was drawn: a class, or none for
+    /// those whose class was not clear. Others keep theirs.
     #[serde(skip)]
-    Draw(Stroke, Vec<(StrokeId, Option<StrokeClass>)>),
+    Draw(NewStroke, Vec<(StrokeId, Option<StrokeClass>)>),
     /// Adds moved copies of strokes after the others, with what was said of them.
     Duplicate(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
     /// Erases strokes.
@@ -67,13 +74,16 @@ pub enum SketchCommand {
     TurnStrokes(Vec<StrokeId>, StrokeTurn),
     /// Bends strokes by pulling at them.
     PullStrokes(Vec<StrokeId>, StrokePull),
+    /// Gives a stroke other points: what a hand drew was meant as a line or an arc.
+    #[serde(skip)]
+    Straighten(StrokeId, Vec<InkSample>),
     /// Smooths strokes once more.
     SmoothStrokes(Vec<StrokeId>),
     /// Cuts strokes in two at their point nearest to this one.
     CutStrokes(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
-    /// Makes one stroke of several, in the place of the first.
+    /// Joins several strokes into one, in the place of the first.
     JoinStrokes(Vec<StrokeId>),
-    /// Erases what lies within a radius of a path, of all strokes.
+    /// Erases the parts of all strokes that lie within a radius of a path.
     RubOut(#[schemars(with = "Vec<[f64; 2]>")] Vec<DVec2>, f64),
     /// Sets the class of strokes, or leaves it to the classifier again.
     SetClass(Vec<StrokeId>, Option<StrokeClass>),
@@ -81,9 +91,10 @@ pub enum SketchCommand {
     SetMode(Vec<StrokeId>, StrokeMode),
     /// Gives strokes a colour, or takes it away.
     SetColor(Vec<StrokeId>, Option<[u8; 3]>),
-    /// Sets how wide the pen of strokes is, in the drawing's unit, or takes it away.
+    /// Sets the width of the pen of strokes, in the drawing's unit, or takes it away.
     SetWidth(Vec<StrokeId>, Option<f64>),
-    /// Gives what is read from strokes a material, or takes it away. A picture that it names is one of the plant's.
+    /// Gives the organs of strokes a material, or takes it away. A picture that the material names is one of the
+    /// plant's.
     SetMaterial(Vec<StrokeId>, Option<OrganMaterial>),
     /// Adds a layer of this name above the others.
     AddLayer(String),
@@ -91,13 +102,13 @@ pub enum SketchCommand {
     SetLayer(usize, Layer),
     /// Moves the layer of a row to another row.
     MoveLayer(usize, usize),
-    /// Takes the layer of a row away; its strokes go to the sheet itself.
+    /// Removes the layer of a row; its strokes move to the sheet itself.
     RemoveLayer(usize),
     /// Puts strokes on a layer, by its name, or on the sheet itself.
     PutOn(Vec<StrokeId>, Option<String>),
-    /// Erases every stroke, but those on layers that are hidden or locked.
+    /// Erases every stroke, except those on layers that are hidden or locked.
     Clear,
-    /// Sets how the drawing is understood.
+    /// Sets how the drawing is interpreted.
     SetSketch(Box<SketchSpec>),
     /// Sets how the plant is meshed and coloured.
     SetSkin(SkinSpec),
@@ -106,17 +117,17 @@ pub enum SketchCommand {
     SetPhoto(Box<Photo>),
     /// Changes how the photograph lies under the drawing.
     PlacePhoto(PhotoPlace),
-    /// Takes the photograph away.
+    /// Removes the photograph.
     RemovePhoto,
-    /// Shows its flowers at a day, or as they are drawn.
+    /// Shows its flowers on a day, or as they are drawn.
     SetDay(Option<f64>),
-    /// Bears the leaf of another plant, or its own again.
+    /// Takes the leaf of another plant, or its own again.
     SetLeaf(Option<PlantId>),
 }
 
 impl SketchCommand {
-    /// The command for a plant.
-    pub fn of(self, plant: PlantId) -> Command {
+    /// Returns the command for a plant.
+    pub fn for_plant(self, plant: PlantId) -> Command {
         Command::Sketch(plant, self)
     }
 
@@ -128,6 +139,7 @@ impl SketchCommand {
             Self::MoveStrokes(..) => "move",
             Self::TurnStrokes(..) => "turn",
             Self::PullStrokes(..) => "pull",
+            Self::Straighten(..) => "straighten",
             Self::SmoothStrokes(_) => "smooth",
             Self::CutStrokes(..) => "cut",
             Self::JoinStrokes(_) => "join",
@@ -167,7 +179,7 @@ impl SketchCommand {
                 return replace(&within_reach(plant), plant, document, |s| ink::rubbed(s, &path, radius));
             }
             Self::Draw(stroke, shown) => {
-                let added = add(vec![NewStroke { stroke, ..NewStroke::default() }], plant, document)?;
+                let added = add(vec![stroke], plant, document)?;
                 let shown = base::map_of(shown);
                 let ids: Vec<StrokeId> =
                     shown.keys().copied().filter(|id| plant.row(*id).is_some()).collect();
@@ -182,8 +194,14 @@ impl SketchCommand {
             Self::RemoveStrokes(ids) => remove(&rows(&ids, plant)?, plant),
             Self::Clear => remove(&within_reach(plant), plant),
             Self::MoveStrokes(ids, by) => redraw(&ids, plant, |s| moved(s, by)),
-            Self::TurnStrokes(ids, turn) => redraw(&ids, plant, |s| turn.of(s)),
-            Self::PullStrokes(ids, pull) => redraw(&ids, plant, |s| pull.of(s)),
+            Self::TurnStrokes(ids, turn) => redraw(&ids, plant, |s| turn.apply(s)),
+            Self::PullStrokes(ids, pull) => redraw(&ids, plant, |s| pull.apply(s)),
+            Self::Straighten(_, samples) if samples.is_empty() => {
+                return Err(CommandError::Nothing("the stroke has no point"));
+            }
+            Self::Straighten(id, samples) => {
+                redraw(&[id], plant, |s| Stroke { samples: samples.clone(), ..s.clone() })
+            }
             Self::SmoothStrokes(ids) => redraw(&ids, plant, ink::smoothed),
             Self::SetClass(ids, class) => edit(&ids, plant, |s| {
                 (s.class, s.shown) = (class, None);
@@ -252,7 +270,7 @@ fn add(strokes: Vec<NewStroke>, plant: &DocumentPlant, document: &Document) -> R
     let mut rows = Vec::with_capacity(strokes.len());
     for NewStroke { stroke, class, shown, material } in strokes {
         let Some(mut stroke) = sound(stroke) else { continue };
-        // A layer of another drawing is none of this one's.
+        // A layer of another drawing does not exist in this one.
         let layer = stroke.layer.take();
         let layer = layer.and_then(|name| plant.layers().iter().find(|l| l.name == name));
         open_to_hand(layer)?;
@@ -278,7 +296,7 @@ fn near(stroke: Stroke) -> Result<Stroke, CommandError> {
     if stroke.samples.iter().all(|s| s.at.is_finite()) { Ok(stroke) } else { Err(CommandError::TooFar) }
 }
 
-/// Strokes that stay what they are, drawn otherwise.
+/// Changes the points of strokes that keep their class.
 fn redraw(
     ids: &[StrokeId],
     plant: &DocumentPlant,
@@ -290,8 +308,8 @@ fn redraw(
     })
 }
 
-/// Strokes in whose place others come: the first of them keeps number and class, the others have the class. `change`
-/// returns `None` for a stroke that stays as it is.
+/// Replaces strokes by others: the first of them keeps number and class, the others take the class. `change` returns
+/// `None` for a stroke that stays as it is.
 fn replace(
     rows: &[usize],
     plant: &DocumentPlant,
@@ -300,7 +318,7 @@ fn replace(
 ) -> Result<Vec<Event>, CommandError> {
     let mut next = document.next_stroke;
     let (mut gone, mut come) = (Vec::new(), Vec::new());
-    // How many more strokes there are before the row in hand than there were.
+    // Difference in the number of strokes before the current row, new minus old.
     let mut more = 0;
     for &row in rows {
         let old = &plant.strokes[row];
@@ -351,7 +369,7 @@ fn duplicate(
 ) -> Result<Event, CommandError> {
     let copies = rows(ids, plant)?.into_iter().map(|row| {
         let s = &plant.strokes[row];
-        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, shown: None, ..NewStroke::of(s) })
+        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, shown: None, ..NewStroke::from_stroke(s) })
     });
     add(copies.collect::<Result<_, CommandError>>()?, plant, document)
 }
@@ -369,13 +387,13 @@ fn rows(ids: &[StrokeId], plant: &DocumentPlant) -> Result<Vec<usize>, CommandEr
     Ok(found)
 }
 
-/// Rows of strokes that are neither hidden nor locked.
+/// Returns the rows of strokes that are neither hidden nor locked.
 fn within_reach(plant: &DocumentPlant) -> Vec<usize> {
     let open = |&row: &usize| open_to_hand(plant.layer_of(&plant.strokes[row])).is_ok();
     (0..plant.strokes.len()).filter(open).collect()
 }
 
-/// Whether what lies on a layer may be changed.
+/// Checks that strokes on a layer may be changed.
 fn open_to_hand(layer: Option<&Layer>) -> Result<(), CommandError> {
     match layer.filter(|l| l.hidden || l.locked) {
         Some(layer) => Err(CommandError::Locked(layer.name.to_string())),
@@ -385,7 +403,7 @@ fn open_to_hand(layer: Option<&Layer>) -> Result<(), CommandError> {
 
 const NO_LAYER: CommandError = CommandError::Nothing("the layer is not there any more");
 
-/// Strokes of a layer, put on another.
+/// Moves the strokes of a layer to another.
 fn relayered(from: &Arc<str>, to: Option<&Arc<str>>, plant: &DocumentPlant) -> Option<Event> {
     let on = plant.strokes.iter().enumerate().filter(|(_, s)| s.stroke.layer.as_ref() == Some(from));
     let rows: Vec<_> = on
@@ -414,7 +432,7 @@ fn remove_layer(row: usize, plant: &DocumentPlant) -> Result<Vec<Event>, Command
     Ok(moved.into_iter().chain([set]).collect())
 }
 
-/// Strokes with another material, and the plant without pictures that nothing wears any more.
+/// Sets the material of strokes, and drops pictures of the plant that nothing uses any more.
 fn wear(
     ids: &[StrokeId],
     material: Option<OrganMaterial>,

@@ -23,7 +23,7 @@ const V3: &str = r#"{"burgeon":"project/3"}"#;
 
 const V4: &str = r#"{"burgeon":"project/4"}"#;
 
-/// The one plant of a document of an earlier form.
+/// Returns the only plant of a document of an earlier form.
 fn only(document: &Document) -> &DocumentPlant {
     document.only_sketch().unwrap()
 }
@@ -32,19 +32,19 @@ fn refusal(bytes: &[u8]) -> String {
     read_project(bytes).unwrap_err().to_string()
 }
 
-/// One plant of a maker.
+/// Makes a file with one plant of a maker.
 fn scene(maker: &str, more: &str) -> Vec<u8> {
     let plant = format!(r#"{{"name":"a","seed":1,"maker":{maker}{more}}}"#);
     project(V3, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
 }
 
-/// One plant with one edit by hand.
+/// Makes a file with one plant and one hand edit.
 fn edited(maker: &str, edit: &str) -> Vec<u8> {
     let plant = format!(r#"{{"name":"a","seed":1,"maker":{maker},"edits":[{{"edit":{edit}}}]}}"#);
     project(V4, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
 }
 
-/// A material whose picture is not in the file, and layers of one name.
+/// A material whose picture is not in the file, and layers that share a name.
 #[test]
 fn materials_and_layers_that_do_not_hold_together_are_refused() {
     let v6 = r#"{"burgeon":"project/6"}"#;
@@ -70,7 +70,7 @@ fn materials_and_layers_that_do_not_hold_together_are_refused() {
     }
 }
 
-/// Files without groups showed plants of one name and maker as one from three on.
+/// Files without groups showed plants of one name and maker as one entry if there were three or more.
 #[test]
 fn plants_of_one_name_are_a_group_in_files_that_have_none() {
     let groups = |version: &str, names: &[&str], more: &str| -> Vec<String> {

@@ -66,7 +66,7 @@ fn layer_command() -> impl Strategy<Value = SketchCommand> {
     ]
 }
 
-/// Most plants of a test have a number below this.
+/// Upper bound of the numbers of most plants in a test.
 const PLANTS: u32 = 6;
 
 fn sketch_command() -> impl Strategy<Value = SketchCommand> {
@@ -275,13 +275,13 @@ fn scene_command() -> impl Strategy<Value = SceneCommand> {
 fn command() -> BoxedStrategy<Command> {
     let plant = || (0..PLANTS).prop_map(PlantId);
     prop_oneof![
-        6 => sketch_command().prop_map(|c| c.of(PlantId(0))),
-        1 => (plant(), sketch_command()).prop_map(|(p, c)| c.of(p)),
-        2 => (plant(), tree_command()).prop_map(|(p, c)| c.of(p)),
-        1 => (plant(), leaf_command()).prop_map(|(p, c)| c.of(p)),
-        1 => (plant(), flower_command()).prop_map(|(p, c)| c.of(p)),
-        2 => (plant(), plant_command()).prop_map(|(p, c)| c.of(p)),
-        3 => (plant(), shape_command()).prop_map(|(p, c)| c.of(p)),
+        6 => sketch_command().prop_map(|c| c.for_plant(PlantId(0))),
+        1 => (plant(), sketch_command()).prop_map(|(p, c)| c.for_plant(p)),
+        2 => (plant(), tree_command()).prop_map(|(p, c)| c.for_plant(p)),
+        1 => (plant(), leaf_command()).prop_map(|(p, c)| c.for_plant(p)),
+        1 => (plant(), flower_command()).prop_map(|(p, c)| c.for_plant(p)),
+        2 => (plant(), plant_command()).prop_map(|(p, c)| c.for_plant(p)),
+        3 => (plant(), shape_command()).prop_map(|(p, c)| c.for_plant(p)),
         4 => scene_command().prop_map(Command::from),
     ]
     .boxed()
@@ -373,7 +373,7 @@ proptest! {
         let back = read_project(&write_project(document, "test").unwrap()).unwrap();
         prop_assert_eq!((back.name(), back.plants().len()), (document.name(), document.plants().len()));
         for (new, old) in back.plants().iter().zip(document.plants()) {
-            // Plants are numbered anew: a leaf that is borne keeps its row.
+            // Plants are renumbered: a reference to a leaf keeps its row.
             let row = |d: &Document, id: Option<PlantId>| id.map(|id| d.plants().iter().position(|p| p.id() == id));
             let (lent, was) = (new.settings().maker.leaf(), old.settings().maker.leaf());
             prop_assert_eq!(row(&back, lent), row(document, was));
@@ -394,7 +394,7 @@ proptest! {
     }
 }
 
-/// Plants that are carried together turn about one point; a locked one keeps all where they are.
+/// Plants that are carried together turn about one point; a locked one keeps all in place.
 #[test]
 fn plants_are_carried_as_one_thing() {
     let mut editor = Editor::default();
@@ -414,7 +414,7 @@ fn plants_are_carried_as_one_thing() {
     assert_eq!(places(&editor)[1].position, DVec3::new(2.0, 0.0, 0.0));
     editor.undo();
     assert_eq!(places(&editor), before);
-    editor.run(PlantCommand::Fix(true).of(PlantId(1))).unwrap();
+    editor.run(PlantCommand::Fix(true).for_plant(PlantId(1))).unwrap();
     assert_eq!(editor.run(SceneCommand::Carry(both, back)), Err(CommandError::Fixed));
     assert_eq!(places(&editor), before);
 }
@@ -424,7 +424,7 @@ fn copies_of_a_group_are_a_group_of_their_own() {
     let mut editor = Editor::default();
     editor.run(SceneCommand::Duplicate(PlantId(0), DVec3::X)).unwrap();
     for id in [0, 1] {
-        editor.run(PlantCommand::Group("bed 2".into()).of(PlantId(id))).unwrap();
+        editor.run(PlantCommand::Group("bed 2".into()).for_plant(PlantId(id))).unwrap();
     }
     editor.run(SceneCommand::DuplicateAll(vec![PlantId(0), PlantId(1)], DVec3::Z)).unwrap();
     let groups = |e: &Editor| -> Vec<String> {
@@ -445,9 +445,9 @@ fn a_hundred_steps_are_undone_by_name() {
     let mut editor = Editor::default();
     for k in 0..100 {
         let line = NewStroke::line(&[DVec2::ZERO, DVec2::new(f64::from(k), 1.0)]);
-        editor.run(SketchCommand::AddStrokes(vec![line]).of(PlantId(0))).unwrap();
+        editor.run(SketchCommand::AddStrokes(vec![line]).for_plant(PlantId(0))).unwrap();
     }
-    editor.run(SketchCommand::Clear.of(PlantId(0))).unwrap();
+    editor.run(SketchCommand::Clear.for_plant(PlantId(0))).unwrap();
     assert_eq!(strokes(&editor).len(), 0);
     assert_eq!(editor.undo(), Some("clear"));
     for left in (0..100).rev() {
@@ -461,19 +461,21 @@ fn a_hundred_steps_are_undone_by_name() {
 fn a_drag_is_one_step_and_a_drag_back_is_none() {
     let mut editor = Editor::default();
     editor
-        .run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).of(PlantId(0)))
+        .run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).for_plant(PlantId(0)))
         .unwrap();
     let id = strokes(&editor)[0].id;
     editor.begin_gesture("move").unwrap();
     for k in 1..=5 {
-        editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::X * f64::from(k)).of(PlantId(0))).unwrap();
+        editor
+            .stage(SketchCommand::MoveStrokes(vec![id], DVec2::X * f64::from(k)).for_plant(PlantId(0)))
+            .unwrap();
     }
     assert!(editor.commit());
     assert_eq!(strokes(&editor)[0].stroke.samples[0].at, DVec2::X * 5.0);
     assert_eq!(editor.done().len(), 2);
     editor.begin_gesture("move").unwrap();
-    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::X).of(PlantId(0))).unwrap();
-    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::ZERO).of(PlantId(0))).unwrap();
+    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::X).for_plant(PlantId(0))).unwrap();
+    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::ZERO).for_plant(PlantId(0))).unwrap();
     assert!(!editor.commit());
     assert_eq!(strokes(&editor)[0].stroke.samples[0].at, DVec2::X * 5.0);
 }
@@ -483,8 +485,10 @@ fn what_is_cut_rubbed_and_joined_keeps_its_place_and_its_class() {
     let mut editor = Editor::default();
     let level = |y: f64| NewStroke::line(&[DVec2::new(0.0, y), DVec2::new(100.0, y)]);
     let three = SketchCommand::AddStrokes(vec![level(0.0), level(50.0), level(100.0)]);
-    editor.run(three.of(PlantId(0))).unwrap();
-    editor.run(SketchCommand::SetClass(vec![StrokeId(1)], Some(StrokeClass::Vein)).of(PlantId(0))).unwrap();
+    editor.run(three.for_plant(PlantId(0))).unwrap();
+    editor
+        .run(SketchCommand::SetClass(vec![StrokeId(1)], Some(StrokeClass::Vein)).for_plant(PlantId(0)))
+        .unwrap();
     let before = editor.document().clone();
     let shown = |e: &Editor| -> Vec<(u32, f64, f64, bool)> {
         let ends = |s: &document::DocumentStroke| {
@@ -493,42 +497,44 @@ fn what_is_cut_rubbed_and_joined_keeps_its_place_and_its_class() {
         };
         strokes(e).iter().map(ends).collect()
     };
-    editor.run(SketchCommand::CutStrokes(vec![StrokeId(1)], DVec2::new(30.0, 52.0)).of(PlantId(0))).unwrap();
+    editor
+        .run(SketchCommand::CutStrokes(vec![StrokeId(1)], DVec2::new(30.0, 52.0)).for_plant(PlantId(0)))
+        .unwrap();
     let cut = [(0, 0.0, 100.0, false), (1, 0.0, 30.0, true), (3, 30.0, 100.0, true), (2, 0.0, 100.0, false)];
     assert_eq!(shown(&editor), cut);
-    editor.run(SketchCommand::JoinStrokes(vec![StrokeId(3), StrokeId(1)]).of(PlantId(0))).unwrap();
+    editor.run(SketchCommand::JoinStrokes(vec![StrokeId(3), StrokeId(1)]).for_plant(PlantId(0))).unwrap();
     assert_eq!(shown(&editor), [(0, 0.0, 100.0, false), (1, 0.0, 100.0, true), (2, 0.0, 100.0, false)]);
-    // The rubber crosses two of them, and takes the third away.
+    // The eraser crosses two of them, and removes the third.
     let path = vec![DVec2::new(40.0, -5.0), DVec2::new(40.0, 60.0)];
-    editor.run(SketchCommand::RubOut(path, 4.0).of(PlantId(0))).unwrap();
+    editor.run(SketchCommand::RubOut(path, 4.0).for_plant(PlantId(0))).unwrap();
     let numbers: Vec<u32> = shown(&editor).iter().map(|s| s.0).collect();
     assert_eq!(numbers, [0, 4, 1, 5, 2]);
     let all = vec![DVec2::new(-9.0, 100.0), DVec2::new(109.0, 100.0)];
-    editor.run(SketchCommand::RubOut(all, 4.0).of(PlantId(0))).unwrap();
+    editor.run(SketchCommand::RubOut(all, 4.0).for_plant(PlantId(0))).unwrap();
     assert_eq!(strokes(&editor).len(), 4);
     for _ in 0..4 {
         editor.undo();
     }
     assert_eq!(*editor.document(), before);
-    let none = editor.run(SketchCommand::RubOut(vec![DVec2::splat(-900.0)], 4.0).of(PlantId(0)));
+    let none = editor.run(SketchCommand::RubOut(vec![DVec2::splat(-900.0)], 4.0).for_plant(PlantId(0)));
     assert!(matches!(none, Err(CommandError::Nothing(_))));
-    let one = editor.run(SketchCommand::JoinStrokes(vec![StrokeId(0)]).of(PlantId(0)));
+    let one = editor.run(SketchCommand::JoinStrokes(vec![StrokeId(0)]).for_plant(PlantId(0)));
     assert!(matches!(one, Err(CommandError::Nothing(_))));
 }
 
 #[test]
 fn refusals_say_why() {
     let mut editor = Editor::default();
-    let refused = |e: &mut Editor, c: SketchCommand| e.run(c.of(PlantId(0))).unwrap_err().to_string();
+    let refused = |e: &mut Editor, c: SketchCommand| e.run(c.for_plant(PlantId(0))).unwrap_err().to_string();
     assert!(refused(&mut editor, SketchCommand::RemoveStrokes(vec![StrokeId(7)])).contains("no stroke 7"));
     assert!(
         refused(&mut editor, SketchCommand::SetSkin(SkinSpec { detail: 99.0, ..SkinSpec::default() }))
             .contains("0.1 to 8")
     );
     let far = NewStroke::line(&[DVec2::splat(f64::MAX), DVec2::ZERO]);
-    editor.run(SketchCommand::AddStrokes(vec![far]).of(PlantId(0))).unwrap();
-    let too_far =
-        editor.run(SketchCommand::MoveStrokes(vec![StrokeId(0)], DVec2::splat(f64::MAX)).of(PlantId(0)));
+    editor.run(SketchCommand::AddStrokes(vec![far]).for_plant(PlantId(0))).unwrap();
+    let too_far = editor
+        .run(SketchCommand::MoveStrokes(vec![StrokeId(0)], DVec2::splat(f64::MAX)).for_plant(PlantId(0)));
     assert_eq!(too_far, Err(CommandError::TooFar));
 }
 
@@ -536,12 +542,12 @@ fn refusals_say_why() {
 fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
     let (mut editor, id) = (Editor::default(), PlantId(0));
     let cut = |at| Arc::new(HandEdit::Prune { axis: AxisKey::Path(vec![0, 1]), at });
-    editor.run(ShapeCommand::Add(cut(0.0)).of(id)).unwrap();
-    editor.run(ShapeCommand::Add(cut(0.5)).of(id)).unwrap();
-    editor.run(ShapeCommand::Leave(0, true).of(id)).unwrap();
-    editor.run(ShapeCommand::Replace(1, cut(0.25)).of(id)).unwrap();
+    editor.run(ShapeCommand::Add(cut(0.0)).for_plant(id)).unwrap();
+    editor.run(ShapeCommand::Add(cut(0.5)).for_plant(id)).unwrap();
+    editor.run(ShapeCommand::Leave(0, true).for_plant(id)).unwrap();
+    editor.run(ShapeCommand::Replace(1, cut(0.25)).for_plant(id)).unwrap();
     for bad in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
-        let refused = editor.run(ShapeCommand::Add(cut(bad)).of(id)).unwrap_err().to_string();
+        let refused = editor.run(ShapeCommand::Add(cut(bad)).for_plant(id)).unwrap_err().to_string();
         assert_eq!(refused, "edit 2 by hand: at is not a number that can be used");
     }
     let long = HandEdit::Brush {
@@ -552,23 +558,23 @@ fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
         seed: 1,
         mirror: None,
     };
-    assert!(editor.run(ShapeCommand::Add(Arc::new(long)).of(id)).is_err());
-    editor.run(ShapeCommand::Remove(vec![0]).of(id)).unwrap();
+    assert!(editor.run(ShapeCommand::Add(Arc::new(long)).for_plant(id)).is_err());
+    editor.run(ShapeCommand::Remove(vec![0]).for_plant(id)).unwrap();
     let edits = |e: &Editor| e.document().plants()[0].settings().edits.clone();
     assert_eq!((edits(&editor).len(), &edits(&editor)[0].edit), (1, &cut(0.25)));
-    assert!(editor.run(ShapeCommand::Remove(vec![1]).of(id)).is_err());
+    assert!(editor.run(ShapeCommand::Remove(vec![1]).for_plant(id)).is_err());
     for name in ["shape-remove", "shape-change", "shape-leave", "prune", "prune"] {
         assert_eq!(editor.undo(), Some(name));
     }
     assert!(edits(&editor).is_empty());
-    // What has no branches takes none.
+    // Makers without branches take no edits.
     for maker in [Maker::Leaf(Box::default()), Maker::Flower(Box::default())] {
         let settings = Settings { maker, ..Settings::default() };
         editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
     }
-    let refused = editor.run(ShapeCommand::Add(cut(0.0)).of(PlantId(1)));
+    let refused = editor.run(ShapeCommand::Add(cut(0.0)).for_plant(PlantId(1)));
     assert_eq!(refused, Err(CommandError::OtherMaker { wanted: "plant with branches", found: "leaf" }));
-    editor.run(ShapeCommand::Add(cut(0.0)).of(PlantId(2))).unwrap();
+    editor.run(ShapeCommand::Add(cut(0.0)).for_plant(PlantId(2))).unwrap();
 }
 
 #[test]
@@ -579,16 +585,16 @@ fn a_leaf_that_is_lent_goes_with_its_plant_and_comes_back() {
         editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
     }
     let (sketch, leaf, tree) = (PlantId(0), PlantId(1), PlantId(2));
-    editor.run(TreeCommand::SetLeaf(Some(leaf)).of(tree)).unwrap();
-    assert_eq!(editor.run(TreeCommand::SetLeaf(Some(tree)).of(tree)), Err(CommandError::NoLeaf));
-    editor.run(SketchCommand::SetLeaf(Some(leaf)).of(sketch)).unwrap();
-    let own = editor.run(TreeCommand::SetLeaf(Some(sketch)).of(tree));
+    editor.run(TreeCommand::SetLeaf(Some(leaf)).for_plant(tree)).unwrap();
+    assert_eq!(editor.run(TreeCommand::SetLeaf(Some(tree)).for_plant(tree)), Err(CommandError::NoLeaf));
+    editor.run(SketchCommand::SetLeaf(Some(leaf)).for_plant(sketch)).unwrap();
+    let own = editor.run(TreeCommand::SetLeaf(Some(sketch)).for_plant(tree));
     assert_eq!(own, Err(CommandError::NoLeaf), "its leaf is borrowed itself");
     let before = editor.document().clone();
     editor.run(SceneCommand::Remove(vec![leaf])).unwrap();
     assert_eq!(editor.document().plant(tree).unwrap().settings().maker.leaf(), None);
     editor.undo();
     assert_eq!(*editor.document(), before);
-    let other = editor.run(FlowerCommand::SetLaw(None).of(tree)).unwrap_err();
+    let other = editor.run(FlowerCommand::SetLaw(None).for_plant(tree)).unwrap_err();
     assert!(other.to_string().contains("is a tree, not a flower"), "{other}");
 }

@@ -1,4 +1,4 @@
-//! Control balls -> a tube with a centre line and a radius: one vein.
+//! Curves of control balls: tubes with a centre line and a radius, such as a vein.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -13,12 +13,12 @@ use crate::vector::Vector as _;
 pub struct Ball {
     /// The centre.
     pub centre: DVec3,
-    /// The radius; at least 0 where a ball is a measurement, any number where it is a difference or a control.
+    /// The radius; at least 0 if the ball is a measurement, any number if it is a difference or a control.
     pub radius: f64,
 }
 
 impl Ball {
-    /// A ball.
+    /// Creates a ball.
     pub const fn new(centre: DVec3, radius: f64) -> Self {
         Self { centre, radius }
     }
@@ -47,8 +47,8 @@ impl Mul<f64> for Ball {
 
 /// A ball B-spline curve: a B-spline (or, with weights, rational) curve of balls.
 ///
-/// Guaranteed: [`ball`](Self::ball) never has a negative radius (a cubic through small radii may dip below 0;
-/// there it is cut off at 0). Not guaranteed: that the tube does not cut itself (see [`Tube`](super::Tube)).
+/// Guaranteed: [`ball`](Self::ball) never has a negative radius (a cubic through small radii may dip below 0; it is
+/// clamped to 0 there). Not guaranteed: that the tube does not intersect itself (see [`Tube`](super::Tube)).
 ///
 /// Wang et al. (2011), section 2.1.1: `<P; r>(t) = sum N_i(t) <P_i; r_i>`.
 ///
@@ -68,7 +68,7 @@ pub struct BallBSpline {
     weights: Option<Vec<f64>>,
 }
 
-/// A ball with its first and second derivative by the parameter.
+/// A ball with its first and second derivative with respect to the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jet {
     pub(super) ball: Ball,
@@ -77,7 +77,7 @@ pub(super) struct Jet {
 }
 
 impl BallBSpline {
-    /// A curve of given control balls; `weights`, if any, make it rational.
+    /// Makes a curve of given control balls; `weights`, if any, make it rational.
     ///
     /// # Errors
     /// [`SplineError::TooFew`] if there are not as many balls and weights as the basis has controls,
@@ -98,7 +98,7 @@ impl BallBSpline {
         Ok(Self { basis, controls, weights })
     }
 
-    /// The cubic curve whose control balls the marks are: near them, smooth, with local control.
+    /// Makes the cubic curve with the marks as control balls: near them, smooth, with local control.
     ///
     /// The paper's approximating form; four neighbouring marks shape each piece. Fewer than 4 marks lower the
     /// degree.
@@ -110,7 +110,7 @@ impl BallBSpline {
         Self::new(Basis::uniform(3, marks.len())?, marks.to_vec(), None)
     }
 
-    /// The cubic curve through all marks, by chord length, with natural ends.
+    /// Makes the cubic curve through all marks, by chord length, with natural ends.
     ///
     /// Marks nearer to the one before than 1e-9 of the whole length are merged with it. Two marks give a
     /// straight piece. Wang et al. (2011), section 2.1.2.
@@ -133,7 +133,7 @@ impl BallBSpline {
         Self::interpolate_at(&NaturalCubic::new(&parameters)?, &kept)
     }
 
-    /// The curve through marks at the parameters of `spline`, so that several curves share theirs.
+    /// Makes the curve through marks at the parameters of `spline`, so that several curves share theirs.
     ///
     /// # Errors
     /// [`SplineError::Parameters`] if the numbers differ, [`SplineError::NotFinite`],
@@ -143,7 +143,7 @@ impl BallBSpline {
         Self::new(spline.basis().clone(), spline.controls(marks)?, None)
     }
 
-    /// The cubic least-squares curve with `controls` control balls along many marks; the ends are kept.
+    /// Makes the cubic least-squares curve with `controls` control balls along many marks; the ends are kept.
     ///
     /// # Errors
     /// [`SplineError::TooFew`] unless there are more distinct marks than controls (at least 2),
@@ -157,41 +157,41 @@ impl BallBSpline {
         Self::new(basis, controls, None)
     }
 
-    /// The basis: degree and knots.
+    /// Returns the basis: degree and knots.
     pub fn basis(&self) -> &Basis {
         &self.basis
     }
 
-    /// The control balls.
+    /// Returns the control balls.
     pub fn controls(&self) -> &[Ball] {
         &self.controls
     }
 
-    /// The control balls, to move and rescale them: the deformation of Wang et al. (2011), Fig 4.
+    /// Returns the control balls for editing: the deformation of Wang et al. (2011), Fig 4.
     ///
-    /// One ball shapes the curve over `degree + 1` neighbouring spans only.
+    /// One ball affects the curve over `degree + 1` neighbouring spans only.
     pub fn controls_mut(&mut self) -> &mut [Ball] {
         &mut self.controls
     }
 
-    /// The curve with the centre of every control ball moved: the same curve elsewhere, if `place` turns and shifts.
+    /// Moves the centre of every control ball: the same curve elsewhere, if `place` is a rigid motion.
     #[must_use]
     pub fn moved(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
         self.controls.iter_mut().for_each(|b| b.centre = place(b.centre));
         self
     }
 
-    /// The weights of a rational curve.
+    /// Returns the weights of a rational curve.
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
 
-    /// The first and the last parameter.
+    /// Returns the first and the last parameter.
     pub fn domain(&self) -> (f64, f64) {
         self.basis.domain()
     }
 
-    /// The ball at `t`, clamped to the domain. The radius is at least 0.
+    /// Returns the ball at `t`, clamped to the domain. The radius is at least 0.
     pub fn ball(&self, t: f64) -> Ball {
         let w = self.basis.weights(t);
         let ball = match &self.weights {
@@ -209,7 +209,7 @@ impl BallBSpline {
         Ball { radius: ball.radius.max(0.0), ..ball }
     }
 
-    /// The derivative of centre and radius by the parameter at `t`; 0 for the radius where it is cut off at 0.
+    /// Returns the derivative of centre and radius at `t`; 0 for the radius where it is clamped to 0.
     pub fn derivative(&self, t: f64) -> Ball {
         self.jet(t).first
     }
@@ -241,16 +241,16 @@ impl BallBSpline {
         Jet { ball, first, second }
     }
 
-    /// The curve with `distance` added to every control radius: its surface lies that much further out.
+    /// Returns the curve with `distance` added to every control radius: its surface lies farther out by that distance.
     ///
-    /// Exact for the envelope where no radius falls to 0. A negative distance shrinks.
+    /// Exact for the envelope where no radius falls to 0. A negative distance shrinks the tube.
     #[must_use]
     pub fn offset(&self, distance: f64) -> Self {
         let grown = |b: &Ball| Ball { radius: b.radius + distance, ..*b };
         Self { controls: self.controls.iter().map(grown).collect(), ..self.clone() }
     }
 
-    /// The length of the centre line, by chords of `steps` even parameters. Error falls with steps squared.
+    /// Returns the length of the centre line, by chords of `steps` even parameters. The error falls with steps squared.
     pub fn length(&self, steps: usize) -> f64 {
         let (a, b) = self.domain();
         let steps = steps.clamp(1, 1 << 20);
@@ -263,7 +263,7 @@ fn usable(b: &Ball) -> bool {
     b.centre.usable() && b.radius.abs() < 1e100
 }
 
-/// Marks must be numbers with radii of at least 0.
+/// Checks that marks are numbers with radii of at least 0.
 fn check(marks: &[Ball]) -> Result<(), SplineError> {
     if let Some(bad) = marks.iter().position(|m| !usable(m)) {
         return Err(SplineError::NotFinite(bad));

@@ -1,4 +1,4 @@
-//! Knots -> the weights of the controls at a parameter.
+//! B-spline bases: the weights of the controls at a parameter.
 
 use super::SplineError;
 
@@ -26,19 +26,19 @@ pub struct Basis {
 /// The weights of neighbouring controls at one parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights {
-    /// Index of the first control that counts.
+    /// Index of the first control with a weight.
     pub first: usize,
     count: usize,
     values: [f64; MAX_DEGREE + 1],
 }
 
 impl Weights {
-    /// The weights of the controls from [`first`](Self::first) on.
+    /// Returns the weights of the controls from [`first`](Self::first) on.
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
     }
 
-    /// The weighted sum of the controls; `zero` is the sum of nothing.
+    /// Returns the weighted sum of the controls; `zero` is the empty sum.
     pub(super) fn sum<V>(&self, controls: &[V], zero: V) -> V
     where
         V: Copy + core::ops::Add<Output = V> + core::ops::Mul<f64, Output = V>,
@@ -49,7 +49,7 @@ impl Weights {
 }
 
 impl Basis {
-    /// A basis over given knots; `knots.len() - degree - 1` controls.
+    /// Makes a basis over given knots; `knots.len() - degree - 1` controls.
     ///
     /// # Errors
     /// [`SplineError::Degree`], [`SplineError::Knots`], [`SplineError::TooFew`].
@@ -68,7 +68,8 @@ impl Basis {
         Ok(Self { degree, knots })
     }
 
-    /// Clamped, with evenly spaced inner knots over \[0, 1\]. The degree is lowered to `controls - 1` if needed.
+    /// Makes a clamped basis with evenly spaced inner knots over \[0, 1\]. The degree is lowered to `controls - 1` if
+    /// needed.
     ///
     /// # Errors
     /// [`SplineError::TooFew`] for less than 2 controls, [`SplineError::Degree`].
@@ -83,7 +84,7 @@ impl Basis {
         Self::new(degree, ends(0.0).chain(inner).chain(ends(1.0)).collect())
     }
 
-    /// The Bernstein polynomials of degree `controls - 1` over \[0, 1\].
+    /// Makes the Bernstein polynomials of degree `controls - 1` over \[0, 1\].
     ///
     /// # Errors
     /// [`SplineError::TooFew`] for less than 2 controls, [`SplineError::Degree`] for more than 64.
@@ -91,7 +92,7 @@ impl Basis {
         Self::uniform(controls.saturating_sub(1).max(1), controls)
     }
 
-    /// The cubic basis of the natural spline: fourfold end knots, one inner knot at each inner parameter.
+    /// Makes the cubic basis of the natural spline: fourfold end knots, one inner knot at each inner parameter.
     ///
     /// Has `parameters.len() + 2` controls.
     ///
@@ -106,27 +107,27 @@ impl Basis {
         Self::new(3, ends(*first).chain(inner.iter().copied()).chain(ends(*last)).collect())
     }
 
-    /// The degree, 1 to [`MAX_DEGREE`].
+    /// Returns the degree, 1 to [`MAX_DEGREE`].
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// The knots, not decreasing.
+    /// Returns the knots, not decreasing.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// The number of controls, above the degree.
+    /// Returns the number of controls, above the degree.
     pub fn controls(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
 
-    /// The first and the last parameter.
+    /// Returns the first and the last parameter.
     pub fn domain(&self) -> (f64, f64) {
         (self.knots[self.degree], self.knots[self.controls()])
     }
 
-    /// The parameter at which control `i` counts most (its Greville abscissa); clamped to the last control.
+    /// Returns the parameter of greatest influence of control `i` (its Greville abscissa); clamped to the last control.
     pub fn greville(&self, i: usize) -> f64 {
         let i = i.min(self.controls() - 1);
         let (a, b) = self.domain();
@@ -134,18 +135,18 @@ impl Basis {
         (self.knots[i + 1..=i + self.degree].iter().sum::<f64>() / self.degree as f64).clamp(a, b)
     }
 
-    /// The weights of the controls at `t`. Cost: degree squared.
+    /// Returns the weights of the controls at `t`. Cost: degree squared.
     pub fn weights(&self, t: f64) -> Weights {
         let span = self.span(t);
         self.of_degree(self.degree, span, self.clamp(t))
     }
 
-    /// The derivatives of the weights at `t`; at an inner knot those of the span to its right.
+    /// Returns the derivatives of the weights at `t`; at an inner knot those of the span to its right.
     pub fn derivative(&self, t: f64) -> Weights {
         self.nth_derivative(t, 1)
     }
 
-    /// The second derivatives of the weights at `t`; 0 for degree 1.
+    /// Returns the second derivatives of the weights at `t`; 0 for degree 1.
     pub fn second_derivative(&self, t: f64) -> Weights {
         self.nth_derivative(t, 2)
     }
@@ -156,7 +157,7 @@ impl Basis {
         t.max(a).min(b)
     }
 
-    /// The index k with `knots[k] <= t < knots[k + 1]`; the last such one at the end of the domain.
+    /// Returns the index k with `knots[k] <= t < knots[k + 1]`; at the end of the domain the last such index.
     fn span(&self, t: f64) -> usize {
         let n = self.controls();
         let t = self.clamp(t);
@@ -167,7 +168,7 @@ impl Basis {
         self.knots[..=n].partition_point(|&k| k <= t).saturating_sub(1).max(self.degree)
     }
 
-    /// The basis functions of degree `q` at most the own (NURBS Book, A2.2).
+    /// Returns the basis functions of degree `q`, at most the own degree (NURBS Book, A2.2).
     fn of_degree(&self, q: usize, span: usize, t: f64) -> Weights {
         let mut values = [0.0; MAX_DEGREE + 1];
         values[0] = 1.0;

@@ -1,11 +1,11 @@
-//! Points -> controls: interpolation with natural ends, least squares.
+//! Fits controls to points: interpolation with natural ends, least squares.
 
 use glam::DVec3;
 
 use super::{Basis, SplineError};
 use crate::linear::{Blend, solve_positive};
 
-/// The parameters that split each span between `marks` into `steps` equal parts (at least 1).
+/// Returns the parameters that split each span between `marks` into `steps` equal parts (at least 1).
 ///
 /// ```
 /// assert_eq!(geom::subdivided(&[0.0, 1.0, 3.0], 2), [0.0, 0.5, 1.0, 2.0, 3.0]);
@@ -20,10 +20,10 @@ pub fn subdivided(marks: &[f64], steps: usize) -> Vec<f64> {
     out
 }
 
-/// Parameters of points by the length of the chords between them, from 0 to 1.
+/// Returns the parameters of points by the length of the chords between them, from 0 to 1.
 ///
-/// Repeated points get equal parameters: merge them first where increasing ones are needed. `None` if all
-/// points are one, or for fewer than two.
+/// Repeated points get equal parameters: merge them first if increasing ones are needed. `None` if all points coincide,
+/// or for fewer than two.
 pub fn chord_parameters(points: &[DVec3]) -> Option<Vec<f64>> {
     let mut sum = 0.0;
     let mut out = vec![0.0];
@@ -40,7 +40,7 @@ pub fn chord_parameters(points: &[DVec3]) -> Option<Vec<f64>> {
     Some(out)
 }
 
-/// The system of the cubic spline through points at given parameters whose ends bear no bending (C'' = 0).
+/// The system of the cubic spline through points at given parameters with natural ends (C'' = 0).
 ///
 /// Factored once, it is solved for any number of sets of values at those parameters in linear time.
 ///
@@ -60,12 +60,12 @@ pub struct NaturalCubic {
     parameters: Vec<f64>,
     // Row k of the factored tridiagonal system for the controls 1 to n: lower factor, inverse pivot, upper.
     rows: Vec<[f64; 3]>,
-    // How much of the first and of the last point stands on the right-hand side.
+    // Coefficients of the first and of the last point on the right-hand side.
     ends: [f64; 2],
 }
 
 impl NaturalCubic {
-    /// The system for points at `parameters`.
+    /// Makes the system for points at `parameters`.
     ///
     /// # Errors
     /// [`SplineError::Parameters`] unless there are at least 2 and they increase.
@@ -98,17 +98,17 @@ impl NaturalCubic {
         Ok(Self { basis, parameters: parameters.to_vec(), rows, ends: [1.0 / d0, 1.0 / e0] })
     }
 
-    /// The basis of the spline.
+    /// Returns the basis of the spline.
     pub fn basis(&self) -> &Basis {
         &self.basis
     }
 
-    /// The parameters of the points.
+    /// Returns the parameters of the points.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// The controls of the spline through `values`, one value a parameter. Cost: linear.
+    /// Returns the controls of the spline through `values`, one value per parameter. Cost: linear.
     ///
     /// # Errors
     /// [`SplineError::Parameters`] if the numbers differ.
@@ -137,7 +137,7 @@ impl NaturalCubic {
     }
 }
 
-/// The basis and controls of the least-squares curve with `controls` controls; the ends are kept.
+/// Returns the basis and controls of the least-squares curve with `controls` controls; the ends are kept.
 ///
 /// Piegl and Tiller, The NURBS Book, section 9.4.1 (Eqs 9.65 to 9.69).
 pub(super) fn least_squares<V: Blend>(
@@ -156,7 +156,7 @@ pub(super) fn least_squares<V: Blend>(
     }
     let (first, last) = (values[0], values[m - 1]);
     let (a, b) = (parameters[0], parameters[m - 1]);
-    // Every inner span holds data: knots are spread by the count of the points (Eq 9.68).
+    // Every inner span contains data: knots are distributed by the number of points (Eq 9.68).
     let step = m as f64 / (controls - degree) as f64;
     let inner = (1..controls - degree).map(|j| {
         let x = j as f64 * step;

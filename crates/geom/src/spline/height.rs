@@ -1,4 +1,4 @@
-//! Scattered points -> a smooth height over a plane, by penalised least squares.
+//! Fits a smooth height field over a plane to scattered points, by penalised least squares.
 
 use glam::{DVec2, DVec3};
 
@@ -27,11 +27,11 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// The height field with `controls` controls along x and y (each 4 to 40) that is nearest to points.
+    /// Fits the height field with `controls` controls along x and y (each 4 to 40) to points.
     ///
-    /// `weights` are one a point, at least 0, or empty for all 1. `smoothing` is the weight of the bending of the
-    /// controls relative to the points near one: above 0; 1e-3 bridges holes and hardly smooths, 1 smooths.
-    /// Planes come back exactly. Cost: 16² times the points and the cube of the controls.
+    /// `weights` are one per point, at least 0, or empty for all 1. `smoothing` is the weight of the bending of the
+    /// controls relative to the points near one: above 0; 1e-3 bridges holes and hardly smooths, 1 smooths. Planes are
+    /// reproduced exactly. Cost: 16² times the points and the cube of the controls.
     ///
     /// # Errors
     /// [`SplineError::TooFew`] for less than 3 usable points, [`SplineError::Parameters`] if they lie on a line.
@@ -75,7 +75,7 @@ impl HeightField {
         }
         let stiff = if smoothing > 0.0 { smoothing.min(1e6) } else { 1e-9 } * total / n as f64;
         add_bending(&mut normal, [&field.u, &field.v], stiff);
-        // Where there are no points at all a plane through the others is kept up by a trace of its own.
+        // Where there are no points at all, a small regularisation maintains a plane through the others.
         for i in 0..n {
             normal[i * n + i] += 1e-9 * stiff;
         }
@@ -84,7 +84,7 @@ impl HeightField {
         Ok(field)
     }
 
-    /// The height at (x, y) and its slope there; outside the rectangle that of the nearest place in it.
+    /// Returns the height at (x, y) and its slope there; outside the rectangle that of the nearest point in it.
     pub fn height(&self, x: f64, y: f64) -> (f64, DVec2) {
         let (a, b) = self.weights(x, y);
         let q = self.place(x, y);
@@ -112,7 +112,7 @@ fn cells<'a>(a: &'a Weights, b: &'a Weights, nx: usize) -> impl Iterator<Item = 
     })
 }
 
-/// Squares of the bending along both directions and of the twist; 0 for planes.
+/// Adds the squares of the bending along both directions and of the twist; 0 for planes.
 fn add_bending(normal: &mut [f64], [u, v]: [&Basis; 2], weight: f64) {
     let (nx, ny) = (u.controls(), v.controls());
     let n = nx * ny;
@@ -123,7 +123,7 @@ fn add_bending(normal: &mut [f64], [u, v]: [&Basis; 2], weight: f64) {
             }
         }
     };
-    // Controls stand at the Greville abscissae, closer at the ends: the change of slope, in steps of the middle.
+    // Controls stand at the Greville abscissae, denser at the ends: the change of slope, in steps of the middle.
     let bend = |basis: &Basis, k: usize| {
         let g = |i: usize| basis.greville(i) * basis.controls() as f64;
         let (a, b) = (1.0 / (g(k + 1) - g(k)), 1.0 / (g(k + 2) - g(k + 1)));

@@ -1,4 +1,4 @@
-//! Marks -> ball B-spline curves and tensor-product surfaces: veins with thickness, blades through veins.
+//! Ball B-spline curves and tensor-product surfaces from marks: veins with thickness, blades through veins.
 //!
 //! A curve or surface is a [`Basis`] per direction and control balls or points. One kind of basis serves all:
 //! a Bezier curve is the basis with no inner knot.
@@ -17,7 +17,7 @@ pub use height::HeightField;
 pub use surface::{SplineSurface, SurfacePoint};
 pub use tube::{BallTubeSpec, EndCap, RingRule, Tube};
 
-/// Why a curve or surface cannot be made of what was given.
+/// Reason why a curve or surface cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
@@ -26,7 +26,7 @@ pub enum SplineError {
     TooFew {
         /// The least number.
         needed: usize,
-        /// How many there are.
+        /// The given number.
         given: usize,
     },
     /// The degree is 0 or above [`MAX_DEGREE`].
@@ -47,9 +47,9 @@ pub enum SplineError {
     /// The points do not form a grid of equal rows.
     #[error("{points} points do not form rows of {columns}")]
     Ragged {
-        /// How many points.
+        /// Number of points.
         points: usize,
-        /// Points a row.
+        /// Points per row.
         columns: usize,
     },
 }

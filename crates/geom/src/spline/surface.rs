@@ -1,4 +1,4 @@
-//! A grid of marks -> a surface: Bezier, approximating, interpolating or rational.
+//! Surfaces from a grid of marks: Bezier, approximating, interpolating or rational.
 
 use core::iter::Sum;
 use core::ops::{Add, Mul};
@@ -20,7 +20,7 @@ use crate::vector::Vector as _;
 /// let grid = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y];
 /// let plane = SplineSurface::bezier(&grid, 2)?;
 /// assert_eq!(plane.point(0.25, 0.5), DVec3::new(0.25, 0.5, 0.0));
-/// assert_eq!(plane.at(0.5, 0.5).normal, Some(DVec3::Z));
+/// assert_eq!(plane.point_at(0.5, 0.5).normal, Some(DVec3::Z));
 /// # Ok::<(), geom::SplineError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct SplineSurface {
     places: [Vec<f64>; 2],
 }
 
-/// A point of a surface with what lies around it.
+/// A point of a surface with derivatives and normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point.
@@ -46,7 +46,7 @@ pub struct SurfacePoint {
 }
 
 impl SplineSurface {
-    /// The Bezier surface whose controls the marks are, `columns` a row.
+    /// Makes the Bezier surface with the marks as controls, `columns` per row.
     ///
     /// # Errors
     /// [`SplineError`] for less than 2 rows or columns, more than 64, unequal rows, unusable points.
@@ -55,7 +55,7 @@ impl SplineSurface {
         Self::from_controls(Basis::bezier(columns)?, Basis::bezier(rows)?, grid.to_vec(), None)
     }
 
-    /// The bicubic B-spline surface whose controls the marks are. Fewer than 4 rows or columns lower the degree.
+    /// Makes the bicubic B-spline surface with the marks as controls. Fewer than 4 rows or columns lower the degree.
     ///
     /// # Errors
     /// [`SplineError`] for less than 2 rows or columns, unequal rows, unusable points.
@@ -74,10 +74,10 @@ impl SplineSurface {
         Self::from_controls(u, v, grid.to_vec(), Some(weights.to_vec()))
     }
 
-    /// The bicubic surface through all marks, with natural edges.
+    /// Makes the bicubic surface through all marks, with natural edges.
     ///
-    /// Parameters are chord lengths, averaged over rows and over columns; a row or column without length (the
-    /// repeated tip of a leaf) has no say. Cost: linear in the marks.
+    /// Parameters are chord lengths, averaged over rows and over columns; a row or column without length (the repeated
+    /// tip of a leaf) does not contribute. Cost: linear in the marks.
     ///
     /// # Errors
     /// [`SplineError`] for less than 2 rows or columns, unequal rows, unusable points, or if neighbouring rows
@@ -92,7 +92,7 @@ impl SplineSurface {
         Self::interpolate_at(&u, &v, grid)
     }
 
-    /// The surface through marks at given parameters.
+    /// Makes the surface through marks at given parameters.
     ///
     /// # Errors
     /// [`SplineError::Ragged`] if the numbers differ, [`SplineError::NotFinite`].
@@ -118,7 +118,7 @@ impl SplineSurface {
         Ok(surface)
     }
 
-    /// A surface of given bases and controls, row after row.
+    /// Makes a surface of given bases and controls, row after row.
     ///
     /// # Errors
     /// [`SplineError::Ragged`] if the numbers do not fit, [`SplineError::NotFinite`].
@@ -144,54 +144,54 @@ impl SplineSurface {
         Ok(Self { u, v, controls, weights, places })
     }
 
-    /// The surface with every control moved: the same surface elsewhere, if `place` turns and shifts.
+    /// Moves every control: the same surface elsewhere, if `place` is a rigid motion.
     #[must_use]
     pub fn moved(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
         self.controls.iter_mut().for_each(|p| *p = place(*p));
         self
     }
 
-    /// The basis along a row.
+    /// Returns the basis along a row.
     pub fn u(&self) -> &Basis {
         &self.u
     }
 
-    /// The basis from row to row.
+    /// Returns the basis from row to row.
     pub fn v(&self) -> &Basis {
         &self.v
     }
 
-    /// The controls, row after row.
+    /// Returns the controls, row after row.
     pub fn controls(&self) -> &[DVec3] {
         &self.controls
     }
 
-    /// The weights of a rational surface, one a control.
+    /// Returns the weights of a rational surface, one per control.
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
 
-    /// The parameters u at which the columns of marks lie (interpolating) or count most (else).
+    /// Returns the parameters u of the columns of marks (interpolating) or of their greatest influence (otherwise).
     pub fn columns_at(&self) -> &[f64] {
         &self.places[0]
     }
 
-    /// The parameters v at which the rows of marks lie or count most.
+    /// Returns the parameters v of the rows of marks or of their greatest influence.
     pub fn rows_at(&self) -> &[f64] {
         &self.places[1]
     }
 
-    /// The point at (u, v), each clamped to its domain.
+    /// Returns the point at (u, v), each clamped to its domain.
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         self.sum(&self.u.weights(u), &self.v.weights(v)).point()
     }
 
-    /// The point at (u, v) with derivatives and normal.
-    pub fn at(&self, u: f64, v: f64) -> SurfacePoint {
+    /// Returns the point at (u, v) with derivatives and normal.
+    pub fn point_at(&self, u: f64, v: f64) -> SurfacePoint {
         self.joined((&self.u.weights(u), &self.u.derivative(u)), (&self.v.weights(v), &self.v.derivative(v)))
     }
 
-    /// All pairs of `us` and `vs`, row after row; the weights of each parameter are computed once.
+    /// Evaluates all pairs of `us` and `vs`, row after row; the weights of each parameter are computed once.
     pub fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfacePoint> {
         let across: Vec<_> = us.iter().map(|&u| (self.u.weights(u), self.u.derivative(u))).collect();
         let mut out = Vec::with_capacity(us.len() * vs.len());
@@ -202,7 +202,8 @@ impl SplineSurface {
         out
     }
 
-    /// The curve of constant v as a ball B-spline with the given control radii, one a control of [`u`](Self::u).
+    /// Returns the curve of constant v as a ball B-spline with the given control radii, one per control of
+    /// [`u`](Self::u).
     ///
     /// Its centre line lies on the surface at every parameter.
     ///
@@ -215,7 +216,8 @@ impl SplineSurface {
         self.vein(&self.u, at, radii)
     }
 
-    /// The curve of constant u as a ball B-spline with the given control radii, one a control of [`v`](Self::v).
+    /// Returns the curve of constant u as a ball B-spline with the given control radii, one per control of
+    /// [`v`](Self::v).
     ///
     /// # Errors
     /// [`SplineError`] if there are not as many radii as controls.
@@ -322,7 +324,7 @@ fn rows_of(grid: &[DVec3], columns: usize) -> Result<usize, SplineError> {
     }
 }
 
-/// The mean of the chord parameters of all lines that have a length.
+/// Returns the mean of the chord parameters of all lines that have a length.
 fn mean_parameters(lines: &[Vec<DVec3>]) -> Result<Vec<f64>, SplineError> {
     let each: Vec<Vec<f64>> = lines.iter().filter_map(|l| chord_parameters(l)).collect();
     let n = lines.first().map_or(0, Vec::len);

@@ -1,4 +1,4 @@
-//! Ball B-spline -> rings of points: the surface of a vein.
+//! Rings of points around a ball B-spline: the surface of a vein.
 
 use base::ops;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ball::{BallBSpline, Jet};
 use crate::frame::{perpendicular, rotation_minimising_frames};
 
-/// How a ring of the tube is placed.
+/// Placement of a ring of the tube.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RingRule {
@@ -20,26 +20,26 @@ pub enum RingRule {
     Envelope,
 }
 
-/// What closes the ends of a tube.
+/// Closing of the ends of a tube.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EndCap {
     /// Nothing: the paper's tubes are open.
     #[default]
     Open,
-    /// The part of the end ball that the tube leaves free, in this many rings (at least 1) and a pole.
+    /// The free part of the end ball, in this many rings (at least 1) and a pole.
     Round(u32),
 }
 
-/// How finely and by which rule a tube is sampled.
+/// Resolution and rule of the sampling of a tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallTubeSpec {
     /// The rule of the rings.
     pub rings: RingRule,
-    /// Points a ring, 3 to 1024; the paper has 10.
+    /// Points per ring, 3 to 1024; the paper has 10.
     pub sides: usize,
     /// The ends.
     pub cap: EndCap,
-    /// Where the first point of the first ring lies; chosen by a fixed rule if absent.
+    /// Direction of the first point of the first ring; chosen by a fixed rule if absent.
     pub first_normal: Option<DVec3>,
 }
 
@@ -57,11 +57,11 @@ impl Default for BallTubeSpec {
 pub struct Tube {
     /// Points.
     pub positions: Vec<DVec3>,
-    /// Unit vectors outwards, one a point.
+    /// Outward unit vectors, one per point.
     pub normals: Vec<DVec3>,
     /// Number of rings along the tube, without those of the caps.
     pub rings: usize,
-    /// Points a ring.
+    /// Points per ring.
     pub sides: usize,
     /// Faces between rings.
     pub quads: Vec<[u32; 4]>,
@@ -70,8 +70,8 @@ pub struct Tube {
     /// Rings whose ball lies inside its neighbours (|r'| >= |c'|), so that it does not touch the envelope;
     /// such a ring is the pole of its ball. Always 0 for plain rings.
     pub swallowed: usize,
-    /// Rings at which the tube is thicker than its centre line bends (radius times curvature at least 1): its
-    /// surface cuts itself there.
+    /// Rings at which the tube is thicker than its centre line bends (radius times curvature at least 1): its surface
+    /// intersects itself there.
     pub crossing: usize,
 }
 
@@ -85,11 +85,11 @@ struct Ring {
 }
 
 impl BallBSpline {
-    /// The tube's surface with a ring at each of `parameters`, which should increase.
+    /// Makes the tube's surface with a ring at each of `parameters`, which should increase.
     ///
-    /// Frames turn as little as can be (double reflection). With [`RingRule::Envelope`] every point lies on the
-    /// envelope: `x = c - (r r' / |c'|^2) c' + r sqrt(1 - r'^2 / |c'|^2) (N cos + B sin)` with the outward
-    /// normal `(x - c) / r`. Fewer than 2 parameters give an empty tube. Cost: linear in the points.
+    /// Frames rotate as little as possible (double reflection). With [`RingRule::Envelope`] every point lies on the
+    /// envelope: `x = c - (r r' / |c'|^2) c' + r sqrt(1 - r'^2 / |c'|^2) (N cos + B sin)` with the outward normal
+    /// `(x - c) / r`. Fewer than 2 parameters give an empty tube. Cost: linear in the points.
     pub fn tube(&self, parameters: &[f64], spec: &BallTubeSpec) -> Tube {
         let sides = spec.sides.clamp(3, 1024);
         let mut tube = Tube { sides, ..Tube::default() };
@@ -141,7 +141,7 @@ fn curvature(jet: &Jet) -> f64 {
 }
 
 impl Tube {
-    /// The number of faces: quads between rings and triangles of the caps.
+    /// Returns the number of faces: quads between rings and triangles of the caps.
     pub fn faces(&self) -> usize {
         self.quads.len() + self.triangles.len()
     }
@@ -157,7 +157,7 @@ impl Tube {
         }
     }
 
-    /// Quads between two rings, the second further along the tangent.
+    /// Adds the quads between two rings, the second further along the tangent.
     fn join(&mut self, from: usize, to: usize) {
         let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
         for k in 0..self.sides {
@@ -166,7 +166,7 @@ impl Tube {
         }
     }
 
-    /// The rest of the end ball beyond the ring that starts at `edge`.
+    /// Adds the rest of the end ball beyond the ring that starts at `edge`.
     fn close(&mut self, (end, normal): &(Ring, DVec3), edge: usize, start: bool, rings: u32) {
         let rings = rings.clamp(1, 64);
         let pole: f64 = if start { -1.0 } else { 1.0 };

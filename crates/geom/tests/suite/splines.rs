@@ -109,7 +109,7 @@ fn other_surfaces_are_geomdls() {
     assert_point(spline.point(0.9, 0.05), [3.4725, 0.7954, -0.20806905397054098]);
     let weights: Vec<f64> = (0..20).map(|i| 1.0 + 0.3 * f64::from((3 * i) % 4)).collect();
     let nurbs = SplineSurface::nurbs(&grid(), &weights, 5).unwrap();
-    let p = nurbs.at(0.21, 0.4);
+    let p = nurbs.point_at(0.21, 0.4);
     assert_point(p.position, [1.1892545137925568, 1.4146070540506461, -0.06590475219934089]);
     assert_point(p.du, [3.8735310634589672, 0.11906879159954409, -0.22357021086523607]);
     assert_point(p.dv, [0.6458990947752312, 3.4379414056139916, -0.4447871158594529]);
@@ -144,7 +144,7 @@ fn grid_is_the_same_as_single_points() {
     let (us, vs) = ([0.0, 0.3, 1.0], [0.1, 1.0]);
     let all = s.grid(&us, &vs);
     for (k, p) in all.iter().enumerate() {
-        assert_eq!(*p, s.at(us[k % 3], vs[k / 3]), "{k}");
+        assert_eq!(*p, s.point_at(us[k % 3], vs[k / 3]), "{k}");
     }
 }
 
@@ -312,7 +312,7 @@ fn tip_row_of_one_point_does_not_disturb() {
     for (k, &mark) in grid.iter().enumerate() {
         assert!(s.point(s.columns_at()[k % 5], s.rows_at()[k / 5]).distance(mark) < 1e-13, "{k}");
     }
-    assert_eq!(s.at(0.5, 1.0).normal, None);
+    assert_eq!(s.point_at(0.5, 1.0).normal, None);
 }
 
 fn coordinate() -> impl Strategy<Value = f64> {

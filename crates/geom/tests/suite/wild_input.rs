@@ -1,10 +1,10 @@
-//! Whatever a pen or a file can give: no function panics, and each keeps its promise.
+//! Robustness against whatever a pen or a file can produce: no function panics, and each keeps its guarantees.
 
 use geom::{Cone, ConeSheet, KdTree2};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
-/// Coordinates that like ties, near-duplicates, the far ends of f64 and no numbers at all.
+/// Coordinates with ties, near-duplicates, extremes of f64, and NaN.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => (-4..4_i32).prop_map(|i| f64::from(i) * 0.5),
@@ -33,7 +33,7 @@ fn usable3(p: DVec3) -> bool {
     usable(p.truncate()) && p.z.abs() <= 1e100
 }
 
-/// Distance allowed for rounding, from the largest usable coordinate.
+/// Returns the distance allowed for rounding, from the largest usable coordinate.
 fn rounding(points: &[DVec2]) -> f64 {
     points.iter().filter(|&&p| usable(p)).fold(1e-290, |m, p| p.x.abs().max(p.y.abs()).max(m)) * 1e-9
 }
@@ -207,7 +207,7 @@ proptest! {
 }
 
 proptest! {
-    // Outliers make the edge vanish beside the blade, and then each case costs 20 000 points.
+    // With outliers the edge becomes tiny compared with the blade, and then each case costs 20 000 points.
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]

@@ -1,4 +1,4 @@
-//! What a stroke means among the others: `Ink -> Vec<StrokeFeatures>`.
+//! Measures each stroke among the others: `Ink -> Vec<StrokeFeatures>`.
 
 mod companions;
 
@@ -14,16 +14,16 @@ use super::features::{Shape, StrokeFeatures, shape, signed_area};
 use super::region::Region;
 use crate::Ink;
 
-/// Strokes, longest first, that can hold others.
+/// Most strokes, longest first, that can hold others.
 const MOST_REGIONS: usize = 2000;
-/// Ends farther from every other stroke than this are loose: one fifth of the diagonal.
+/// Distance beyond which an end is loose: one fifth of the diagonal.
 const LOOSE: f64 = 0.2;
-/// An end this near to a stroke touches it: four line widths of a felt pen.
+/// Distance within which an end touches a stroke: four line widths of a felt pen.
 const TOUCH: f64 = 0.03;
-/// In a drawing of fewer strokes all of them tell of the whole.
+/// In a drawing of fewer strokes, all of them describe the whole.
 const ALL_TELL: usize = 512;
 
-/// How many strokes, from the first, tell what the whole drawing is like: most length, longest strokes, body, ranks.
+/// Returns how many strokes, from the first, describe the whole drawing: most length, longest strokes, body, ranks.
 ///
 /// In a large drawing it grows by steps of a sixteenth to a thirty-second, so that most strokes that are added are
 /// compared with what the strokes before them were compared with, and leave these as they are.
@@ -49,7 +49,7 @@ pub fn features(ink: &Ink, run: &Run<'_>) -> Vec<StrokeFeatures> {
     features_again(ink, |_| true, &mut KeptMeasures::default(), run)
 }
 
-/// As [`features`], for the `wanted` strokes: of the others only what these need to know of them.
+/// Measures the `wanted` strokes as [`features`] does; of the others, only what these depend on.
 pub(super) fn features_again(
     ink: &Ink,
     wanted: impl Fn(usize) -> bool,
@@ -66,37 +66,37 @@ pub(super) fn features_again(
     rows.finished
 }
 
-/// What the strokes of a drawing measure, on their own and among the others, kept for the next look at it: a stroke that
-/// is drawn leaves most of the others as they are, unless it widens the drawing. Changes no result.
+/// Measurements of the strokes of a drawing, on their own and among the others, kept for the next evaluation: a stroke
+/// that is added leaves most of the others as they are, unless it widens the drawing. Keeping them changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct KeptMeasures {
     strokes: Arc<Vec<KeptStroke>>,
     whole: Whole,
-    /// What each stroke measured when it was judged last, and what it was found to be.
+    /// Features with which each stroke was last classified, and its class.
     pub(super) judged: Arc<Vec<(StrokeFeatures, Classified)>>,
-    /// Those of one plant of several, which is known by its first stroke.
+    /// Measurements of each plant of several, by its first stroke.
     plants: LiteMap<usize, Self>,
 }
 
-/// A stroke as it was measured.
+/// A stroke as measured.
 #[derive(Clone, Debug)]
 struct KeptStroke {
     points: Arc<[DVec2]>,
     shape: Arc<Shape>,
-    /// What it measures on its own.
+    /// Features of the stroke alone.
     own: StrokeFeatures,
     companions: Arc<[usize]>,
     told: Told,
-    /// What it measures among the others, without [`Scene::whole`]; none where it was not asked.
+    /// Features among the others, without [`Scene::whole`]; `None` where they were not wanted.
     row: Option<StrokeFeatures>,
 }
 
-/// What a stroke is compared with besides its companions.
+/// The whole drawing, with which a stroke is compared in addition to its companions.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Whole {
     size: DVec2,
     body: Body,
-    /// See [`Scene::amid`]; none of few strokes, where it differs from stroke to stroke.
+    /// See [`Scene::amid`]; `None` in a drawing of few strokes, where it differs from stroke to stroke.
     amid: Option<Region>,
     /// The longest strokes.
     longest: Vec<usize>,
@@ -123,7 +123,7 @@ impl KeptMeasures {
     }
 }
 
-/// With how many others each stroke is compared.
+/// Counts the other strokes with which each stroke is compared.
 #[cfg(test)]
 pub(super) fn companion_counts(ink: &Ink) -> Vec<usize> {
     let scene = Scene::new(ink, &vec![true; ink.strokes.len()], &KeptMeasures::default(), &base::Serial);
@@ -132,23 +132,23 @@ pub(super) fn companion_counts(ink: &Ink) -> Vec<usize> {
 
 struct Scene {
     shapes: Vec<Arc<Shape>>,
-    /// Of those, which are as they were kept.
+    /// Whether each of them is unchanged since it was kept.
     same: Vec<bool>,
     rows: Vec<StrokeFeatures>,
     companions: Vec<Arc<[usize]>>,
     ink: f64,
     longest: f64,
     whole: Whole,
-    /// What the hull of all the other strokes encloses, for each stroke that is wanted; in a drawing of very many that
-    /// of all strokes.
+    /// Region inside the hull of all the other strokes, for each stroke that is wanted; in a drawing of very many
+    /// strokes, that of all strokes.
     amid: Vec<Region>,
 }
 
-/// The rows of a scene.
+/// Rows of a scene.
 struct Rows {
-    /// In the order of the strokes.
+    /// Finished rows in the order of the strokes.
     finished: Vec<StrokeFeatures>,
-    /// Before what is the same on every row; none of strokes that were not asked.
+    /// Rows without the features that are the same on every row; `None` for strokes that were not wanted.
     among: Vec<Option<StrokeFeatures>>,
     told: Vec<Told>,
 }
@@ -163,19 +163,19 @@ struct Body {
     solid: f64,
 }
 
-/// What the others and the whole drawing need to know of a stroke.
+/// Features of a stroke that the others and the whole drawing depend on.
 #[derive(Clone, Copy, Debug)]
 struct Told {
     corners: f64,
     gap: f64,
-    /// How well another upright line runs beside it, 0 to 1.
+    /// How well another upright line runs parallel to it, 0 to 1.
     pair: f64,
-    /// Strokes inside it.
+    /// Number of strokes inside it.
     held: f64,
 }
 
 impl Told {
-    /// What other strokes need to know.
+    /// Returns the features that other strokes depend on.
     fn to_others(self) -> [f64; 3] {
         [self.corners, self.gap, self.pair]
     }
@@ -183,7 +183,7 @@ impl Told {
 
 /// The strokes nearest to the two ends.
 struct Meeting {
-    /// Distance and stroke.
+    /// Distance and stroke at the lower end.
     low: (f64, usize),
     high: (f64, usize),
 }
@@ -208,13 +208,14 @@ fn share(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// Distance of `p` to the samples' polyline (segments) and the nearest sample; `reach` lets far boxes be skipped.
+/// Returns the distance of `p` to the samples' polyline (segments) and the nearest sample; `reach` lets far boxes be
+/// skipped.
 fn distance_to(s: &Shape, p: DVec2, reach: f64) -> (f64, usize) {
     let outside = (s.min - p).max(p - s.max).max(DVec2::ZERO);
     if outside.length_squared() > reach * reach {
         return (f64::INFINITY, 0);
     }
-    // Samples lie at even steps: a run of segments is passed over where its middle is too far for any of them.
+    // Samples lie at even steps: a run of segments is skipped where its middle is too far for any of them.
     const RUN: usize = 12;
     let last = s.points.len().saturating_sub(1);
     let half_run = s.length / last.max(1) as f64 * (RUN / 2 + 1) as f64;
@@ -251,7 +252,7 @@ impl Scene {
         });
         let (mut shapes, rows): (Vec<Arc<Shape>>, Vec<StrokeFeatures>) = all.unzip();
         let m = telling(n);
-        // What tells of the whole may be as it was: then it says what it said.
+        // If the strokes that describe the whole are unchanged, the kept description still holds.
         let as_before =
             n > COMPANIONS + 1 && telling(kept.strokes.len()) == m && known[..m].iter().all(Option::is_some);
         let order = if as_before { Vec::new() } else { by_length(&shapes[..m]) };
@@ -285,7 +286,7 @@ impl Scene {
 
     fn rows(&self, wanted: &[bool], kept: &KeptMeasures, run: &Run<'_>) -> Rows {
         let ranks = ranks(&self.shapes, telling(self.shapes.len()));
-        // Strokes of which neither they nor any of their companions changed.
+        // Strokes that are unchanged, as are all their companions.
         let settled = |i: usize| {
             let known = kept.strokes.get(i).filter(|k| self.same[i] && k.row.is_some())?;
             let same = Arc::ptr_eq(&known.companions, &self.companions[i]);
@@ -336,7 +337,7 @@ impl Scene {
         Rows { finished: rows.into_iter().map(StrokeFeatures::tamed).collect(), among, told }
     }
 
-    /// What a stroke is without regard to what was found of others.
+    /// Measures a stroke without regard to the features of others.
     fn alone(&self, i: usize, rank: f64, wanted: bool, run: &Run<'_>) -> (Told, StrokeFeatures) {
         let mut f = self.rows[i];
         if run.cancel.check().is_err() {
@@ -349,7 +350,7 @@ impl Scene {
         (Told { corners: f.corners, gap: f.gap, pair, held: 0.0 }, f)
     }
 
-    /// Size, place and order in the drawing.
+    /// Measures size, place and order in the drawing.
     fn place(&self, i: usize, rank: f64, f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let last = to_f64(telling(self.shapes.len()).saturating_sub(1));
@@ -371,7 +372,7 @@ impl Scene {
         (f.after_round, f.after_length) = near(i.checked_add(1));
     }
 
-    /// Strokes of about its size and form.
+    /// Counts strokes of about its size and form.
     fn alike(&self, i: usize, f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let same = |j: usize| {
@@ -382,7 +383,7 @@ impl Scene {
         f.alike = log1(count);
     }
 
-    /// How many strokes share its place.
+    /// Measures how many strokes share its place.
     fn sides(&self, i: usize, f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let margin = DVec2::splat(0.1);
@@ -396,7 +397,7 @@ impl Scene {
         f.company = share(company, to_f64(self.companions[i].len()));
     }
 
-    /// The most telling strokes above and below its middle.
+    /// Measures the most characteristic strokes above and below its middle.
     fn around(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         for &j in &*self.companions[i] {
@@ -414,7 +415,7 @@ impl Scene {
         }
     }
 
-    /// How many strokes it holds.
+    /// Counts the strokes that it holds.
     fn held(&self, i: usize) -> f64 {
         let s = &self.shapes[i];
         let holds = |o: &Shape| o.length < s.length && part_inside(o, &s.region, s) > 0.7;
@@ -422,7 +423,7 @@ impl Scene {
         to_f64(held.count())
     }
 
-    /// What holds it.
+    /// Measures the strokes that hold it.
     fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         for &j in &*self.companions[i] {
@@ -447,7 +448,7 @@ impl Scene {
         f.amid = self.amid.get(i).or(self.amid.first()).map_or(0.0, |region| share_inside(s, region));
     }
 
-    /// How its ends meet other strokes, and theirs meet it.
+    /// Measures how its ends meet other strokes, and theirs meet it.
     fn meeting(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let (low, high) = (lower_end(s), upper_end(s));
@@ -504,7 +505,7 @@ impl Scene {
         f.guests = log1(guests);
     }
 
-    /// How well another stroke runs beside it at an even distance, 0 to 1: the other side of a trunk.
+    /// Returns how well another stroke runs parallel to it at an even distance, 0 to 1: the other side of a trunk.
     fn partner(&self, i: usize, f: &mut StrokeFeatures) -> f64 {
         const STATIONS: usize = 8;
         let s = &self.shapes[i];
@@ -527,7 +528,7 @@ impl Scene {
                 let spread = (offsets.iter().map(|d| (*d - mean).length_squared()).sum::<f64>()
                     / to_f64(STATIONS))
                 .sqrt();
-                // Beside it, not in its prolongation: the part of the offset across the chord.
+                // Lies next to it, not in its prolongation: the part of the offset across the chord.
                 let chord = (s.last() - s.first()).normalize_or_zero();
                 let beside = mean.perp_dot(chord).abs();
                 let even = (1.0 - 4.0 * spread / s.length).max(0.0)
@@ -542,7 +543,7 @@ impl Scene {
         best
     }
 
-    /// Statistics of the whole drawing, the same on every row.
+    /// Computes statistics of the whole drawing, the same on every row.
     fn whole(&self, told: &[Told], all: &mut [StrokeFeatures]) {
         if all.is_empty() {
             return;
@@ -598,7 +599,7 @@ impl Scene {
         }
     }
 
-    /// Width of the ink between two shares of the drawing's height, over the drawing's width.
+    /// Returns the width of the ink between two shares of the drawing's height, over the drawing's width.
     fn band(&self, low: f64, high: f64) -> f64 {
         let (a, b) = self.shapes[..telling(self.shapes.len())]
             .iter()
@@ -609,7 +610,7 @@ impl Scene {
     }
 }
 
-/// See [`Scene::amid`].
+/// Computes [`Scene::amid`].
 fn amid(shapes: &[Arc<Shape>], wanted: &[bool]) -> Vec<Region> {
     let both = |a: &[DVec2], b: &[DVec2]| convex_hull(&[a, b].concat());
     if shapes.len() > COMPANIONS + 1 {
@@ -637,8 +638,8 @@ fn amid(shapes: &[Arc<Shape>], wanted: &[bool]) -> Vec<Region> {
     regions
 }
 
-/// Fills in what the shapes enclose: of the longest ones only, and of those that came after all that tell of the whole,
-/// so that very many strokes fit into memory.
+/// Computes the regions that the shapes enclose: for the longest ones only, and for those that came after all that
+/// describe the whole, so that very many strokes fit into memory.
 fn enclose(shapes: &mut [Arc<Shape>], order: &[usize], telling: usize) {
     let later = (telling..shapes.len()).map(|i| (i - telling, i));
     for (rank, i) in order.iter().copied().enumerate().chain(later) {
@@ -649,16 +650,16 @@ fn enclose(shapes: &mut [Arc<Shape>], order: &[usize], telling: usize) {
     }
 }
 
-/// Numbers of the strokes, longest first.
+/// Returns the numbers of the strokes, longest first.
 fn by_length(shapes: &[Arc<Shape>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
     base::sort_by(&mut order, |&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
     order
 }
 
-/// The body of a drawing: see [`Body`].
+/// Finds the body of a drawing: see [`Body`].
 fn body(shapes: &[Arc<Shape>], order: &[usize]) -> Body {
-    // Joined ends may be this far apart: a seventh of the drawing's diagonal.
+    // Largest distance between joined ends: a seventh of the drawing's diagonal.
     const JOIN: f64 = 0.15;
     let big = &order[..order.len().min(6)];
     let mut best = (0.0, Body::default());
@@ -698,14 +699,14 @@ fn body(shapes: &[Arc<Shape>], order: &[usize]) -> Body {
     best.1
 }
 
-/// Share of `s` inside a polygon.
+/// Returns the share of `s` inside a polygon.
 fn share_inside(s: &Shape, region: &Region) -> f64 {
     const EVERY: usize = 6;
     let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| region.contains(p)).count();
     to_f64(inside) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
 }
 
-/// Share of `s` inside `region`, whose box is `o`'s.
+/// Returns the share of `s` inside `region`, whose box is that of `o`.
 fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
     if s.min.cmpgt(o.max).any() || s.max.cmplt(o.min).any() {
         return 0.0;
@@ -717,7 +718,7 @@ fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
     to_f64(count) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
 }
 
-/// Share of the first `telling` strokes that are shorter, for each.
+/// Returns for each stroke the share of the first `telling` strokes that are shorter.
 fn ranks(shapes: &[Arc<Shape>], telling: usize) -> Vec<f64> {
     let mut sorted: Vec<f64> = shapes[..telling].iter().map(|s| s.length).collect();
     base::sort_numbers(&mut sorted);

@@ -1,4 +1,5 @@
-//! What can be measured of a stroke: `InkStroke -> Shape -> StrokeFeatures` (with what [`context`](super::context) adds).
+//! Features of a single stroke: `InkStroke -> Shape -> StrokeFeatures` (with those that [`context`](super::context)
+//! adds).
 
 use base::ops;
 use geom::convex_hull;
@@ -6,14 +7,14 @@ use glam::DVec2;
 
 use super::region::Region;
 
-/// Samples that a stroke is measured on: a corolla of twelve petals still has eight on each.
+/// Number of samples on which a stroke is measured: a corolla of twelve petals still has eight on each.
 pub(super) const SAMPLES: usize = 96;
 
 macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident,)+) => {
-        /// What the classifier sees of one stroke: scale-free numbers, about -1 to 3 each, always finite.
+        /// Features of one stroke as the classifier sees them: scale-free numbers, about -1 to 3 each, always finite.
         ///
-        /// Nothing here depends on the direction in which a stroke was drawn, nor on left and right.
+        /// They do not depend on the direction in which a stroke was drawn, nor on left and right.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct StrokeFeatures { $($(#[$doc])* pub $name: f64,)+ }
 
@@ -21,16 +22,16 @@ macro_rules! columns {
             /// The features' names, in the order of [`values`](Self::values): the header of the table.
             pub const NAMES: [&'static str; [$(stringify!($name)),+].len()] = [$(stringify!($name)),+];
 
-            /// The numbers in the order of [`NAMES`](Self::NAMES).
+            /// Returns the numbers in the order of [`NAMES`](Self::NAMES).
             pub fn values(&self) -> [f64; Self::NAMES.len()] { [$(self.$name),+] }
 
-            /// The features of a row of the table.
+            /// Returns the features of a row of the table.
             pub fn from_values(values: [f64; Self::NAMES.len()]) -> Self {
                 let [$($name),+] = values;
                 Self { $($name),+ }
             }
 
-            /// Anything that is not finite becomes 0, anything huge is cut to 10.
+            /// Replaces numbers that are not finite by 0 and limits huge ones to 10.
             pub(super) fn tamed(self) -> Self {
                 Self::from_values(self.values().map(|x| if x.is_finite() { x.clamp(-10.0, 10.0) } else { 0.0 }))
             }
@@ -41,14 +42,14 @@ macro_rules! columns {
 columns! {
     /// Distance of the two ends over length: the first feature of He and Cheng (2021), section 4.1.
     gap,
-    /// Square root of the smaller over the larger eigenvalue of the points' covariance: their second
-    /// feature, turned over so that it stays in \[0, 1\].
+    /// Square root of the ratio of the smaller to the larger eigenvalue of the points' covariance: the inverse of their
+    /// second feature, so that it stays in \[0, 1\].
     slim,
     /// Root of the area of the principal box over length: their third feature, made scale-free.
     box_area,
     /// Area enclosed when the ends are joined, over that of a circle of the same length.
     round,
-    /// That area over the area of the convex hull.
+    /// Enclosed area over the area of the convex hull.
     solid,
     /// Perimeter of the convex hull over length.
     hull,
@@ -58,7 +59,7 @@ columns! {
     turns,
     /// ln(1 + corners above 50 degrees).
     corners,
-    /// ln(1 + corners that turn against the way round): the notches between lobes.
+    /// ln(1 + corners that turn against the direction of the outline): the notches between lobes.
     inward,
     /// The sharpest corner over a half turn.
     sharpest,
@@ -72,7 +73,7 @@ columns! {
     upright,
     /// Share of the length that is nearly level.
     level,
-    /// Where the gap between the ends lies: -1 below, 1 above the middle, 0 when closed.
+    /// Position of the gap between the ends: -1 below, 1 above the middle, 0 when closed.
     opening,
     /// How level the line between the ends is, times the gap.
     opening_level,
@@ -122,7 +123,7 @@ columns! {
     low_gap,
     /// Distance from its upper end to the nearest other stroke.
     high_gap,
-    /// Where its lower end meets that stroke: 0 at an end, 1 in the middle.
+    /// Position at which its lower end meets that stroke: 0 at an end, 1 in the middle.
     low_where,
     /// Roundness of the stroke that the lower end is nearest to.
     low_round,
@@ -140,7 +141,7 @@ columns! {
     ends_touch,
     /// 1 where both ends touch the same stroke.
     both_same,
-    /// Distance of the stroke that runs best beside it, over its length.
+    /// Distance of the stroke that runs most nearly parallel to it, over its length.
     partner_gap,
     /// Share of the other strokes that lie in its box widened by a tenth of the diagonal.
     company,
@@ -201,9 +202,9 @@ columns! {
 pub(super) struct Shape {
     /// [`SAMPLES`] points at even arc length.
     pub(super) points: Vec<DVec2>,
-    /// What every second of them encloses; empty for lines.
+    /// Region that every second sample encloses; empty for lines.
     pub(super) region: Region,
-    /// What the hull encloses; empty for straight lines.
+    /// Region inside the hull; empty for straight lines.
     pub(super) hull_region: Region,
     pub(super) hull_area: f64,
     /// Convex hull, counter-clockwise.
@@ -215,12 +216,12 @@ pub(super) struct Shape {
     /// Area with the ends joined.
     pub(super) area: f64,
     pub(super) round: f64,
-    /// The regions are made.
+    /// Whether the regions are computed.
     pub(super) enclosed: bool,
 }
 
 impl Shape {
-    /// Makes its regions, or forgets them.
+    /// Computes its regions, or drops them.
     pub(super) fn enclose(&mut self, wanted: bool) {
         self.enclosed = wanted;
         if !wanted {
@@ -247,13 +248,13 @@ impl Shape {
         self.points.last().copied().unwrap_or_default()
     }
 
-    /// It encloses an area rather than being a line.
+    /// Whether it encloses an area rather than being a line.
     pub(super) fn encloses(&self) -> bool {
         self.round > 0.2
     }
 }
 
-/// Even samples, box, hull and area of a stroke, and the features that need nothing else.
+/// Returns even samples, box, hull and area of a stroke, and the features that need nothing else.
 pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
     let (points, length) = even_samples(points);
     let mut s = Shape { length, ..Shape::default() };
@@ -287,7 +288,7 @@ pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
     (s, f)
 }
 
-/// `SAMPLES` points at even arc length and the length.
+/// Returns `SAMPLES` points at even arc length, and the length.
 fn even_samples(points: &[DVec2]) -> (Vec<DVec2>, f64) {
     let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     if points.len() < 2 || length <= 0.0 || !length.is_finite() {
@@ -310,7 +311,7 @@ fn even_samples(points: &[DVec2]) -> (Vec<DVec2>, f64) {
     (out, length)
 }
 
-/// Square root of the eigenvalue ratio of the points' covariance, and the unit vector of the larger one.
+/// Returns the square root of the eigenvalue ratio of the points' covariance, and the unit vector of the larger one.
 fn slimness(points: &[DVec2]) -> (f64, DVec2) {
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     let middle = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
@@ -328,7 +329,7 @@ fn slimness(points: &[DVec2]) -> (f64, DVec2) {
     (slim, DVec2::new(cos, sin))
 }
 
-/// Features 2 and 3 of He and Cheng (2021), section 4.1.
+/// Computes features 2 and 3 of He and Cheng (2021), section 4.1.
 fn principal(s: &Shape, f: &mut StrokeFeatures) {
     let (slim, u) = slimness(&s.points);
     let v = u.perp();
@@ -343,7 +344,7 @@ fn principal(s: &Shape, f: &mut StrokeFeatures) {
     f.box_area = (reach(u) * reach(v)).sqrt() / s.length;
 }
 
-/// Signed angle from `a` to `b`, radians; 0 where one of them has no length.
+/// Returns the signed angle from `a` to `b`, radians; 0 where one of them has no length.
 fn angle(a: DVec2, b: DVec2) -> f64 {
     if a.length_squared() > 0.0 && b.length_squared() > 0.0 {
         ops::atan2(a.perp_dot(b), a.dot(b))
@@ -352,7 +353,7 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
     }
 }
 
-/// Turning, corners and straight parts.
+/// Measures turning, corners and straight parts.
 fn bending(s: &Shape, f: &mut StrokeFeatures) {
     // Two samples to each side: a corner that the pen rounded off still counts, the jitter of the hand does not.
     const REACH: usize = 2;
@@ -398,7 +399,7 @@ fn bending(s: &Shape, f: &mut StrokeFeatures) {
     f.straight = straight / n as f64;
 }
 
-/// Distance from the middle along the way: lobes.
+/// Measures the distance from the middle along the stroke: lobes.
 fn radial(s: &Shape, f: &mut StrokeFeatures) {
     let n = s.points.len();
     let r: Vec<f64> = s.points.iter().map(|p| p.distance(s.middle)).collect();
@@ -424,7 +425,7 @@ fn radial(s: &Shape, f: &mut StrokeFeatures) {
     f.lobes = ops::ln(1.0_f64 + lobes);
 }
 
-/// Shares of upright and level running.
+/// Measures the shares of upright and level length.
 fn slopes(s: &Shape, f: &mut StrokeFeatures) {
     let (mut upright, mut level) = (0.0, 0.0);
     for w in s.points.windows(3).step_by(2) {
@@ -442,7 +443,7 @@ fn slopes(s: &Shape, f: &mut StrokeFeatures) {
     f.tall = size.y / (size.x + size.y).max(1e-12);
 }
 
-/// Where the ends are, seen from the middle.
+/// Measures where the ends lie, seen from the middle.
 fn openings(s: &Shape, f: &mut StrokeFeatures) {
     let (a, b) = (s.first(), s.last());
     let ends = (a + b) / 2.0;
@@ -452,7 +453,8 @@ fn openings(s: &Shape, f: &mut StrokeFeatures) {
     f.opening_level = if d.x + d.y > 1e-12 { d.x / (d.x + d.y) * f.gap } else { 0.0 };
 }
 
-/// As [`geom::signed_area`], but of coordinates as they are: its rounding is what the models were trained with.
+/// Returns the signed area as [`geom::signed_area`] does, but without shifting the coordinates: the models were trained
+/// with its rounding.
 pub(super) fn signed_area(polygon: &[DVec2]) -> f64 {
     let Some(&last) = polygon.last() else { return 0.0 };
     let mut before = last;
@@ -475,13 +477,13 @@ fn perimeter(polygon: &[DVec2]) -> f64 {
     sum
 }
 
-/// The open segments `ab` and `cd` cross.
+/// Whether the open segments `ab` and `cd` cross.
 fn cross(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// Crossings of every second chord.
+/// Counts crossings of every second chord.
 fn self_crossings(points: &[DVec2]) -> f64 {
     let p: Vec<DVec2> = points.iter().copied().step_by(2).collect();
     let mut count = 0.0;

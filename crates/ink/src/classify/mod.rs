@@ -1,4 +1,4 @@
-//! What each stroke is (He and Cheng 2021, section 4.1): `Ink -> Vec<Classified>`.
+//! Classification of strokes (He and Cheng 2021, section 4.1): `Ink -> Vec<Classified>`.
 //!
 //! | step | module |
 //! |---|---|
@@ -33,19 +33,19 @@ use base::{Run, map_indexed};
 use crate::{Ink, StrokeClass};
 use model::StrokeModels;
 
-/// The one rule that is applied here, because it needs no other stroke: crowns and trunks are told by what stands around
-/// them, so a line by itself, the first that anybody draws, is a stem. No rule of reading changes it.
+/// Name of the one rule that is applied here because it needs no other stroke: crowns and trunks are recognised by
+/// their surroundings, so a line by itself, the first that anybody draws, is a stem. No rule of reading changes it.
 pub const LONE_LINE: &str = "lone-line";
-/// End gap over length of a stroke that is nearly straight: a half circle has 0.64.
+/// Least end gap over length of a stroke that is nearly straight: a half circle has 0.64.
 const LONE_GAP: f64 = 0.7;
 
-/// Applied here, too: what several plants stand on is their ground.
+/// Name of a second rule applied here: a line on which several plants stand is their ground.
 pub const COMMON_GROUND: &str = "common-ground";
 
-/// Applied here, too: what follows another line all the way is what that one is.
+/// Name of a third rule applied here: a line that follows another all the way has the class of that line.
 pub const DRAWN_AGAIN: &str = "drawn-again";
 
-/// The models in the repository.
+/// Returns the models in the repository.
 fn trained() -> Option<&'static StrokeModels> {
     static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
     MODELS
@@ -56,7 +56,7 @@ fn trained() -> Option<&'static StrokeModels> {
         .as_ref()
 }
 
-/// Finds out what each stroke is.
+/// Classifies each stroke.
 ///
 /// One answer per stroke of `ink.strokes`, in its order, the same on every platform. Not guaranteed: that it is
 /// right (see `docs/strokes.md`); the user can override any class. About 0.1 ms a stroke in a
@@ -74,12 +74,11 @@ pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
     classify_again(ink, &[], &mut KeptMeasures::default(), run)
 }
 
-/// As [`classify`], of a drawing that grows: strokes whose class is known keep it, and strokes that are as they were
-/// are not measured again.
+/// Classifies a growing drawing as [`classify`] does: strokes whose class is known keep it, and strokes that are
+/// unchanged are not measured again.
 ///
-/// `known[i]` stands for `ink.strokes[i]`, strokes beyond its end are unknown: a new stroke may change what the others
-/// are, and where their class is known this does not look again. `kept`: from the look before, or empty; it changes no
-/// answer.
+/// `known[i]` belongs to `ink.strokes[i]`; strokes beyond its end are unknown. A new stroke may change the class of
+/// others, but a known class is not judged again. `kept`: from the previous call, or empty; it changes no result.
 pub fn classify_again(
     ink: &Ink,
     known: &[Option<Classified>],
@@ -103,11 +102,11 @@ fn judge(
     let rows = context::features_again(ink, unknown, kept, run);
     let before = core::mem::take(&mut kept.judged);
     let decide = |i: usize| {
-        // The same numbers are the same stroke.
+        // Equal features mean an unchanged stroke.
         if let Some((_, class)) = before.get(i).filter(|(row, _)| *row == rows[i]) {
             return *class;
         }
-        // A test reads the models, so they are always there.
+        // A test reads the models, so they are always present.
         let models = models.filter(|_| run.cancel.check().is_ok());
         models.map(|m| m.decide(&rows[i])).unwrap_or_default()
     };
@@ -120,7 +119,7 @@ fn judge(
     let is_known = |i: usize| known.get(i).copied().flatten();
     let classes = map_indexed(run.executor, rows.len(), |i| is_known(i).unwrap_or_else(|| decide(i)));
     if run.cancel.check().is_ok() {
-        // A class that was known says nothing of today's numbers.
+        // A class that was known is no evidence for the current features.
         let judged = |(i, class): (usize, &Classified)| match is_known(i) {
             Some(_) => before.get(i).copied().unwrap_or_default(),
             None => (rows[i], *class),
@@ -130,7 +129,7 @@ fn judge(
     classes
 }
 
-/// Every plant of a drawing by itself: what stands beside it says nothing about its strokes.
+/// Classifies the strokes of every plant by itself: its neighbours are no evidence for them.
 fn judge_each(
     models: Option<&StrokeModels>,
     ink: &Ink,

@@ -1,4 +1,4 @@
-//! The trained models and what they say of one stroke.
+//! The trained models and their classification of one stroke.
 
 use core::fmt;
 
@@ -7,7 +7,7 @@ use super::packed::unpack;
 use super::svm::{Scale, Svm, SvmError};
 use crate::StrokeClass;
 
-/// What decided the class of a stroke.
+/// Source of a stroke's class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Source {
     /// The user set it.
@@ -20,7 +20,7 @@ pub enum Source {
 }
 
 impl fmt::Display for Source {
-    /// `user`, `classifier` or `rule:NAME`: the words of reports.
+    /// Writes `user`, `classifier` or `rule:NAME`: the words of reports.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::User => f.write_str("user"),
@@ -30,24 +30,24 @@ impl fmt::Display for Source {
     }
 }
 
-/// What a stroke was found to be.
+/// Result of classifying a stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Classified {
     /// The class.
     pub class: StrokeClass,
-    /// How sure that class is, 0 to 1: its share among all classes, or 1 where no rule of reading may change it. See
+    /// Confidence in that class, 0 to 1: its share among all classes, or 1 where no rule of reading may change it. See
     /// `docs/strokes.md` for how often a share is right.
     pub confidence: f64,
-    /// What decided it.
+    /// What decided the class.
     pub source: Source,
-    /// The classifier's share of every class, in the order of [`StrokeClass::ALL`]; zeros where it was not asked.
+    /// The classifier's share of every class, in the order of [`StrokeClass::ALL`]; zeros where it was not run.
     pub shares: [f64; StrokeClass::ALL.len()],
-    /// What a person was shown it as while the drawing grew: reading departs from it only for clear evidence.
+    /// The class that a person was shown while the drawing grew: reading departs from it only for clear evidence.
     pub shown: Option<StrokeClass>,
 }
 
 impl Classified {
-    /// A class that the user set: sure.
+    /// Makes a class that the user set, with full confidence.
     ///
     /// ```
     /// use ink::{Classified, Source, StrokeClass};
@@ -59,12 +59,12 @@ impl Classified {
         Self { class, confidence: 1.0, source: Source::User, ..Self::default() }
     }
 
-    /// No rule of reading may change it.
+    /// Whether no rule of reading may change it.
     pub fn is_sure(&self) -> bool {
         self.confidence >= 1.0
     }
 
-    /// What the classifier says: the class with the largest share, the first of equals.
+    /// Returns the class with the largest share, the first of equals.
     pub fn by_shares(shares: [f64; StrokeClass::ALL.len()]) -> Self {
         let mut best = Self { shares, ..Self::default() };
         for (class, share) in StrokeClass::ALL.into_iter().zip(shares) {
@@ -87,7 +87,7 @@ impl StrokeModels {
     /// Reads the models as programs carry them.
     ///
     /// # Errors
-    /// [`SvmError`] where they are no models of today's features.
+    /// [`SvmError`] where the bytes are not models of today's features.
     pub(super) fn unpack(scale: &str, classes: &[u8]) -> Result<Self, SvmError> {
         Ok(Self {
             scale: Scale::parse(scale, &StrokeFeatures::NAMES)?,
@@ -95,7 +95,7 @@ impl StrokeModels {
         })
     }
 
-    /// The class of a stroke.
+    /// Returns the class of a stroke.
     pub(super) fn decide(&self, f: &StrokeFeatures) -> Classified {
         let found = self.classes.shares(&self.scale.apply(&f.values()));
         let mut shares = [0.0; StrokeClass::ALL.len()];

@@ -6,11 +6,11 @@
 
 use super::svm::{Svm, SvmError};
 
-/// First bytes of the form.
+/// First bytes of the format.
 pub(super) const MAGIC: &[u8] = b"svm2";
 
-/// Numbers of vectors are whole multiples of this, in deviations of their feature: half a step is far below what a
-/// steady hand repeats, and whole numbers of 16 bits compress to half of what f32 does.
+/// Numbers of vectors are whole multiples of this, in standard deviations of their feature: half a step is far below
+/// what a steady hand repeats, and whole numbers of 16 bits compress to half the size of f32.
 pub(super) const GRAIN: f32 = 1.0 / 1024.0;
 
 /// Reads a machine for rows of `columns` numbers.
@@ -60,7 +60,7 @@ fn take<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], SvmError> {
     Ok(taken)
 }
 
-/// `count` numbers of `N` bytes each.
+/// Reads `count` numbers of `N` bytes each.
 fn numbers<T, const N: usize>(
     from: &mut &[u8],
     count: usize,

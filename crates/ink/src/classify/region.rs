@@ -1,21 +1,21 @@
-//! A polygon that is asked for many points.
+//! A polygon that is tested against many points.
 
 use glam::DVec2;
 
-/// Level bands that the edges are sorted into.
+/// Number of level bands into which the edges are sorted.
 const BANDS: usize = 16;
 
-/// The inside of a polygon by the even-odd rule, edges sorted by height so that a question looks at few of them.
+/// The inside of a polygon by the even-odd rule, edges sorted by height so that a test checks few of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Region {
     low: f64,
     bands_per_height: f64,
-    /// One list a band; none for an empty region.
+    /// One list of edges for each band; empty for an empty region.
     edges: Vec<Vec<(DVec2, DVec2)>>,
 }
 
 impl Region {
-    /// Of a polygon, first point not repeated; empty for fewer than 3 points.
+    /// Makes the region of a polygon whose first point is not repeated; empty for fewer than 3 points.
     pub(super) fn new(polygon: &[DVec2]) -> Self {
         let (low, high) =
             polygon.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.y), b.max(p.y)));
@@ -36,7 +36,7 @@ impl Region {
         region
     }
 
-    /// The band of a height, the outermost ones for what is outside; `None` for NaN.
+    /// Returns the band of a height, the outermost ones for heights outside; `None` for NaN.
     fn band(&self, y: f64) -> Option<usize> {
         let band = ((y - self.low) * self.bands_per_height).clamp(0.0, (BANDS - 1) as f64);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the bands")]

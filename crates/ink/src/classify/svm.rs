@@ -1,16 +1,16 @@
-//! A support vector machine that decides, with the same bits everywhere.
+//! A support vector machine that gives the same bits everywhere.
 //!
 //! It is our own because LIBSVM's ports call `std`'s `exp`, which differs between native and WASM.
 
 use base::ops;
 
-/// Why a model's text cannot be read.
+/// Reason why a model's text cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the model: {what}")]
 pub struct SvmError {
-    /// Counted from 1; 0 where the text as a whole is meant.
+    /// Line, counted from 1; 0 for the text as a whole.
     pub line: usize,
-    /// What is wrong with it.
+    /// The fault in words.
     pub what: String,
 }
 
@@ -37,11 +37,12 @@ pub(super) struct Svm {
     pub(super) squares: Vec<f32>,
 }
 
-/// Sums side by side, which the processor adds at once.
+/// Number of parallel sums, which the processor adds at once.
 pub(super) const LANES: usize = 8;
 
 impl Svm {
-    /// Of numbers as they are packed: coefficients and vectors column by column, `starts` with the end of the last.
+    /// Makes a machine of numbers as they are packed: coefficients and vectors column by column, `starts` with the end
+    /// of the last.
     pub(super) fn new(
         gamma: f64,
         labels: Vec<i32>,
@@ -80,7 +81,7 @@ impl Svm {
         self.squares = self.vectors.chunks_exact(self.stride.max(1)).map(|v| dot(v, v)).collect();
     }
 
-    /// How sure each class is, in the order of `labels`: positive, summing to 1.
+    /// Returns the confidence of each class, in the order of `labels`: positive, summing to 1.
     ///
     /// Each pair's decision value d becomes a probability 1 / (1 + e^(-2 d)); a class's share is
     /// 1 / (sum over the others of 1 / p - (classes - 2)) (Price, Knerr, Personnaz and Dreyfus 1995), normalised.
@@ -88,7 +89,7 @@ impl Svm {
         #[expect(clippy::cast_possible_truncation, reason = "scaled features lie within 5 deviations")]
         let mut row: Vec<f32> = row.iter().map(|&x| x as f32).collect();
         row.resize(self.stride, 0.0);
-        // |v - r|^2 = |v|^2 + |r|^2 - 2 v.r: one product an element instead of two operations more.
+        // |v - r|^2 = |v|^2 + |r|^2 - 2 v.r: one product for each element instead of two more operations.
         let square = dot(&row, &row);
         let distances: Vec<f64> = (self.vectors.chunks_exact(self.stride.max(1)).zip(&self.squares))
             .map(|(v, own)| f64::from((own + square - 2.0 * dot(v, &row)).max(0.0)))
@@ -96,7 +97,7 @@ impl Svm {
         let mut kernel = vec![0.0; distances.len()];
         ops::exps(-self.gamma, &distances, &mut kernel);
         let n = self.labels.len();
-        // For each class the weighed kernels of its own vectors against each other class.
+        // For each class, the weighted kernels of its own vectors against each other class.
         let mut halves = vec![0.0; n * (n - 1)];
         for class in 0..n {
             let row = &mut halves[class * (n - 1)..(class + 1) * (n - 1)];
@@ -127,7 +128,7 @@ impl Svm {
     }
 }
 
-/// Of slices of whole lanes.
+/// Returns the dot product of slices of whole lanes.
 fn dot(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0; LANES];
     for (x, y) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
@@ -153,7 +154,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// A row, scaled; cut at 5 deviations so that no single feature of an odd drawing decides alone.
+    /// Scales a row and limits it to 5 deviations, so that no single feature of an odd drawing decides alone.
     pub(super) fn apply(&self, row: &[f64]) -> Vec<f64> {
         self.columns
             .iter()

@@ -24,7 +24,7 @@ fn committed_models_are_what_the_table_trains() {
     let fresh = train_strokes(&rows).expect("the table trains");
     let kept = StrokeModels::parse(&kept).expect("the committed models can be read");
     let fresh = StrokeModels::parse(&fresh).expect("the trained models can be read");
-    // Not the text: training calls std's exp, whose last digit differs between platforms.
+    // The texts are not compared: training calls std's exp, whose last digit differs between platforms.
     for row in &rows {
         let (a, b) = (kept.decide(&row.features), fresh.decide(&row.features));
         let same = a.class == b.class && (a.confidence - b.confidence).abs() < 1e-3;
@@ -148,7 +148,7 @@ fn broken_models_are_refused_with_their_line() {
     assert!(StrokeModels::parse(&short).is_err(), "a feature is missing");
 }
 
-/// A hand-like closed loop: root, tip, half width.
+/// Makes a hand-drawn closed loop: root, tip, half width.
 fn petal(root: DVec2, tip: DVec2, half: f64, wobble: &mut base::Stream) -> Vec<DVec2> {
     let along = tip - root;
     let across = along.perp().normalize_or_zero() * half;
@@ -207,7 +207,7 @@ fn a_second_look_measures_what_a_first_one_does() {
     let mut ink = Ink::default();
     let mut kept = KeptMeasures::default();
     let none = Run::plain();
-    // Across the number from which strokes are compared with some others only.
+    // Includes the number from which strokes are compared with only some others.
     for n in 1..=56 {
         let root = DVec2::new(stream.uniform(), stream.uniform());
         let tip = root + DVec2::new(stream.range(-0.3, 0.3), stream.range(-0.3, 0.3));
@@ -238,14 +238,14 @@ fn a_second_look_at_many_strokes_measures_what_a_first_one_does() {
         let upright = root + DVec2::new(stream.range(-0.01, 0.01), 0.3);
         let points = match n % 4 {
             0 => vec![root, (root + tip) * 0.51, tip],
-            // Stems side by side.
+            // Stems next to one another.
             3 => (0..9).map(|k| root.lerp(upright, f64::from(k) / 8.0)).collect(),
             1 => (0..9).map(|k| root.lerp(tip, f64::from(k) / 8.0)).collect(),
             _ => petal(root, tip, 0.3 * far, &mut stream),
         };
         InkStroke { points, ..InkStroke::default() }
     };
-    // A frame, so that what is drawn within leaves the whole as it is.
+    // A frame, so that strokes drawn within it leave the whole as it is.
     let frame = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y, DVec2::ZERO];
     let mut ink = Ink::default();
     ink.strokes.push(InkStroke { points: frame.to_vec(), ..InkStroke::default() });

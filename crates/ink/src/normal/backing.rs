@@ -1,23 +1,25 @@
-//! Areas that lie under the whole drawing and stand out all round it by the same width: the rim of a sticker, and the dark layer
-//! that shows as an outline between coloured areas.
+//! Backings: areas that lie under the whole drawing and extend all round it by the same width, such as the rim of a
+//! sticker or the dark layer that shows as an outline between coloured areas.
 
 use glam::DVec2;
 
 use super::{Change, Extent, LIMITS, Work, places, some_of};
 
-/// Layers that nobody stacks more of.
+/// Most backings that are removed: nobody stacks more.
 const LAYERS: usize = 3;
-/// Places of the outline at which its width is measured, and places of what lies on it.
+/// Number of places of the outline at which its width is measured.
 const ROUND: usize = 96;
+/// Most points of what lies on the backing that are compared with its outline.
 const UPON: usize = 4096;
-/// A backing stands out by no more than this share of the drawing's diagonal anywhere, and on average.
+/// Largest width by which a backing stands out anywhere, as a share of the drawing's diagonal.
 const WIDEST: f64 = 0.1;
+/// Largest mean width by which a backing stands out, as a share of the drawing's diagonal.
 const WIDE: f64 = 0.045;
 /// Least areas that lie on it.
 const FEWEST: usize = 2;
 
 impl Work {
-    /// Cost: for each layer, places of its outline times places of what lies on it.
+    /// Removes backings. Cost: for each layer, places of its outline times points on it.
     pub(super) fn leave_backings_out(&mut self) {
         for _ in 0..LAYERS {
             let Some(backing) = self.backing() else { break };
@@ -27,7 +29,7 @@ impl Work {
         }
     }
 
-    /// The first area, if it is a backing of all that is painted after it.
+    /// Returns the first area, if it is a backing of all that is painted after it.
     fn backing(&self) -> Option<usize> {
         let area = self.figures.iter().position(|f| !f.lines.is_empty())?;
         let figure = &self.figures[area];
@@ -36,7 +38,7 @@ impl Work {
         if !is_area(figure) || upon.iter().filter(|f| is_area(f)).count() < FEWEST {
             return None;
         }
-        let largest = |l: &&Vec<_>| Extent::of(l).map_or(0.0, Extent::area);
+        let largest = |l: &&Vec<_>| Extent::from_line(l).map_or(0.0, Extent::area);
         let outline = places(figure.lines.iter().max_by(|a, b| largest(a).total_cmp(&largest(b)))?);
         let all: Vec<DVec2> = upon.iter().flat_map(|f| &f.lines).flatten().map(|s| s.at).collect();
         let upon: Vec<DVec2> = some_of(&all, UPON).filter(|p| p.is_finite()).collect();

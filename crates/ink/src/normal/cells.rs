@@ -1,30 +1,32 @@
-//! Line art that was painted as one area with holes over colours -> the outlines of its holes, each with the colour behind it.
+//! Line art painted as one area with holes over colours -> the outlines of its holes, each with the colour behind it.
 //!
-//! Drawing programs turn the outlines of a coloured picture into one compound path: its ink runs between the organs, and each
-//! organ is a hole in it. The holes say more than the centre lines of the ink, which come apart at every junction.
+//! Drawing programs turn the outlines of a coloured picture into one compound path: its ink runs between the organs,
+//! and each organ is a hole in it. The holes are better evidence than the centre lines of the ink, which come apart at
+//! every junction.
 
 use glam::DVec2;
 
 use super::{Change, Extent, Figure, LIMITS, Work, is_closed, places, some_of};
 use crate::InkSample;
 
-/// When an area with holes is line art. Shares are of areas.
+/// Limits by which an area with holes counts as line art. Shares are of areas.
 struct CellLimits {
     /// Its ink takes less than this share of what its outer outline encloses.
     ink_most: f64,
     /// Others are painted behind more than this share of its holes.
     covered: f64,
-    /// A point in so many of the places of a hole shows the colour behind it.
+    /// Least share of the places in a hole that show the colour behind it.
     seen: f64,
     /// A hole has at least this share of what the outer outline encloses; smaller ones are gaps between the lines.
     hole_least: f64,
     /// Colour behind lies within the outer outline with this share of its points.
     within: f64,
-    /// An area behind a hole that is smaller than this share of it is a thing of its own, such as the disc of a flower.
+    /// An area behind a hole that is smaller than this share of the hole is a separate thing, such as the disc of a
+    /// flower.
     own_thing: f64,
-    /// A point lies within the outer outline if it is nearer to it than this share of the drawing's diagonal, too.
+    /// A point also counts as within the outer outline if it is nearer to it than this share of the drawing's diagonal.
     near: f64,
-    /// Channels of colours of one hue, in shares of their sum, differ by less than this: shade, and no other thing.
+    /// Channels of colours of one hue, as shares of their sum, differ by less than this: the difference is shade.
     one_hue: f64,
 }
 
@@ -39,12 +41,13 @@ const LIMITS_OF_CELLS: CellLimits = CellLimits {
     one_hue: 0.15,
 };
 
-/// Places along each side of the box of a hole at which the colour behind it is looked up.
+/// Number of places along each side of the box of a hole at which the colour behind it is looked up.
 const PLACES: u32 = 7;
-/// Points of a hole, and of an area behind holes, of which it is asked where they lie.
+/// Number of points of a hole that are located.
 const OF_HOLE: usize = 8;
+/// Number of points of an area behind holes that are located.
 const OF_AREA: usize = 32;
-/// Areas of more sub-paths are traced, and no line art over colours.
+/// Areas with more sub-paths are traced drawings, not line art over colours.
 const MOST_HOLES: usize = 400;
 
 /// A hole of line art, and the topmost area behind it.
@@ -57,7 +60,7 @@ struct Hole {
 }
 
 impl Work {
-    /// Cost: holes times the points of the areas behind them.
+    /// Replaces line art by its holes. Cost: holes times the points of the areas behind them.
     pub(super) fn open_line_art(&mut self) {
         let outlines: Vec<Option<Vec<DVec2>>> = self.figures.iter().map(painted_outline).collect();
         let mut gone = vec![false; self.figures.len()];
@@ -87,7 +90,7 @@ impl Work {
         self.note(Change::Colour, colours);
     }
 
-    /// The holes of an area, if it is line art over colours. `outer`: its outer outline.
+    /// Returns the holes of an area, if it is line art over colours. `outer`: its outer outline.
     fn holes(&self, k: usize, outer: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<Vec<Hole>> {
         let figure = &self.figures[k];
         if figure.lined || !(2..MOST_HOLES).contains(&figure.lines.len()) {
@@ -103,7 +106,7 @@ impl Work {
                 && some_of(&rings[*j], OF_HOLE).all(|p| geom::contains(outer, p))
         };
         let candidates: Vec<usize> = (0..rings.len()).filter(is_hole).collect();
-        // An island of ink in a hole is no hole.
+        // An island of ink within a hole is not a hole.
         let is_island = |j: usize| {
             candidates.iter().any(|&i| {
                 i != j
@@ -128,7 +131,7 @@ impl Work {
         is_line_art.then_some(holes)
     }
 
-    /// A hole as an outline that somebody drew, in the colour behind it.
+    /// Returns a hole as an outline that somebody drew, in the colour behind it.
     fn figure_of(&self, k: usize, hole: &Hole) -> Figure {
         let figure = &self.figures[k];
         let mut like = figure.like.clone();
@@ -136,8 +139,8 @@ impl Work {
         Figure { like, lines: vec![figure.lines[hole.line].clone()], lined: true, fill: None }
     }
 
-    /// Whether holes have taken over the colour of an area: it lies within the outer outline, and is no thing of its own in one of
-    /// them.
+    /// Whether holes have taken over the colour of an area: it lies within the outer outline and is not a separate
+    /// thing in one of them.
     fn is_behind(&self, below: usize, outline: &[DVec2], outer: &[DVec2], holes: &[Hole]) -> bool {
         let points: Vec<DVec2> = some_of(outline, OF_AREA).collect();
         let near = LIMITS_OF_CELLS.near * self.diagonal();
@@ -169,7 +172,7 @@ impl Work {
     }
 }
 
-/// The outer outline of a figure that is painted by its area.
+/// Returns the outer outline of a figure that is painted by its area.
 fn painted_outline(figure: &Figure) -> Option<Vec<DVec2>> {
     if !figure.fill.is_some_and(|f| f.said && f.opacity >= LIMITS.translucent) {
         return None;
@@ -178,9 +181,9 @@ fn painted_outline(figure: &Figure) -> Option<Vec<DVec2>> {
     figure.lines.iter().max_by(|a, b| area(a).total_cmp(&area(b))).map(|l| places(l))
 }
 
-/// The topmost of some areas that lies behind most of a hole.
+/// Returns the topmost of some areas that lies behind most of a hole.
 fn topmost_behind(line: &[InkSample], hole: &[DVec2], outlines: &[Option<Vec<DVec2>>]) -> Option<usize> {
-    let Extent { lo, hi } = Extent::of(line)?;
+    let Extent { lo, hi } = Extent::from_line(line)?;
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES);
     let grid =
         (0..PLACES * PLACES).map(|k| lo + (hi - lo) * DVec2::new(place(k % PLACES), place(k / PLACES)));

@@ -4,19 +4,19 @@ use glam::DVec2;
 
 use super::{Change, Extent, Figure, Fill, LIMITS, Work, is_closed, places, some_of};
 
-/// Points of an area that are compared with an outline.
+/// Number of points of an area that are compared with an outline.
 const COMPARED: usize = 32;
-/// An area under an outline has this share of its box, at least.
+/// An area under an outline has at least this share of its box.
 const SAME_SIZE: f64 = 0.6;
-/// Shade lies within what it shades by this share of its points.
+/// Least share of the points of a shade that lie within the shaded outline.
 const WITHIN: f64 = 0.85;
-/// Opaque shade has a share of the area that it shades within these.
+/// Area of an opaque shade, as a share of the area that it shades.
 const PART: core::ops::Range<f64> = 0.1..0.85;
-/// Opaque shade follows the outline with this share of its points.
+/// Least share of the points of an opaque shade that follow the outline.
 const ALONG: f64 = 0.3;
-/// A gloss is at least so pale in each channel.
+/// Least value of each channel of a gloss.
 const GLOSS: u8 = 235;
-/// What is paler in each channel is the white of the paper.
+/// Least value of each channel of the white of the paper.
 const WHITE: u8 = 246;
 
 /// A closed outline of a figure.
@@ -28,7 +28,7 @@ struct Outline {
 }
 
 impl Work {
-    /// Areas under lines give them their colour and go; areas within others that shade them go.
+    /// Gives lines the colour of the areas under them and removes these; removes areas within others that shade them.
     pub(super) fn colour_lines(&mut self) {
         for figure in &mut self.figures {
             if let Some(Fill { color: Some(color), said: true, opacity, .. }) = figure.fill
@@ -51,7 +51,7 @@ impl Work {
             let above = |o: &&Outline| self.figures[o.figure].lined || o.figure > area.figure;
             let line = near().find(|o| above(o) && lies_under(area, o));
             if let Some(line) = line {
-                // Of two areas the upper one is seen.
+                // Of two areas, the upper one is visible.
                 let lined = self.figures[line.figure].lined;
                 if let Some(color) = self.figures[area.figure].fill.and_then(|f| f.color).filter(|_| lined) {
                     color_of.push((line.figure, color));
@@ -61,7 +61,7 @@ impl Work {
                 shade[area.figure].fill(true);
             }
         }
-        // The area that lies lowest is the colour, what lies over it shades it.
+        // The lowest area is the colour; the areas above it shade it.
         for (figure, color) in color_of.into_iter().rev() {
             if color.iter().any(|c| *c < WHITE) {
                 self.figures[figure].like.color = Some(color);
@@ -78,11 +78,11 @@ impl Work {
         }
     }
 
-    /// The first sub-path of each figure, if it is closed.
+    /// Returns the first sub-path of each figure, if it is closed.
     fn outlines(&self) -> Vec<Outline> {
         let outline = |(figure, f): (usize, &Figure)| {
             let line = f.lines.first()?;
-            let extent = Extent::of(line)?;
+            let extent = Extent::from_line(line)?;
             let points = places(line);
             let area = geom::signed_area(&points).abs();
             (is_closed(line) && area > 0.0).then_some(Outline { figure, points, extent, area })

@@ -6,18 +6,19 @@ use glam::DVec2;
 use super::{Change, Extent, LIMITS, Work, chord_of, is_closed, length_of, places};
 use crate::InkSample;
 
-/// A stroke of a hatching bends no more than this: its chord over its length.
+/// Least chord over length of a stroke of a hatching.
 const NEARLY_STRAIGHT: f64 = 0.94;
 /// Turns of a zigzag are sharper than this cosine: 115 degrees.
 const SHARP: f64 = -0.42;
-/// Least turns of a zigzag, and their share of all its corners.
+/// Least turns of a zigzag.
 const TURNS: usize = 6;
+/// Least share of turns among all corners of a zigzag.
 const TURNS_SHARE: f64 = 0.6;
-/// A piece of a zigzag leads along it within this cosine.
+/// Least cosine between a piece of a zigzag and its direction.
 const ALONG: f64 = 0.85;
-/// Places along a zigzag that are looked at.
+/// Number of places along a zigzag that are checked.
 const ALONG_ZIGZAG: f64 = 48.0;
-/// Neighbouring hatches are nearer than this share of the drawing's diagonal, or than they are long.
+/// Neighbouring hatches are nearer than this share of the drawing's diagonal, or than their length.
 const APART: f64 = 0.02;
 /// Least dots of a stipple within an outline.
 const DOTS: usize = 12;
@@ -27,7 +28,7 @@ const SAME_DOT: f64 = 0.2;
 const AT_EDGE: f64 = 0.16;
 /// Share of the hatches that lie within the outline and end on it.
 const MOST: f64 = 0.75;
-/// Outlines over one another that are asked for which one a hatch shades.
+/// Most overlapping outlines that are tested for the one that a hatch shades.
 const OVERLAPPING: usize = 6;
 /// Least hatches of an outline that do not run across it.
 const MANY: usize = 8;
@@ -35,7 +36,7 @@ const MANY: usize = 8;
 const DENSE: f64 = 0.35;
 /// Short strokes within an outline are no longer than this share of its narrower side.
 const SHORT: f64 = 0.45;
-/// Hatching of one drawing runs in no more directions than this.
+/// Most directions in which the hatching of one drawing runs.
 const WAYS: usize = 6;
 /// A few strokes in an outline are hatching if many in others run the same way within this cosine: 6 degrees.
 const SAME_WAY: f64 = 0.995;
@@ -71,7 +72,9 @@ impl Work {
             for (l, line) in figure.lines.iter().enumerate() {
                 let (Some(first), Some(last)) = (line.first(), line.last()) else { continue };
                 let hatch = Hatch { figure: k, line: l, from: first.at, to: last.at };
-                if Extent::of(line).is_some_and(|e| e.size().max_element() <= 0.6 * LIMITS.dot * diagonal) {
+                if Extent::from_line(line)
+                    .is_some_and(|e| e.size().max_element() <= 0.6 * LIMITS.dot * diagonal)
+                {
                     dots.push(hatch);
                     continue;
                 }
@@ -109,8 +112,8 @@ impl Work {
         self.leave_out(&out, Change::Hatching);
     }
 
-    /// Where outlines are hatched, those that are too small for many hatches are so, too: by lines across them that run the same way,
-    /// are painted alike and are no longer than the others.
+    /// Finds the hatching of outlines that are too small for many hatches, if others are hatched: lines across them
+    /// that run the same way, are painted alike and are no longer than the others.
     fn find_few_hatches(
         &self,
         outlines: &[Outline],
@@ -156,15 +159,19 @@ impl Work {
         let mut out = Vec::new();
         for (figure, f) in self.figures.iter().enumerate() {
             for line in f.lines.iter().filter(|l| is_closed(l)) {
-                out.extend(Extent::of(line).map(|extent| Outline { figure, points: places(line), extent }));
+                out.extend(Extent::from_line(line).map(|extent| Outline {
+                    figure,
+                    points: places(line),
+                    extent,
+                }));
             }
         }
-        // The smallest outline around something is the one that it lies in.
+        // The smallest outline around a point is the one that it lies in.
         base::sort_by(&mut out, |a, b| a.extent.area().total_cmp(&b.extent.area()));
         out
     }
 
-    /// Whether a line is the next hatch: painted alike, parallel, beside the one before.
+    /// Whether a line is the next hatch: painted alike, parallel, and next to the one before.
     fn goes_with(&self, before: &Hatch, first: &Hatch, next: &Hatch, diagonal: f64) -> bool {
         let like = |h: &Hatch| {
             let s = &self.figures[h.figure].like;
@@ -189,7 +196,7 @@ impl Work {
         if hatches.len() < LIMITS.hatches {
             return;
         }
-        // Outlines side by side may be hatched one after the other, in one direction.
+        // Adjacent outlines may be hatched one after the other, in one direction.
         let mut by_outline: LiteMap<usize, Vec<Hatch>> = LiteMap::new();
         for hatch in hatches {
             if let Some(row) = outline_of(&hatch, outlines) {
@@ -208,7 +215,7 @@ impl Work {
     }
 }
 
-/// The outline that a hatch shades: of those that overlap, the one that it runs across, or else the smallest.
+/// Returns the outline that a hatch shades: of those that overlap, the one that it crosses, or else the smallest.
 fn outline_of(hatch: &Hatch, outlines: &[Outline]) -> Option<usize> {
     let middle = hatch.from.midpoint(hatch.to);
     let around = || (0..outlines.len()).filter(|&row| outlines[row].holds(middle)).take(OVERLAPPING);
@@ -227,12 +234,12 @@ impl Outline {
         geom::closest_on_polyline(&self.points, p).is_some_and(|c| c.point.distance(p) <= near)
     }
 
-    /// Whether a line runs across it from edge to edge.
+    /// Whether a line crosses it from edge to edge.
     fn is_crossed_by(&self, hatch: &Hatch) -> bool {
         self.has_on_edge(hatch.from) && self.has_on_edge(hatch.to)
     }
 
-    /// Whether enough lines run across it from edge to edge, or many dense ones begin at its edge, or are short within it.
+    /// Whether enough lines cross it from edge to edge, or many dense ones begin at its edge, or are short within it.
     fn is_hatched_by(&self, hatches: &[Hatch]) -> bool {
         let is_most_of = |holds: fn(&Self, &Hatch) -> bool| {
             let count = hatches.iter().filter(|h| holds(self, h)).count();
@@ -250,7 +257,7 @@ impl Outline {
     }
 }
 
-/// Whether most hatches are nearer to the one before than they are long.
+/// Whether most hatches are nearer to the one before than their own length.
 fn is_dense(hatches: &[Hatch]) -> bool {
     let middle = |h: &Hatch| h.from.midpoint(h.to);
     let near = |w: &&[Hatch]| middle(&w[0]).distance(middle(&w[1])) <= DENSE * w[0].from.distance(w[0].to);
@@ -259,7 +266,7 @@ fn is_dense(hatches: &[Hatch]) -> bool {
     is_most
 }
 
-/// The smallest outline that most points lie in.
+/// Returns the smallest outline that most points lie in.
 fn around<'a>(points: &[DVec2], outlines: &'a [Outline]) -> Option<&'a Outline> {
     let some: Vec<DVec2> = super::some_of(points, 24).collect();
     #[expect(clippy::cast_precision_loss, reason = "a few points")]
@@ -286,7 +293,7 @@ fn is_zigzag(line: &[InkSample], diagonal: f64) -> bool {
     (turns >= TURNS && share >= TURNS_SHARE) || runs_to_and_fro(&corners)
 }
 
-/// Whether most of a line runs along one direction, forth and back by turns.
+/// Whether most of a line runs along one direction, alternating forth and back.
 fn runs_to_and_fro(corners: &[DVec2]) -> bool {
     let pieces: Vec<DVec2> = corners.windows(2).map(|w| w[1] - w[0]).collect();
     let longest = pieces.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length()));
@@ -304,13 +311,13 @@ fn runs_to_and_fro(corners: &[DVec2]) -> bool {
 }
 
 impl Work {
-    /// Tiny dots in outlines: many in one of them, or many painted as areas of one size in all.
+    /// Finds tiny dots in outlines: many in one of them, or many painted as areas of one size in all.
     fn find_stipple(&self, dots: &[Hatch], outlines: &[Outline], out: &mut [Vec<bool>]) {
         if dots.len() < DOTS || dots.len() * outlines.len() > LIMITS.pairs {
             return;
         }
         let size = |d: &Hatch| {
-            Extent::of(&self.figures[d.figure].lines[d.line]).map_or(0.0, |e| e.size().max_element())
+            Extent::from_line(&self.figures[d.figure].lines[d.line]).map_or(0.0, |e| e.size().max_element())
         };
         let mut inside: Vec<Vec<&Hatch>> = outlines.iter().map(|_| Vec::new()).collect();
         for dot in dots {

@@ -1,4 +1,4 @@
-//! Lines that lead from words to what they name, with their heads.
+//! Leader lines from words to the parts that they name, with their heads.
 
 use glam::DVec2;
 
@@ -6,20 +6,23 @@ use super::{Change, Extent, Work, chord_of, is_closed, length_of};
 
 /// Least words with a line: a single one may be a title, and a plant stands over its name.
 const FEWEST: usize = 2;
-/// A line from words begins beside them within this share of their height, and no higher or lower than half of it.
+/// Largest distance of a leader line's beginning to the side of its words, as a multiple of their height.
 const BESIDE: f64 = 1.2;
+/// Largest distance of a leader line's beginning above or below its words, as a share of their height.
 const HIGHER: f64 = 0.5;
-/// A line from words bends no more than this: its chord over its length.
+/// Least chord over length of a leader line.
 const NEARLY_STRAIGHT: f64 = 0.9;
-/// A head lies about the end of its line within this share of the drawing's diagonal, and touches it within that share.
+/// Largest distance of a head's points from the end of its line, as a share of the drawing's diagonal.
 const HEAD: f64 = 0.035;
+/// Distance within which a head touches the end of its line, as a share of the drawing's diagonal.
 const TOUCHES: f64 = 0.012;
-/// Points of a head that is drawn as an angle, and most of one that is an area.
+/// Number of points of a head that is drawn as an angle.
 const ANGLE: usize = 3;
+/// Most points of a head that is an area.
 const MOST_POINTS: usize = 5;
 
 impl Work {
-    /// Leaves out lines from words, and heads of arrows at their ends. `words`: boxes around words.
+    /// Leaves out leader lines and the heads of arrows at their ends. `words`: boxes around words.
     pub(super) fn leave_labels_out(&mut self, words: &[(DVec2, DVec2)]) {
         let boxes: Vec<Extent> = words.iter().map(|&(lo, hi)| Extent { lo, hi }).collect();
         if boxes.len() < FEWEST || boxes.len() * self.figures.len() > super::LIMITS.pairs {

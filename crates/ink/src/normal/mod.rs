@@ -1,11 +1,11 @@
-//! What drawing programs paint, brought to one normal form: plain strokes, one for each line that was meant.
+//! Normal form of what drawing programs paint: plain strokes, one for each line that was meant.
 //!
 //! `figures and sheet -> Normal (strokes and what was done to them)`
 //!
 //! | step | module |
 //! |---|---|
 //! | outside the sheet, pages, frames, ruling | `paper` |
-//! | lines that lead from words | `labels` |
+//! | leader lines from words | `labels` |
 //! | rims of stickers, layers under the whole drawing | `backing` |
 //! | line art painted as one area with holes | `cells` |
 //! | outlines of a pen's stroke, traced ink | `ribbon`, `traced` |
@@ -13,8 +13,8 @@
 //! | colour under a line, shade over colour | `colour` |
 //! | hatching, stipple | `hatching` |
 //!
-//! A figure is what a file says of one element and is never changed in place by what is near it: each step judges the
-//! figures as they came to it and says what is left.
+//! A figure holds what a file says of one element and is never changed in place by its surroundings: each step judges
+//! the figures that it receives and returns those that are left.
 
 mod backing;
 mod cells;
@@ -31,13 +31,13 @@ use glam::DVec2;
 
 use crate::{InkSample, Stroke};
 
-/// The limits of the normal form, as shares of the drawing's diagonal where nothing else is said.
+/// Limits of the normal form, as shares of the drawing's diagonal where nothing else is said.
 ///
-/// Measured on drawings as programs write them; plain strokes of a pen lie outside all of them.
+/// They were measured on drawings as programs write them; plain strokes of a pen lie outside all of them.
 struct Limits {
     /// A line is straight if its chord is this share of its length.
     straight: f64,
-    /// Two ends meet within this.
+    /// Largest distance at which two ends meet.
     meet: f64,
     /// The ends of an outline lie within this share of its length.
     gap: f64,
@@ -47,7 +47,7 @@ struct Limits {
     round: f64,
     /// Two ends of an outline in pieces meet within this share of the shorter piece.
     meet_share: f64,
-    /// A line in segments has at least this many of them, one after the other.
+    /// Least segments of a line in segments, one after the other.
     segments: usize,
     /// Pieces of a line in segments are no longer than this.
     segment: f64,
@@ -55,13 +55,13 @@ struct Limits {
     on_sides: f64,
     /// Paper holds this share of all other lines.
     held: f64,
-    /// Sky and ground go over this share of the width of the paper.
+    /// Least share of the paper's width that sky and ground span.
     across: f64,
     /// Least lines of ruled paper, and least dots of dotted paper along a side.
     ruled: usize,
     /// Least strokes of a hatching.
     hatches: usize,
-    /// Strokes of one direction differ by no more than this cosine.
+    /// Least cosine between strokes of one direction.
     parallel: f64,
     /// Dots of a stipple are no larger than this.
     dot: f64,
@@ -71,7 +71,7 @@ struct Limits {
     under: f64,
     /// Areas below this opacity shade what they lie on.
     translucent: f64,
-    /// More pairs of areas and outlines are not compared.
+    /// Most pairs of areas and outlines that are compared.
     pairs: usize,
 }
 
@@ -102,40 +102,40 @@ const LIMITS: Limits = Limits {
 pub struct Fill {
     /// Its colour, or the mean of its gradient; `None` where the file does not say.
     pub color: Option<[u8; 3]>,
-    /// Somebody asked for it: SVG paints black unasked.
+    /// Whether the file asks for it: SVG paints black by default.
     pub said: bool,
-    /// 0 to 1.
+    /// Opacity, 0 to 1.
     pub opacity: f64,
-    /// What lies in an even number of sub-paths is not painted, however they run.
+    /// Whether the even-odd rule applies: points in an even number of sub-paths are not painted, however these run.
     pub even_odd: bool,
 }
 
 /// One painted element of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
-    /// What its strokes are like, without samples; its colour is the line's.
+    /// Attributes of its strokes, without samples; its colour is the line's.
     pub like: Stroke,
     /// Its sub-paths, y up.
     pub lines: Vec<Vec<InkSample>>,
-    /// Its outline is painted.
+    /// Whether its outline is painted.
     pub lined: bool,
-    /// Its area is painted.
+    /// Its area, if painted.
     pub fill: Option<Fill>,
 }
 
 impl Figure {
-    /// The colour that is seen of it: of its area, else of its line.
+    /// Returns its visible colour: that of its area, else of its line.
     fn color_seen(&self) -> Option<[u8; 3]> {
         self.fill.and_then(|f| f.color).or(self.like.color)
     }
 }
 
-/// What was done to a drawing to get plain strokes.
+/// A change made to a drawing to get plain strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Change {
     /// Lies outside the sheet.
     OffSheet,
-    /// Page, frame, card, sky, ground or ruling.
+    /// Page, frame, card, sky, ground, cast shadow or ruling.
     Paper,
     /// A line from words to what they name, or its head.
     Labels,
@@ -156,7 +156,7 @@ pub enum Change {
 }
 
 impl Change {
-    /// Its code in reports.
+    /// Returns its code in reports.
     pub const fn code(self) -> &'static str {
         match self {
             Self::OffSheet => "off-sheet",
@@ -172,13 +172,13 @@ impl Change {
         }
     }
 
-    /// What it means, for a number of shapes or strokes.
+    /// Returns its meaning in words, for a number of shapes or strokes.
     pub fn sentence(self, count: usize) -> String {
         match self {
             Self::OffSheet => format!("{count} shapes lie outside the sheet and were left out"),
             Self::Paper => {
                 format!(
-                    "{count} lines are paper (page, frame, card, sky, ground, ruling, lines in its colour) and were left out"
+                    "{count} lines belong to the paper (page, frame, card, sky, ground, cast shadow, ruling, lines in its colour) and were left out"
                 )
             }
             Self::Labels => format!("{count} lines lead from words to the drawing and were left out"),
@@ -193,26 +193,26 @@ impl Change {
             Self::DrawnTwice => format!("{count} lines were drawn twice: each is one stroke"),
             Self::Joined => format!("{count} pieces whose ends meet were joined to longer strokes"),
             Self::Colour => format!("{count} coloured areas lie under lines: the lines have their colour"),
-            Self::Shade => format!("{count} areas shade what they lie on and were left out"),
+            Self::Shade => format!("{count} areas shade the parts below them and were left out"),
             Self::Hatching => format!("{count} strokes are hatching or stipple and were left out"),
         }
     }
 }
 
-/// The strokes that were meant.
+/// Plain strokes, with the changes that gave them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Normal {
-    /// In the order of the figures.
+    /// Strokes in the order of the figures.
     pub strokes: Vec<Stroke>,
-    /// What was done, with the number of shapes or strokes that it concerns.
+    /// Changes, each with the number of shapes or strokes that it concerns.
     pub changes: LiteMap<Change, usize>,
 }
 
-/// Brings figures to plain strokes.
+/// Reduces figures to plain strokes.
 ///
-/// `sheet`: the corners of the sheet, if the file has one. `words`: boxes around its texts, lower and upper corner. Guaranteed: lines of a pen that are none of what [`Change`]
-/// tells of pass through as they are, in their order; not everything is left out. Cost: about linear in points, apart from
-/// comparing areas with outlines, which is bounded.
+/// `sheet`: the corners of the sheet, if the file has one. `words`: boxes around its texts, lower and upper corner.
+/// Guaranteed: lines of a pen that are none of what [`Change`] names pass through unchanged, in their order; not
+/// everything is left out. Cost: about linear in points, apart from comparing areas with outlines, which is bounded.
 ///
 /// ```
 /// use ink::{Figure, InkSample, normalise};
@@ -242,14 +242,14 @@ pub fn normalise(figures: Vec<Figure>, sheet: Option<(DVec2, DVec2)>, words: &[(
     Normal { strokes, changes: work.changes }
 }
 
-/// A sub-path that goes nowhere is where a program put its pen down, if there are others.
+/// Drops sub-paths without extent, where a program put its pen down, if there are others.
 fn drop_points(figure: &mut Figure) {
     if figure.lines.iter().any(|l| length_of(l) > 0.0) {
         figure.lines.retain(|l| l.len() > 1);
     }
 }
 
-/// The figures on their way.
+/// Figures in the course of the steps.
 struct Work {
     figures: Vec<Figure>,
     sheet: Option<(DVec2, DVec2)>,
@@ -263,7 +263,7 @@ impl Work {
         }
     }
 
-    /// Takes lines out, but never all of them, and returns how many. `out[figure][line]`.
+    /// Removes lines, but never all of them, and returns how many. `out[figure][line]`.
     fn take_out(&mut self, out: &[Vec<bool>]) -> usize {
         let count = out.iter().flatten().filter(|o| **o).count();
         if count == 0 || count == out.iter().map(Vec::len).sum::<usize>() {
@@ -282,13 +282,13 @@ impl Work {
         self.note(change, count);
     }
 
-    /// For each line of each figure whether it is left out: none yet.
+    /// Returns for each line of each figure whether it is left out: none yet.
     fn none_out(&self) -> Vec<Vec<bool>> {
         self.figures.iter().map(|f| vec![false; f.lines.len()]).collect()
     }
 
     fn diagonal(&self) -> f64 {
-        let boxes = self.figures.iter().flat_map(|f| &f.lines).filter_map(|l| Extent::of(l));
+        let boxes = self.figures.iter().flat_map(|f| &f.lines).filter_map(|l| Extent::from_line(l));
         boxes.reduce(Extent::with).map_or(0.0, |b| b.size().length())
     }
 }
@@ -301,8 +301,8 @@ struct Extent {
 }
 
 impl Extent {
-    /// Of the finite points of a line.
-    fn of(line: &[InkSample]) -> Option<Self> {
+    /// Returns the box of the finite points of a line.
+    fn from_line(line: &[InkSample]) -> Option<Self> {
         let finite = line.iter().map(|s| s.at).filter(|p| p.abs().max_element() < 1e150);
         finite.map(|p| Self { lo: p, hi: p }).reduce(Self::with)
     }
@@ -327,7 +327,7 @@ impl Extent {
         self.lo.cmple(other.hi).all() && self.hi.cmpge(other.lo).all()
     }
 
-    /// Whether the other lies within, up to `slack`.
+    /// Whether it contains the other, up to `slack`.
     fn holds(self, other: Self, slack: f64) -> bool {
         (self.lo - slack).cmple(other.lo).all() && (self.hi + slack).cmpge(other.hi).all()
     }
@@ -357,7 +357,7 @@ fn is_closed(line: &[InkSample]) -> bool {
     chord_of(line).length() <= LIMITS.gap * length || overshoots(&places(line), length)
 }
 
-/// Whether a line encloses something and one of its ends lies on the part of it about the other end.
+/// Whether a line encloses an area and one of its ends lies on the part of it about the other end.
 fn overshoots(line: &[DVec2], length: f64) -> bool {
     let lies_on_beginning = |line: &[DVec2]| {
         let mut way = 0.0;
@@ -374,7 +374,7 @@ fn overshoots(line: &[DVec2], length: f64) -> bool {
         && (lies_on_beginning(line) || lies_on_beginning(&line.iter().rev().copied().collect::<Vec<_>>()))
 }
 
-/// Up to `n` samples at even numbers of a line.
+/// Returns up to `n` points of a line, evenly spaced by their numbers.
 fn some_of(line: &[DVec2], n: usize) -> impl Iterator<Item = DVec2> + '_ {
     let stride = line.len().div_ceil(n).max(1);
     line.iter().copied().step_by(stride)

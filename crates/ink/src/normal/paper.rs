@@ -1,30 +1,43 @@
-//! What is the sheet and not on it: pages, frames, cards, sky and ground, ruling.
+//! Parts of the sheet rather than of the drawing: pages, frames, cards, sky and ground, cast shadows, ruling.
 
 use glam::DVec2;
 
 use super::{Change, Extent, LIMITS, Work, is_closed, length_of, places};
 use crate::InkSample;
 
-/// Sky and ground fill the corners of the paper as near to its sides as this share of them.
+/// Largest distance of sky and ground from the sides of the paper, as a share of these.
 const INSET: f64 = 0.04;
 /// A straight line along an axis is no wider than this share of its length.
 const THIN: f64 = 0.006;
-/// Borders lie on this many sides of a drawing, at least; the ground and one wall on two.
+/// Least sides of a drawing on which borders lie; the ground and one wall lie on two.
 const SIDES: usize = 3;
 /// The sides of a ring's box differ by no more than this share.
 const ROUND_RING: f64 = 0.95;
-/// Parts of a circle that are looked at for whether a drawing reaches its rim.
+/// Number of sectors of a circle that are checked for whether a drawing reaches its rim.
 const SECTORS: usize = 8;
-/// A drawing in a ring goes farther from its middle than this share of its radius; marks on a fruit need not.
+/// Least reach of a drawing in a ring from its middle, as a share of its radius; marks on a fruit need not reach as
+/// far.
 const SPANS_RING: f64 = 0.55;
-/// A drawing in a ring goes no farther from its middle than this share of its radius.
+/// Largest reach of a drawing in a ring from its middle, as a share of its radius.
 const WITHIN_RING: f64 = 0.93;
-/// A drawing goes as far from the middle of a ring all round if its least reach is more than this share of its largest.
+/// A drawing reaches equally far all round in a ring if its least reach is more than this share of its largest.
 const ALL_ROUND: f64 = 0.75;
-/// Colours are told apart from this difference in a channel on.
+/// Least difference in a channel by which two colours differ.
 const SAME_COLOR: u8 = 6;
 
-/// A line and where it is.
+/// Requirements of a shadow that a plant casts on the ground.
+struct CastShadow {
+    /// It is at least this many times as wide as high.
+    wide: f64,
+    /// Its middle lies below this height of all else, as a share of that height.
+    low: f64,
+    /// Its channels differ by at most this: it is grey or black.
+    grey: u8,
+}
+
+const CAST_SHADOW: CastShadow = CastShadow { wide: 3.0, low: 0.06, grey: 24 };
+
+/// A line and its place.
 struct Placed {
     figure: usize,
     line: usize,
@@ -32,14 +45,14 @@ struct Placed {
 }
 
 impl Work {
-    /// Figures outside the sheet, where the greater part of the drawing lies on it.
+    /// Leaves out figures outside the sheet, where the greater part of the drawing lies on it.
     pub(super) fn off_sheet(&mut self) {
         let Some((lo, hi)) = self.sheet else { return };
         let sheet = Extent { lo, hi };
         let mut out = self.none_out();
         for (figure, out) in self.figures.iter().zip(&mut out) {
             for (line, out) in figure.lines.iter().zip(out) {
-                *out = Extent::of(line).is_some_and(|e| !e.meets(sheet));
+                *out = Extent::from_line(line).is_some_and(|e| !e.meets(sheet));
             }
         }
         let (gone, all) = (out.iter().flatten().filter(|o| **o).count(), out.iter().flatten().count());
@@ -53,7 +66,7 @@ impl Work {
         let mut placed: Vec<Placed> = Vec::new();
         for (k, figure) in self.figures.iter().enumerate() {
             for (l, line) in figure.lines.iter().enumerate() {
-                if let Some(extent) = Extent::of(line) {
+                if let Some(extent) = Extent::from_line(line) {
                     placed.push(Placed { figure: k, line: l, extent });
                 }
             }
@@ -65,14 +78,15 @@ impl Work {
         self.find_dots(&placed, &mut out);
         let paper = self.find_frames(&placed, &mut out);
         self.find_ground(&placed, paper, &mut out);
+        self.find_cast_shadow(&placed, &mut out);
         self.find_borders(&placed, &mut out);
         self.find_ring(&placed, &mut out);
         self.find_unseen(&mut out);
         self.leave_out(&out, Change::Paper);
     }
 
-    /// What is painted in the colour of the topmost page, where no area of another colour is painted that it might lie on. Where
-    /// there is no page, white areas; white lines may be meant for a dark one.
+    /// Finds areas in the colour of the topmost page that lie on no area of another colour. Where there is no page,
+    /// white areas; white lines may be meant for a dark one.
     fn find_unseen(&self, out: &mut [Vec<bool>]) {
         let is_paper = |k: usize| out[k].iter().all(|o| *o);
         let area = |k: usize| self.figures[k].fill.filter(|f| f.opacity > LIMITS.translucent);
@@ -97,7 +111,7 @@ impl Work {
         }
     }
 
-    /// Straight lines along an axis outside of all else, on three sides of it or more: frames in pieces, crop marks.
+    /// Finds straight lines along an axis outside all else, on three sides of it or more: frames in pieces, crop marks.
     fn find_borders(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
         let is_rule = |p: &&Placed| {
             let figure = &self.figures[p.figure];
@@ -124,7 +138,8 @@ impl Work {
         }
     }
 
-    /// A circle around all else, which does not fill it: a badge. What reaches its rim all round is a slice of fruit.
+    /// Finds a circle around all else that the drawing does not fill: a badge. A drawing that reaches its rim all round
+    /// is a slice of fruit.
     fn find_ring(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
         let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
         let Some(p) = seen().max_by(|a, b| a.extent.area().total_cmp(&b.extent.area())) else { return };
@@ -148,14 +163,15 @@ impl Work {
         }
     }
 
-    /// Rectangles that hold all the rest, and filled ellipses under it. The largest of them, or the sheet.
+    /// Finds rectangles that hold all the rest, and filled ellipses under it. Returns the largest of them, or the
+    /// sheet.
     fn find_frames(&self, placed: &[Placed], out: &mut [Vec<bool>]) -> Option<Extent> {
         let mut order: Vec<&Placed> =
             placed.iter().filter(|p| !out[p.figure][p.line] && self.may_be_frame(p)).collect();
         base::sort_by(&mut order, |a, b| b.extent.area().total_cmp(&a.extent.area()));
         let mut paper = self.sheet.map(|(lo, hi)| Extent { lo, hi });
         let mut found = None;
-        // A page, a card with its shadow, a frame of two lines: more than that nobody stacks.
+        // A page, a card with its shadow, a frame of two lines: nobody stacks more than that.
         for p in order.into_iter().take(12) {
             let rest: Vec<Extent> = placed
                 .iter()
@@ -189,7 +205,7 @@ impl Work {
         is_rectangle(line, p.extent) || (painted && p.figure < 3 && is_ellipse(line, p.extent))
     }
 
-    /// Areas that go from one side of the paper to the other and along its upper or lower edge.
+    /// Finds areas that span the paper from side to side along its upper or lower edge.
     fn find_ground(&self, placed: &[Placed], paper: Option<Extent>, out: &mut [Vec<bool>]) {
         let Some(paper) = paper else { return };
         let inset = INSET * paper.size();
@@ -211,7 +227,33 @@ impl Work {
         }
     }
 
-    /// Straight lines along an axis, as long as the drawing or the sheet, at even distances; and with them those across.
+    /// Finds flat grey ellipses without an outline below all else.
+    fn find_cast_shadow(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
+        let is_grey = |c: [u8; 3]| {
+            let [low, high] = [c.iter().min(), c.iter().max()].map(|x| x.copied().unwrap_or_default());
+            high - low <= CAST_SHADOW.grey
+        };
+        let is_shadow = |p: &&Placed| {
+            let figure = &self.figures[p.figure];
+            let size = p.extent.size();
+            !figure.lined
+                && figure.lines.len() == 1
+                && figure.fill.is_some_and(|f| f.color.is_none_or(is_grey))
+                && size.x >= CAST_SHADOW.wide * size.y
+                && is_ellipse(&figure.lines[p.line], p.extent)
+        };
+        let seen = || placed.iter().filter(|p| !out[p.figure][p.line]);
+        let Some(drawn) = seen().filter(|p| !is_shadow(p)).map(|p| p.extent).reduce(Extent::with) else {
+            return;
+        };
+        let highest = drawn.lo.y + CAST_SHADOW.low * drawn.size().y;
+        let found: Vec<&Placed> =
+            seen().filter(is_shadow).filter(|p| p.extent.middle().y < highest).collect();
+        found.into_iter().for_each(|p| out[p.figure][p.line] = true);
+    }
+
+    /// Finds straight lines along an axis, as long as the drawing or the sheet, at even distances, and with them those
+    /// across.
     fn find_ruling(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
         let all = placed.iter().map(|p| p.extent).reduce(Extent::with);
         let Some(whole) = self.sheet.map(|(lo, hi)| Extent { lo, hi }).or(all) else { return };
@@ -245,7 +287,7 @@ impl Work {
         }
     }
 
-    /// Many equal dots in rows and columns.
+    /// Finds many equal dots in rows and columns.
     fn find_dots(&self, placed: &[Placed], out: &mut [Vec<bool>]) {
         let diagonal = self.diagonal();
         let small = |p: &&Placed| p.extent.size().max_element() <= LIMITS.dot * diagonal;

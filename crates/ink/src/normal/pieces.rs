@@ -1,38 +1,42 @@
-//! Lines that were put down in pieces, or twice.
+//! Lines that were drawn in pieces, or twice.
 
 use glam::DVec2;
 
 use super::{Change, Figure, LIMITS, Work, chord_of, is_closed, length_of, places, some_of};
 use crate::InkSample;
 
-/// Points of a line that are compared with another.
+/// Number of points of a line that are compared with another.
 const COMPARED: usize = 24;
-/// Lines of the same length differ by less than this share.
+/// Largest difference of the lengths of two equally long lines, as a share of the longer one.
 const AS_LONG: f64 = 0.18;
-/// Pieces of one sub-path go on within this cosine: 45 degrees.
+/// Least cosine between pieces of one sub-path that continue each other: 45 degrees.
 const STRAIGHT_ON: f64 = 0.7;
-/// Segments of a polyline meet within this share of the drawing's diagonal, and of the shorter segment's length.
+/// Distance within which segments of a polyline meet, as a share of the drawing's diagonal.
 const MEET_EXACTLY: f64 = 1e-3;
+/// Distance within which segments of a polyline meet, as a share of the shorter segment's length.
 const MEET_SEGMENT: f64 = 0.1;
-/// A line that is drawn twice by one program lies within these shares of the drawing's diagonal on the average and everywhere, too,
-/// and within these shares of its length.
+/// Largest mean distance of a line drawn twice by one program, as a share of the drawing's diagonal.
 const BY: f64 = 0.003;
+/// Largest distance anywhere of a line drawn twice, as a share of the drawing's diagonal.
 const BY_AT_MOST: f64 = 0.006;
+/// Largest mean distance of a line drawn twice, as a share of its length.
 const BY_SHARE: f64 = 0.06;
+/// Largest distance anywhere of a line drawn twice, as a share of its length.
 const BY_AT_MOST_SHARE: f64 = 0.12;
 /// Most pieces of an outline.
 const PIECES: usize = 3;
 
 impl Work {
-    /// Sub-paths of one figure, and figures after each other, that go the same way: programs that imitate a hand draw each line
-    /// twice.
+    /// Merges sub-paths of one figure, and successive figures, that run the same way: programs that imitate a hand draw
+    /// each line twice.
     pub(super) fn merge_repeats(&mut self) {
         let mut out = self.none_out();
         let diagonal = self.diagonal();
         for (figure, out) in self.figures.iter().zip(&mut out) {
             for l in 1..figure.lines.len() {
                 let (before, line) = (&figure.lines[l - 1], &figure.lines[l]);
-                // The edges of a thin ring lie as near: one runs against the other, or areas count by turns.
+                // The edges of a thin ring lie as near, but they run in opposite directions, or the even-odd rule
+                // applies.
                 let is_painted = figure.fill.is_some_and(|f| !f.even_odd) && is_turned_alike(before, line);
                 if (figure.lined || is_painted)
                     && !out[l - 1]
@@ -68,8 +72,8 @@ impl Work {
         self.note(Change::Joined, joined);
     }
 
-    /// Short lines in elements of their own, each of which begins where the one before ended. Where a long line is written so, short
-    /// ones are, too.
+    /// Joins short lines in elements of their own, each of which begins where the one before ended. Where a long line
+    /// is written so, short ones are, too.
     fn join_segments(&mut self, diagonal: f64) -> usize {
         let mut runs: Vec<Vec<Figure>> = Vec::with_capacity(self.figures.len());
         for figure in core::mem::take(&mut self.figures) {
@@ -96,7 +100,7 @@ impl Work {
         joined
     }
 
-    /// Two or three open lines after each other that make one closed outline.
+    /// Joins two or three successive open lines that make one closed outline.
     fn join_outlines(&mut self, diagonal: f64) -> usize {
         let mut joined = 0;
         let mut figures: Vec<Figure> = Vec::with_capacity(self.figures.len());
@@ -144,7 +148,7 @@ struct Segment {
     length: f64,
 }
 
-/// The only line of a figure, if it is drawn and encloses nothing.
+/// Returns the only line of a figure, if it is drawn and encloses nothing.
 fn segment_of(figure: &Figure) -> Option<Segment> {
     let is_area = figure.fill.is_some_and(|f| f.said);
     match (figure.lined, figure.lines.as_slice()) {
@@ -166,8 +170,8 @@ fn goes_on(run: &[Figure], next: &Figure, diagonal: f64) -> bool {
         && is_like(&run[0], next)
 }
 
-/// Joins sub-paths that begin where the one before ends and lead on. Straight pieces need not lead on, as the sides of a
-/// polygon are drawn one by one, but then all of them must meet.
+/// Joins sub-paths that begin where the one before ends and continue it. Straight pieces need not continue, as the
+/// sides of a polygon are drawn one by one, but then all of them must meet.
 fn join_sub_paths(lines: &mut Vec<Vec<InkSample>>, meet: f64) -> usize {
     let exact = 0.02 * meet;
     let polygon = lines.len() > 2
@@ -206,13 +210,14 @@ fn leads_on(a: &[InkSample], b: &[InkSample]) -> bool {
     from.dot(to) >= STRAIGHT_ON * from.length() * to.length()
 }
 
-/// How near to each other two lines are that are one: on the average, and everywhere.
+/// Largest distance between two lines that are one: on the average, and anywhere.
 struct Near {
     mean: f64,
     most: f64,
 }
 
-/// Lines in figures of their own may be two needles or the sides of a stem: only what a pen's tremble explains is one.
+/// Returns the limits for lines in figures of their own, which may be two needles or the sides of a stem: only a
+/// difference that a pen's tremble explains makes them one.
 fn between_figures(diagonal: f64, line: &[InkSample]) -> Near {
     let long = length_of(line);
     Near {
@@ -226,7 +231,7 @@ fn within_figure(diagonal: f64, line: &[InkSample]) -> Near {
     Near { mean: own.mean.max(0.5 * far), most: own.most.max(1.5 * far) }
 }
 
-/// Whether two lines go the same way from end to end, or round and round.
+/// Whether two lines run the same way from end to end, or round and round.
 fn goes_along(a: &[InkSample], b: &[InkSample], near: &Near) -> bool {
     let (long, other) = (length_of(a), length_of(b));
     if !(long > 0.0 && (long - other).abs() <= AS_LONG * long.max(other)) {
@@ -245,7 +250,7 @@ fn goes_along(a: &[InkSample], b: &[InkSample], near: &Near) -> bool {
     lies_by(&a, &b) && lies_by(&b, &a)
 }
 
-/// The closed outline that open lines make together, end to end in their order.
+/// Returns the closed outline that open lines make together, end to end in their order.
 fn outline_of(pieces: &[Figure], diagonal: f64) -> Option<Vec<InkSample>> {
     let mut lines: Vec<&[InkSample]> = Vec::with_capacity(pieces.len());
     for piece in pieces {

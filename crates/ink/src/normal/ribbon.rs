@@ -1,4 +1,4 @@
-//! Filled outlines of variable-width pens -> the line that the pen went.
+//! Filled outlines of variable-width pens -> the line along which the pen moved.
 //!
 //! Outline -> its two ends -> its two sides, paired -> the middle between them and the width.
 
@@ -9,7 +9,7 @@ use super::{Change, Work, places};
 use crate::InkSample;
 
 impl Work {
-    /// Areas that are the stroke of a variable-width pen become its centre line.
+    /// Replaces areas that are the stroke of a variable-width pen by its centre line.
     pub(super) fn take_pen_outlines(&mut self) {
         if self.figures.iter().all(|f| f.lined) {
             return;
@@ -17,7 +17,7 @@ impl Work {
         self.split_pens_strokes();
         let lines: Vec<Vec<Vec<DVec2>>> =
             self.figures.iter().map(|f| f.lines.iter().map(|l| places(l)).collect()).collect();
-        // Among opaque ones, areas that are seen through shade what they lie on.
+        // Among opaque areas, translucent ones shade what they lie on.
         let opaque = self.figures.iter().any(|f| !is_translucent(f));
         let candidate = |(lines, f): (_, &super::Figure)| Candidate {
             lines,
@@ -46,7 +46,7 @@ fn is_translucent(figure: &super::Figure) -> bool {
 }
 
 impl Work {
-    /// Takes apart areas whose sub-paths are strokes of a pen: programs merge them into one path when they expand lines.
+    /// Splits areas whose sub-paths are strokes of a pen: programs merge them into one path when they expand lines.
     fn split_pens_strokes(&mut self) {
         let diagonal = self.diagonal();
         let mut figures: Vec<super::Figure> = Vec::with_capacity(self.figures.len());
@@ -68,8 +68,8 @@ impl Work {
     }
 }
 
-/// How many sub-paths, one after the other, belong to each stroke of a pen: one, or two for one that closes on itself. `None`
-/// where they are no strokes of a pen.
+/// Returns how many successive sub-paths belong to each stroke of a pen: one, or two for a stroke that closes on
+/// itself. `None` where they are not strokes of a pen.
 fn pens_strokes(lines: &[Vec<InkSample>], diagonal: f64) -> Option<Vec<usize>> {
     let lines: Vec<Vec<DVec2>> = lines.iter().map(|l| places(l)).collect();
     let is_pen = |r: &Ribbon| r.width < SLENDER * r.length && r.width < WIDEST * diagonal;
@@ -89,7 +89,8 @@ fn pens_strokes(lines: &[Vec<InkSample>], diagonal: f64) -> Option<Vec<usize>> {
     (of_pens >= OF_PENS * all).then_some(parts)
 }
 
-/// Whether two sub-paths that run the same way round are painted as one area: programs that imitate a hand draw it twice.
+/// Whether two sub-paths that run round in the same direction are painted as one area: programs that imitate a hand
+/// draw it twice.
 fn is_solid(figure: &super::Figure) -> bool {
     let turned = |line: &[InkSample]| geom::signed_area(&places(line)) > 0.0;
     match figure.lines.as_slice() {
@@ -102,9 +103,9 @@ fn is_solid(figure: &super::Figure) -> bool {
 #[derive(Clone, Copy, Debug)]
 struct Candidate<'a> {
     lines: &'a [Vec<DVec2>],
-    /// Painted by its area alone.
+    /// Whether it is painted by its area alone.
     fill_only: bool,
-    /// The file asks for the fill.
+    /// Whether the file asks for the fill.
     fill_said: bool,
     color: Option<[u8; 3]>,
 }
@@ -115,16 +116,16 @@ type Centre = Vec<(DVec2, f64)>;
 /// Mean width over length below which an area is a pen's stroke. A slender leaf (1 : 8) has 0.08 .. 0.09, a
 /// pen's stroke of 2 % of the sheet over half of it 0.04.
 const SLENDER: f64 = 0.07;
-/// The same where the file does not even ask for the fill, as in files written by hand.
+/// The same limit where the file does not even ask for the fill, as in files written by hand.
 const SLENDER_UNSAID: f64 = 0.03;
 /// A pen is no wider than this share of the drawing's diagonal.
 const WIDEST: f64 = 0.06;
-/// Strokes of a pen have this share of all outlines of a path that is made of them; the rest are dashes.
+/// Least share of a pen's strokes among the outlines of a path that consists of them; the rest are dashes.
 const OF_PENS: f64 = 0.85;
-/// A path of more sub-paths is traced, and not drawn.
+/// Most sub-paths of a path that is drawn; a path with more is traced.
 const MOST_STROKES: usize = 1000;
 
-/// For each candidate the centre line with pressures (width over the greatest width), or `None` where the
+/// Returns for each candidate the centre line with pressures (width over the greatest width), or `None` where the
 /// outline itself is the stroke.
 fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(DVec2, f64)>>> {
     let measured: Vec<Option<Ribbon>> = candidates.iter().map(measure).collect();
@@ -132,7 +133,7 @@ fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<Option<Vec<(
         let most = if c.fill_said { SLENDER } else { SLENDER_UNSAID };
         r.width / r.length < most && r.width < WIDEST * diagonal
     };
-    // The pens of a drawing by their colours: petals among green stems are no dashes of the pen that drew these.
+    // Pens of the drawing by colour: petals among green stems are not dashes of the pen that drew these.
     let mut pens: LiteMap<Option<[u8; 3]>, Vec<f64>> = LiteMap::new();
     for (c, ribbon) in candidates.iter().zip(&measured) {
         if let Some(ribbon) = ribbon.as_ref().filter(|r| sure(c, r)) {
@@ -186,7 +187,7 @@ fn area(closed: &[DVec2]) -> f64 {
     0.5 * closed.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>()
 }
 
-/// The outline as a ring without its repeated last point, or `None` if it is open or has no size.
+/// Returns area and perimeter of an outline as a ring, or `None` if it is open or has no size.
 fn ring(line: &[DVec2]) -> Option<(f64, f64)> {
     let (first, last) = (line.first()?, line.last()?);
     let p = perimeter(line);
@@ -196,7 +197,7 @@ fn ring(line: &[DVec2]) -> Option<(f64, f64)> {
     Some((p, area(line).abs()))
 }
 
-/// `n` points at equal distances along a closed line.
+/// Returns `n` points at equal distances along a closed line.
 fn resample(line: &[DVec2], perimeter: f64, n: usize) -> Vec<DVec2> {
     #[expect(clippy::cast_precision_loss, reason = "a few hundred points")]
     let step = perimeter / n as f64;
@@ -216,12 +217,12 @@ fn resample(line: &[DVec2], perimeter: f64, n: usize) -> Vec<DVec2> {
     out
 }
 
-/// A pen's stroke with two ends.
+/// Finds the centre line of a pen's stroke with two ends.
 fn open_ribbon(line: &[DVec2]) -> Option<Ribbon> {
     let (p, a) = ring(line)?;
     // For a ribbon: area = width * length, perimeter = 2 * length.
     let width = 2.0 * a / p;
-    // Nowhere near a ribbon: spare the search. A circle has 1/4, a square 1/4, a 1 : 4 leaf 0.15.
+    // Far from a ribbon: skip the search. A circle has 1/4, a square 1/4, a 1 : 4 leaf 0.15.
     let slender = width > 0.0 && width / (0.5 * p) < 0.3;
     if !slender {
         return None;
@@ -231,7 +232,7 @@ fn open_ribbon(line: &[DVec2]) -> Option<Ribbon> {
     let n = 2 * half;
     let q = resample(line, p, n);
     let at = |i: usize| q[i % n];
-    // The ends: from there both ways run side by side.
+    // Finds the ends: from there both sides run parallel.
     let score = |i: usize, step: usize| {
         (1..half).step_by(step).map(|k| (at(i + k) - at(i + n - k)).length()).sum::<f64>()
     };
@@ -239,7 +240,7 @@ fn open_ribbon(line: &[DVec2]) -> Option<Ribbon> {
         let scores = (from..to).step_by(step).map(|i| (score(i, step), i));
         scores.min_by(|a, b| a.0.total_cmp(&b.0)).map(|s| s.1)
     };
-    // First in strides, then one by one around the best.
+    // Searches first in strides, then one by one around the best.
     let stride = half / 24;
     let near = least(0, half, stride)? + n;
     let tip = least(near - stride, near + stride + 1, 1)? % n;
@@ -249,12 +250,12 @@ fn open_ribbon(line: &[DVec2]) -> Option<Ribbon> {
     let length: f64 = centre.windows(2).map(|w| (w[1].0 - w[0].0).length()).sum();
     #[expect(clippy::cast_precision_loss, reason = "a few hundred points")]
     let mean = centre.iter().map(|c| c.1).sum::<f64>() / centre.len().max(1) as f64;
-    // An outline that overlaps itself has a smaller area than a ribbon; what counts is how the sides lie.
+    // An outline that overlaps itself has a smaller area than a ribbon, so the distance of the sides decides.
     let width = mean.max(width);
     (length > 0.0).then_some(Ribbon { centre, width, length })
 }
 
-/// A pen's stroke that closes on itself: an outer and an inner outline.
+/// Finds the centre line of a pen's stroke that closes on itself: an outer and an inner outline.
 fn closed_ribbon(a: &[DVec2], b: &[DVec2]) -> Option<Ribbon> {
     let ((pa, aa), (pb, ab)) = (ring(a)?, ring(b)?);
     let (outer, inner, po) = if aa >= ab { (a, b, pa) } else { (b, a, pb) };
@@ -289,7 +290,7 @@ fn inside(closed: &[DVec2], p: DVec2) -> bool {
     crossings.count() % 2 == 1
 }
 
-/// Dynamic time warping of the two sides: the monotone pairing with the least sum of distances.
+/// Pairs the two sides by dynamic time warping: the monotone pairing with the least sum of distances.
 fn pair(left: &[DVec2], right: &[DVec2]) -> Centre {
     let (n, m) = (left.len(), right.len());
     let distance = |i: usize, j: usize| (left[i] - right[j]).length();
@@ -325,7 +326,7 @@ fn pair(left: &[DVec2], right: &[DVec2]) -> Centre {
     }
     pairs.reverse();
     let raw: Centre = pairs.iter().map(|&(i, j)| ((left[i] + right[j]) * 0.5, distance(i, j))).collect();
-    // Half steps of one side make small teeth: a mean of three takes them away.
+    // Half steps of one side make small teeth, which a mean of three removes.
     let smooth = |k: usize| match (k.checked_sub(1).and_then(|k| raw.get(k)), raw.get(k + 1)) {
         (Some(a), Some(b)) => ((a.0 + raw[k].0 * 2.0 + b.0) * 0.25, (a.1 + 2.0 * raw[k].1 + b.1) * 0.25),
         _ => raw[k],
@@ -338,7 +339,7 @@ mod tests {
     use super::*;
     use base::ops;
 
-    /// The outline of a pen of the given widths along `way`.
+    /// Returns the outline of a pen of the given widths along `way`.
     fn outline(way: &[DVec2], width: impl Fn(f64) -> f64) -> Vec<DVec2> {
         let n = way.len();
         let side = |sign: f64| {

@@ -47,7 +47,7 @@ fn solid_leaves_of_one_area_stay_outlines() {
     assert_eq!((normal.strokes.len(), counts(&normal)), (9, vec![]));
 }
 
-/// Slanting lines across a ring, from edge to edge.
+/// Makes slanting lines across a ring, from edge to edge.
 fn hatches(centre: DVec2, radius: f64) -> Vec<Vec<InkSample>> {
     let slant = DVec2::new(0.8, 0.6);
     let across = |k: i32| {
@@ -270,7 +270,7 @@ fn dots_of_one_size_in_small_outlines_are_stipple_and_a_few_are_not() {
     assert!(!counts(&normalise(drawn(1), None, &[])).iter().any(|(c, _)| *c == Change::Hatching));
 }
 
-/// A flower as stickers are drawn: colours, and over them one dark area whose holes are the petals and the disc.
+/// Makes a flower as stickers are drawn: colours, and over them one dark area whose holes are the petals and the disc.
 fn outlined_in_ink() -> Vec<Figure> {
     let at = |k: u32| base::turn::direction(ops::TAU * f64::from(k) / 5.0) * 24.0;
     let mut figures: Vec<Figure> =

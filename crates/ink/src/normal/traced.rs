@@ -1,7 +1,7 @@
-//! Areas that are ink, traced or expanded by a program -> the centre lines of what is connected.
+//! Areas that are ink, traced or expanded by a program -> the centre lines of connected parts.
 //!
-//! Rings -> raster -> thinned to one cell (Zhang and Suen 1984) -> edges between ends and junctions -> short spurs go,
-//! lines run straight on through junctions.
+//! Rings -> raster -> thinned to one cell (Zhang and Suen 1984) -> edges between ends and junctions -> short spurs are
+//! removed, and lines run straight on through junctions.
 
 use glam::DVec2;
 
@@ -10,22 +10,32 @@ use crate::InkSample;
 
 /// Ink is this many times longer than wide; a leaf of 1 : 8 is 12 times as long as it is wide on the average.
 const SLENDER: f64 = 14.0;
-/// Ink is no wider than this share of the drawing's diagonal.
+/// Ink of any form is no wider than this share of the drawing's diagonal.
 const WIDEST: f64 = 0.035;
-/// Slender parts of a figure have this share of all its outlines.
+/// Ink of an even width, as that of an icon, is no wider than this share of the drawing's diagonal.
+const WIDEST_OF_ICON: f64 = 0.09;
+/// Ink has an even width if the distance of its middle from its edge varies by at most this share of its mean (standard
+/// deviation): a pen has one width, a silhouette has none.
+const EVEN: f64 = 0.25;
+/// Number of places at which the width of a part is measured.
+const PLACES: usize = 160;
+/// Least share of slender parts among all outlines of a figure.
 const MOSTLY: f64 = 0.6;
-/// Cells across the width of a line.
+/// Number of cells across the width of a line.
 const CELLS: f64 = 3.5;
-/// Most cells of the raster of one part, and of all.
+/// Most cells of the raster of one part.
 const MOST_CELLS: f64 = 3e6;
+/// Most cells of the rasters of all parts together.
 const MOST_CELLS_IN_ALL: f64 = 1.2e7;
 /// Most rings of all figures together.
 const MOST_RINGS: usize = 4000;
-/// Ends that are shorter than this many widths are no lines but corners of the outline.
+/// Ends shorter than this many widths are corners of the outline rather than lines.
 const SPUR: f64 = 1.6;
-/// Two edges go straight on where the angle between them is below 60 degrees.
+/// The same for the wide lines of an icon, some of which are hardly longer than wide.
+const SPUR_OF_ICON: f64 = 1.0;
+/// Two edges continue each other where the angle between them is below 60 degrees.
 const STRAIGHT_ON: f64 = -0.5;
-/// Points without holes that are no longer than this many widths are specks.
+/// Parts without holes that are no longer than this many widths are specks.
 const SPECK: f64 = 2.0;
 
 /// An outer ring and the holes in it.
@@ -42,12 +52,36 @@ impl Part {
 
     fn is_slender(&self, diagonal: f64) -> bool {
         let width = self.width();
-        width > 0.0 && 0.5 * self.around >= SLENDER * width && width <= WIDEST * diagonal
+        width > 0.0
+            && 0.5 * self.around >= SLENDER * width
+            && (width <= WIDEST * diagonal || width <= WIDEST_OF_ICON * diagonal && self.is_even())
+    }
+
+    /// Whether it is equally wide everywhere.
+    fn is_even(&self) -> bool {
+        let width = self.width();
+        let cell = cell_of(self, width);
+        if part_cells(self, cell) > MOST_CELLS {
+            return false;
+        }
+        let middle: Vec<DVec2> =
+            centre_lines(self, cell, width, SPUR_OF_ICON * width).into_iter().flatten().collect();
+        let rings: Vec<Vec<DVec2>> =
+            self.rings.iter().map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
+        let off = |p: DVec2| {
+            rings.iter().filter_map(|r| geom::distance_to_polyline(r, p)).fold(f64::INFINITY, f64::min)
+        };
+        let half: Vec<f64> = super::some_of(&middle, PLACES).map(off).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a few places")]
+        let count = half.len() as f64;
+        let mean = half.iter().sum::<f64>() / count;
+        let square = half.iter().map(|h| (h - mean) * (h - mean)).sum::<f64>() / count;
+        count > 0.0 && square.sqrt() <= EVEN * mean
     }
 }
 
 impl Work {
-    /// Areas most of which is slender become centre lines, with their width as the pen's.
+    /// Replaces areas that are mostly slender by centre lines, with their width as the pen's.
     pub(super) fn take_traced_ink(&mut self) {
         let diagonal = self.diagonal();
         let mut cells = 0.0;
@@ -58,22 +92,26 @@ impl Work {
         }
         for figure in self.figures.iter_mut().filter(|f| !f.lined && f.fill.is_some_and(|f| f.said)) {
             let parts = parts_of(figure);
-            let slender = |p: &&Part| p.is_slender(diagonal);
+            let slender: Vec<bool> = parts.iter().map(|p| p.is_slender(diagonal)).collect();
+            let sum = |measure: fn(&Part) -> f64| {
+                parts.iter().zip(&slender).filter(|(_, s)| **s).map(|(p, _)| measure(p)).sum::<f64>()
+            };
             let around: f64 = parts.iter().map(|p| p.around).sum();
-            let ink: f64 = parts.iter().filter(slender).map(|p| p.around).sum();
+            let ink = sum(|p| p.around);
             if ink < MOSTLY * around || ink <= 0.0 {
                 continue;
             }
             let mut lines = Vec::new();
-            let pen = parts.iter().filter(slender).map(|p| p.area).sum::<f64>() * 2.0 / ink;
-            for part in &parts {
-                if part.is_slender(diagonal) {
+            let pen = sum(|p| p.area) * 2.0 / ink;
+            let spur = pen * if pen > WIDEST * diagonal { SPUR_OF_ICON } else { SPUR };
+            for (part, is_slender) in parts.iter().zip(&slender) {
+                if *is_slender {
                     let cell = cell_of(part, pen);
                     cells += part_cells(part, cell);
                     if cells <= MOST_CELLS_IN_ALL {
-                        lines.extend(centre_lines(part, cell, pen));
+                        lines.extend(centre_lines(part, cell, pen, spur));
                     }
-                } else if Extent::of(&samples(&part.rings[0]))
+                } else if Extent::from_line(&samples(&part.rings[0]))
                     .is_some_and(|e| e.size().length() > 2.0 * SPECK * pen)
                 {
                     lines.extend(part.rings.iter().cloned());
@@ -96,7 +134,8 @@ fn samples(line: &[DVec2]) -> Vec<InkSample> {
     line.iter().map(|&p| p.into()).collect()
 }
 
-/// The rings of a figure by what they enclose: a ring in an odd number of others is a hole of the smallest of them.
+/// Groups the rings of a figure by what they enclose: a ring in an odd number of others is a hole of the smallest of
+/// them.
 fn parts_of(figure: &Figure) -> Vec<Part> {
     let mut rings: Vec<(f64, Vec<DVec2>)> = figure
         .lines
@@ -116,7 +155,7 @@ fn parts_of(figure: &Figure) -> Vec<Part> {
         let holder = parts.iter_mut().rev().find(|p| geom::contains(&p.rings[0], at));
         let in_hole = |part: &Part| part.rings[1..].iter().any(|hole| geom::contains(hole, at));
         match holder {
-            // Run the same way round, it paints what is painted already.
+            // A ring that runs in the same direction paints what is painted already.
             Some(part) if !in_hole(part) && !even_odd && turned(&part.rings[0]) == turned(&ring) => {}
             Some(part) if !in_hole(part) => {
                 part.area -= area;
@@ -133,7 +172,7 @@ fn box_of(part: &Part) -> (DVec2, DVec2) {
     geom::bounds(&part.rings[0]).unwrap_or_default()
 }
 
-/// The side of a cell: a few to a line's width, and not too many in all.
+/// Returns the side of a cell: a few across a line's width, and not too many in all.
 fn cell_of(part: &Part, pen: f64) -> f64 {
     let (lo, hi) = box_of(part);
     let size = hi - lo;
@@ -167,7 +206,7 @@ impl core::ops::Add for Cell {
     }
 }
 
-/// Cells that are inked.
+/// Inked cells.
 struct Raster {
     wide: i32,
     high: i32,
@@ -176,7 +215,7 @@ struct Raster {
     cell: f64,
 }
 
-/// The eight neighbours, round and round.
+/// The eight neighbours in circular order.
 const AROUND: [Cell; 8] = [
     Cell::new(0, 1),
     Cell::new(1, 1),
@@ -242,7 +281,7 @@ impl Raster {
         cells.filter(|c| self.on[self.row(*c)]).collect()
     }
 
-    /// Zhang and Suen (1984): peels cells from both sides until one is left.
+    /// Thins the ink (Zhang and Suen 1984): peels cells from both sides until one is left.
     fn thin(&mut self) {
         let mut cells = self.inked();
         loop {
@@ -260,7 +299,7 @@ impl Raster {
                 break;
             }
         }
-        // Steps of a staircase: what they connect is connected without them.
+        // Steps of a staircase: their neighbours are connected without them.
         for cell in cells {
             let r = self.ring(cell);
             let corner = |a: usize, b: usize, far: usize| r[a] && r[b] && !r[far];
@@ -281,7 +320,7 @@ impl Raster {
     }
 }
 
-/// How often a neighbour that is not inked is followed by one that is.
+/// Counts how often a neighbour that is not inked is followed by one that is.
 fn steps_up(ring: &[bool; 8]) -> usize {
     (0..8).filter(|&k| !ring[k] && ring[(k + 1) % 8]).count()
 }
@@ -293,7 +332,7 @@ fn is_peeled(ring: &[bool; 8], odd: bool) -> bool {
     (2..=6).contains(&count) && steps_up(ring) == 1 && open
 }
 
-/// A way between two nodes of the thinned ink; `None` for a ring without any.
+/// A path between two nodes of the thinned ink; `None` for a ring without any.
 struct Edge {
     points: Vec<DVec2>,
     ends: [Option<usize>; 2],
@@ -305,7 +344,7 @@ impl Edge {
         geom::polyline_length(&self.points)
     }
 
-    /// From one of its ends inwards.
+    /// Returns the direction from one of its ends inwards.
     fn direction(&self, end: usize, reach: f64) -> DVec2 {
         let mut way: Vec<DVec2> = self.points.clone();
         if end == 1 {
@@ -316,12 +355,12 @@ impl Edge {
     }
 }
 
-/// The centre lines of one part, longest way through each junction.
-fn centre_lines(part: &Part, cell: f64, pen: f64) -> Vec<Vec<DVec2>> {
+/// Returns the centre lines of one part, the longest path through each junction; ends shorter than `spur` are none.
+fn centre_lines(part: &Part, cell: f64, pen: f64, spur: f64) -> Vec<Vec<DVec2>> {
     let mut raster = Raster::new(part, cell);
     raster.thin();
     let mut edges = edges_of(&raster);
-    prune(&mut edges, SPUR * pen);
+    prune(&mut edges, spur);
     let lines = run_through(&edges, 2.5 * pen);
     let smooth = |line: Vec<DVec2>| {
         let closed = line.len() > 3 && line.first() == line.last();
@@ -330,14 +369,14 @@ fn centre_lines(part: &Part, cell: f64, pen: f64) -> Vec<Vec<DVec2>> {
         even.dedup();
         geom::simplify(&even, 0.15 * cell)
     };
-    let long = |l: &Vec<DVec2>| geom::polyline_length(l) >= SPUR * pen;
+    let long = |l: &Vec<DVec2>| geom::polyline_length(l) >= spur;
     lines.into_iter().map(smooth).filter(long).collect()
 }
 
-/// Half of the points whose mean is taken: cells make small steps.
+/// Half of the number of points that are averaged: cells make small steps.
 const EASED: usize = 4;
 
-/// Means of neighbours; both ends stay.
+/// Averages neighbours; both ends stay.
 fn eased(line: &[DVec2]) -> Vec<DVec2> {
     let last = line.len().saturating_sub(1);
     let mean = |k: usize| {
@@ -347,7 +386,7 @@ fn eased(line: &[DVec2]) -> Vec<DVec2> {
     (0..line.len()).map(mean).collect()
 }
 
-/// Means of neighbours round a closed line.
+/// Averages neighbours round a closed line.
 fn round(line: &[DVec2]) -> Vec<DVec2> {
     let n = line.len() - 1;
     if n <= 2 * EASED {
@@ -371,7 +410,7 @@ fn mean_of(points: &[DVec2]) -> DVec2 {
 fn edges_of(raster: &Raster) -> Vec<Edge> {
     let cells = raster.inked();
     let count = |c: Cell| raster.ring(c).iter().filter(|n| **n).count();
-    // Nodes: cells with other than two neighbours; those that touch are one.
+    // Nodes: cells with other than two neighbours; touching ones form one node.
     let mut node_of: Vec<Option<usize>> = vec![None; raster.on.len()];
     let mut places: Vec<DVec2> = Vec::new();
     for &start in cells.iter().filter(|c| count(**c) != 2) {
@@ -443,7 +482,7 @@ fn walk(
     Edge { points, ends, gone: false }
 }
 
-/// At each node, the edges that end there, with which of their ends.
+/// Returns the edges that end at each node, with which of their ends.
 fn nodes_of(edges: &[Edge]) -> Vec<Vec<(usize, usize)>> {
     let most = edges.iter().flat_map(|e| e.ends).flatten().max().map_or(0, |n| n + 1);
     let mut nodes: Vec<Vec<(usize, usize)>> = vec![Vec::new(); most];
@@ -457,7 +496,7 @@ fn nodes_of(edges: &[Edge]) -> Vec<Vec<(usize, usize)>> {
     nodes
 }
 
-/// Short edges with a free end at a junction go.
+/// Removes short edges with a free end at a junction.
 fn prune(edges: &mut [Edge], short: f64) {
     let nodes = nodes_of(edges);
     let degree = |node: Option<usize>| node.map_or(1, |n| nodes[n].len());
@@ -472,7 +511,7 @@ fn prune(edges: &mut [Edge], short: f64) {
     }
 }
 
-/// Lines that go straight on through junctions; an edge that comes back to where it began is a line by itself.
+/// Joins lines that continue straight through junctions; an edge that returns to its beginning is a line by itself.
 fn run_through(edges: &[Edge], reach: f64) -> Vec<Vec<DVec2>> {
     let mut on: Vec<[Option<(usize, usize)>; 2]> = vec![[None; 2]; edges.len()];
     for node in nodes_of(edges) {
@@ -502,7 +541,7 @@ fn run_through(edges: &[Edge], reach: f64) -> Vec<Vec<DVec2>> {
     }
     let mut done: Vec<bool> = edges.iter().map(|e| e.gone).collect();
     let mut lines = Vec::new();
-    // Ways that have an end first, then those that go round.
+    // Paths that have an end first, then closed ones.
     for round in [false, true] {
         for k in 0..edges.len() {
             let start = (0..2).find(|&end| on[k][end].is_none());

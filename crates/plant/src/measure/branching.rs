@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::wood::internodes;
 use crate::Plant;
 
-/// Orders counted from the tips (Strahler 1957): a tip has order 1; where two or more shoots of the highest order k
-/// meet, the one below has k + 1.
+/// Orders counted from the tips (Strahler 1957): a tip has order 1; below a confluence of two or more shoots of the
+/// highest order k the order is k + 1.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Strahler {
@@ -17,13 +17,13 @@ pub struct Strahler {
     pub streams: Vec<usize>,
     /// Bifurcation ratios: streams of order k over those of k + 1, from k = 1.
     pub ratios: Vec<f64>,
-    /// The ratio of the whole plant: 10 to the slope of log streams against order (Horton 1945), by least squares;
-    /// none below two orders.
+    /// Bifurcation ratio of the whole plant: 10 to the slope of log streams against order (Horton 1945), by least
+    /// squares; `None` for fewer than two orders.
     pub bifurcation_ratio: Option<f64>,
 }
 
 pub(super) fn strahler(plant: &Plant, shoot: &[bool]) -> Strahler {
-    // Of what meets at each node from above: the highest order, and how many have it.
+    // For each node, the highest order of the shoots above it, and the number of shoots with that order.
     let mut meets = vec![(0_u32, 0_u32); plant.nodes.position.len()];
     let join = |at: &mut (u32, u32), order: u32| {
         if order > at.0 {
@@ -33,7 +33,7 @@ pub(super) fn strahler(plant: &Plant, shoot: &[bool]) -> Strahler {
         }
     };
     let mut streams: Vec<usize> = Vec::new();
-    // Bearers come first: from the end on, all that a node bears is known.
+    // Bearers come first: going backwards, the orders of everything that a node bears are known.
     for (axis, _) in plant.axes.iter().zip(shoot).rev().filter(|(_, s)| **s) {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         for node in rows.clone().rev() {
@@ -56,7 +56,7 @@ pub(super) fn strahler(plant: &Plant, shoot: &[bool]) -> Strahler {
     Strahler { order, bifurcation_ratio: horton(&streams), streams, ratios }
 }
 
-/// Horton's law of stream numbers: `log N_k = a - k log R`.
+/// Fits Horton's law of stream numbers, `log N_k = a - k log R`, and returns the ratio R.
 fn horton(streams: &[usize]) -> Option<f64> {
     let n = streams.len() as f64;
     if streams.len() < 2 {
@@ -71,29 +71,30 @@ fn horton(streams: &[usize]) -> Option<f64> {
     Some(ops::exp(-moment / sum))
 }
 
-/// How radii add up at forks.
+/// Fitted relation of the radii at forks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RadiusExponent {
-    /// n: 2 keeps the area of the section (Leonardo), 3 is Murray's law. Between 0.5 and 10.
+    /// Exponent n: 2 preserves the cross-sectional area (Leonardo), 3 is Murray's law. Between 0.5 and 10.
     pub exponent: f64,
-    /// Forks that it was fitted to.
+    /// Number of forks in the fit.
     pub forks: usize,
     /// Root mean square of `ln r - ln (sum r_i^n)^(1/n)`: the relative error of the radius below a fork.
     pub residual: f64,
 }
 
-/// One fork: the radius below, and the rows of those above in one list.
+/// One fork: the radius below, and the range of the radii above in one list.
 struct Fork {
     below: f64,
     from: usize,
     to: usize,
 }
 
-/// The exponent at which the radii below forks are right in the mean of their logarithms.
+/// Returns the exponent that predicts the radii below forks without bias in the mean of their logarithms.
 ///
-/// A fork is a node of which two or more shoots go on. The radius of the axis that goes on is that of its next node,
-/// of a borne axis that of its first. `ln (sum r_i^n)^(1/n)` falls as n grows: there is one such n, by bisection.
+/// A fork is a node from which two or more shoots continue. The radius of the continuing axis is that of its next node,
+/// of a borne axis that of its first. `ln (sum r_i^n)^(1/n)` falls as n grows: there is exactly one such n, found by
+/// bisection.
 pub(super) fn radius_exponent(plant: &Plant, shoot: &[bool]) -> Option<RadiusExponent> {
     let mut above: Vec<(usize, f64)> = Vec::new();
     for (axis, _) in plant.axes.iter().zip(shoot).filter(|(_, s)| **s) {
@@ -118,13 +119,13 @@ pub(super) fn radius_exponent(plant: &Plant, shoot: &[bool]) -> Option<RadiusExp
         return None;
     }
     let misfit = |fork: &Fork, n: f64| {
-        // Relative to the radius below, so that no power of a small radius is lost.
+        // Relative to the radius below, so that powers of small radii do not underflow.
         let sum: f64 = above[fork.from..fork.to].iter().map(|(_, r)| ops::powf(r / fork.below, n)).sum();
         -ops::ln(sum) / n
     };
     let mean = |n: f64| forks.iter().map(|f| misfit(f, n)).sum::<f64>() / forks.len() as f64;
     let (mut low, mut high) = (0.5, 10.0);
-    // 40 halvings of 9.5: 1e-11. At the ends, forks that no exponent fits.
+    // 40 halvings of 9.5: 1e-11. The ends stand for forks that no exponent fits.
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
         if mean(middle) < 0.0 { low = middle } else { high = middle }

@@ -12,7 +12,7 @@ pub(super) struct Crown {
     pub(super) projection_m2: f64,
 }
 
-/// See [`super::Measures`] for what belongs to a crown.
+/// Measures the crown; see [`super::Measures`] for its definition.
 pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     let has_leaves = plant.organs.iter().any(|o| o.kind == OrganKind::Leaf);
     let live = live_axes(plant, has_leaves);
@@ -37,7 +37,7 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     }
     leaves_outside(plant, &margins, &mut points);
     let hull = geom::convex_hull3(&points);
-    // The shadow of a body is that of its corners, which are few beside the points of all leaves.
+    // The projected hull of a body is that of its corners, which are far fewer than the points of all leaves.
     let corners = hull.as_ref().map_or(&points[..], |h| &h.points);
     let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(p.x, p.z)).collect();
     let projection_m2 = geom::signed_area(&geom::convex_hull(&flat)).abs();
@@ -46,21 +46,21 @@ pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
     Crown { height_m: top - foot, base_m, volume_m3, projection_m2 }
 }
 
-/// The height of the lowest foot: where an axis that nothing bears begins, but for roots; 0 without one.
+/// Returns the height of the lowest foot: the start of an axis without a bearer, roots excepted; 0 if there is none.
 fn foot(plant: &Plant) -> f64 {
     let free = plant.axes.iter().filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root);
     let feet = free.filter_map(|a| plant.nodes.position.get(a.nodes.start as usize).map(|p| p.y));
     feet.reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Adds to `points` those of the leaves that the hull of all of them may need: most leaves lie deep inside a crown.
+/// Adds to `points` those of the leaves that may lie on the convex hull of all: most leaves lie deep inside a crown.
 pub(super) fn leaves_outside(plant: &Plant, margins: &[Vec<DVec3>], points: &mut Vec<DVec3>) {
-    // Flowers and fruits reach higher, but are no crown.
+    // Flowers and fruits reach higher, but are not part of the crown.
     let leaves = || {
         let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
         leaves.filter_map(|o| margins[o.shape.index()].first().map(|first| (o, *first)))
     };
-    // One point of each leaf; the rest is no farther from it than `reach`.
+    // One point of each leaf; all other points are within `reach` of it.
     points.extend(leaves().map(|(o, first)| o.frame.place(first, o.scale)));
     let core = geom::convex_hull3(points).map(|hull| hull.planes()).unwrap_or_default();
     let reach_of = |m: &Vec<DVec3>| m.iter().fold(0.0_f64, |r, p| r.max(p.distance(m[0])));
@@ -74,7 +74,7 @@ pub(super) fn leaves_outside(plant: &Plant, margins: &[Vec<DVec3>], points: &mut
     }
 }
 
-/// Which axes bear leaves, themselves or through others; all of them on a plant without leaves.
+/// Returns for each axis whether it bears leaves, itself or through others; true for all on a plant without leaves.
 fn live_axes(plant: &Plant, has_leaves: bool) -> Vec<bool> {
     let mut live = vec![!has_leaves; plant.axes.len()];
     let axis_of = |node: crate::NodeId| plant.nodes.axis[node.index()].index();
@@ -91,7 +91,7 @@ fn live_axes(plant: &Plant, has_leaves: bool) -> Vec<bool> {
     live
 }
 
-/// The lowest place where a main axis bears a live axis (a leaf stalk, too) or a leaf.
+/// Returns the lowest height at which a main axis bears a live axis (also a leaf stalk) or a leaf.
 fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
     let on_main = |node: crate::NodeId| {
         let axis = plant.nodes.axis[node.index()].index();
@@ -108,7 +108,8 @@ fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
     heights.fold(None, |low: Option<f64>, y| Some(low.map_or(y, |l| l.min(y))))
 }
 
-/// Local points whose convex hull is that of the shape, nearly: a bent blade bulges between its margin and midrib.
+/// Returns local points whose convex hull is nearly that of the shape: a bent blade bulges between its margin and
+/// midrib.
 pub(super) fn margin(shape: &Shape) -> Vec<DVec3> {
     match shape {
         Shape::Blade(b) => {
@@ -135,7 +136,7 @@ fn ring(radius: f64, place: impl Fn(f64, f64) -> DVec3) -> Vec<DVec3> {
     (0..8).map(at).map(|(s, c)| place(radius * c, radius * s)).collect()
 }
 
-/// One side of all leaves.
+/// Returns the area of one side of all leaves.
 pub(super) fn leaf_area(plant: &Plant) -> f64 {
     let areas: Vec<Option<f64>> = {
         let mut used = vec![false; plant.shapes.len()];
@@ -144,19 +145,19 @@ pub(super) fn leaf_area(plant: &Plant) -> f64 {
         plant.shapes.iter().zip(used).map(|(s, used)| used.then(|| s.one_side_m2())).collect()
     };
     let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
-    // From 0, because the sum of no numbers is -0.
+    // Starts at 0, because the sum of no numbers is -0.
     leaves.map(|o| areas[o.shape.index()].unwrap_or(0.0) * o.scale * o.scale).fold(0.0, |sum, a| sum + a)
 }
 
 impl Shape {
-    /// The area of one side at scale 1, square metres: of the bent sheet for a blade (to about half a per cent),
-    /// half of the surface for what is round (Chen and Black 1992). Of a blade that is a shoot in needles or scales, what these
-    /// cover of it, flat as on a scanner: not the sky between them, not the wood, and once where one lies behind another.
-    /// Cost: a blade is triangulated; some milliseconds of a shoot in needles.
+    /// Returns the area of one side at scale 1, square metres: of the bent sheet for a blade (to about half a per
+    /// cent), half of the surface for round shapes (Chen and Black 1992). Of a blade that is a shoot in needles or
+    /// scales, it is the area that these cover, flat as on a scanner: without the gaps between them, without the wood,
+    /// and counting overlaps once. Cost: a blade is triangulated; some milliseconds for a shoot in needles.
     pub fn one_side_m2(&self) -> f64 {
         match self {
             Self::Blade(b) => blade_area(b),
-            // A spherical cap, and half of the surface for what is round.
+            // A spherical cap, and half of the surface for round shapes.
             Self::Dome { radius_m: r, height_m: h } => ops::PI * (r * r + h * h) / 2.0,
             Self::Revolution { profile } => {
                 let strip = |w: &[DVec2]| ops::PI * (w[0].x + w[1].x) * w[0].distance(w[1]);
@@ -172,19 +173,20 @@ impl Shape {
     }
 }
 
-/// The area of the bent sheet, and of a shoot in needles the share of it that they cover.
+/// Returns the area of the bent sheet, for a shoot in needles reduced to the share that they cover.
 fn blade_area(blade: &Blade) -> f64 {
     let plane = geom::signed_area(&blade.outline).abs();
-    match NeedleMap::of(blade) {
+    match NeedleMap::from_blade(blade) {
         Some(map) if plane > 0.0 => sheet_area(blade, plane) * (map.covered() / plane),
         _ => sheet_area(blade, plane),
     }
 }
 
-/// The area of the bent sheet: that of its outline in the plane, times how much bending stretches its triangles.
+/// Returns the area of the bent sheet: that of its outline in the plane, times the stretching of its triangles by
+/// bending.
 fn sheet_area(blade: &Blade, plane: f64) -> f64 {
     let size = blade.outline.iter().fold(0.0_f64, |s, p| s.max(p.length()));
-    // A twelfth of the blade: bends are smooth over that.
+    // A twelfth of the blade: bends are smooth at that scale.
     let Ok(flat) = geom::triangulate_blade(&blade.outline, &[], size / 12.0) else { return plane };
     let bent = blade.surface().points(&flat.points);
     let (mut flat_area, mut bent_area) = (0.0, 0.0);
@@ -194,7 +196,7 @@ fn sheet_area(blade: &Blade, plane: f64) -> f64 {
         let [a, b, c] = t.map(|i| bent[i as usize]);
         bent_area += (b - a).cross(c - a).length() / 2.0;
     }
-    // An outline that crosses itself was mended: then only the triangles know its area.
+    // An outline that crosses itself was mended: then only the triangles give its area.
     let mended = (plane - flat_area).abs() > 0.05 * flat_area;
     if mended || flat_area <= 0.0 { bent_area.max(flat_area) } else { plane * (bent_area / flat_area) }
 }

@@ -11,7 +11,7 @@ fn near(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} is not {b}");
 }
 
-/// An axis with radii.
+/// Adds an axis with radii.
 fn axis(p: &mut Plant, bearer: Option<NodeId>, line: &[DVec3], radii: &[f64]) -> AxisId {
     let id = p.add_axis(AxisKind::Branch, bearer, p.axes.len() as u64, line, None);
     let rows = p.axis(id).nodes.start as usize..p.axis(id).nodes.end as usize;
@@ -23,7 +23,7 @@ fn node(p: &Plant, axis: AxisId, k: usize) -> NodeId {
     p.axis(axis).node_ids().nth(k).expect("there")
 }
 
-/// A square leaf of the given edge whose root is the middle of its lower edge.
+/// Adds a square leaf of the given edge whose root is the centre of its lower edge.
 fn square(p: &mut Plant, edge: f64, lift: Lift) -> ShapeId {
     let h = edge / 2.0;
     let outline = [(-h, 0.0), (h, 0.0), (h, edge), (-h, edge)].map(|(x, y)| DVec2::new(x, y)).to_vec();
@@ -83,7 +83,7 @@ fn breast_height_is_above_the_foot_and_stems_add_their_basal_areas() {
     assert_eq!(low.measure().dbh_m, None);
 }
 
-/// Every shoot forks into one that goes on straight and one at 40 degrees, `depth` times; at each fork
+/// Makes a plant whose shoots fork, `depth` times, into one that continues straight and one at 40 degrees; at each fork
 /// `r^n = 2 (r 2^(-1/n))^n`.
 fn binary(depth: u32, n: f64) -> Plant {
     let mut p = Plant::default();
@@ -187,7 +187,7 @@ fn a_cubic_crown_has_its_volume_projection_and_leaf_area_index() {
         let corner = DVec3::new(sign(1), 3.0 + sign(2), sign(4));
         let id = axis(&mut p, Some(high), &[line[2], corner], &[0.01; 2]);
         let tip = node(&p, id, 1);
-        // Leaves that look inwards do not enlarge the cube.
+        // Leaves that point inwards do not enlarge the cube.
         leaf(&mut p, tip, shape, DVec3::new(0.0, 3.0, 0.0) - corner, 0.2);
     }
     assert_eq!(p.validate().next(), None);
@@ -247,7 +247,7 @@ fn a_shoot_counts_what_its_needles_cover() {
     let at = node(&p, stem, 1);
     let flat = Blade { relief: Relief::default(), ..Blade::shoot(Needles::of_length(0.1), 3, 1.0) };
     let outline = geom::signed_area(&flat.outline).abs();
-    let covered = NeedleMap::of(&flat).expect("needles").covered();
+    let covered = NeedleMap::from_blade(&flat).expect("needles").covered();
     let shoot = p.add_shape(Shape::Blade(flat.clone()));
     leaf(&mut p, at, shoot, DVec3::X, 0.2);
     near(p.measure().leaf_area_m2, covered * 0.04);
@@ -271,7 +271,7 @@ fn roots_and_stalks_are_no_shoots() {
     assert_eq!(Plant::default().measure(), Measures::default());
 }
 
-/// A plant of random axes.
+/// Makes a plant of random axes.
 fn wild(seed: u64, axes: usize) -> Plant {
     let mut s = Seed::new(seed).stream(Draw::Attractors);
     let mut p = Plant::default();
@@ -285,7 +285,7 @@ fn wild(seed: u64, axes: usize) -> Plant {
         let mut line =
             vec![bearer.map_or(DVec3::new(s.normal(), 0.0, s.normal()), |b| p.nodes.position[b.index()])];
         for _ in 0..1 + i % 4 {
-            // Now and then an internode without a length.
+            // Occasionally an internode without length.
             let step = if s.chance(0.05) { 0.0 } else { 1.0 };
             let last = line[line.len() - 1];
             line.push(last + DVec3::new(s.normal(), s.uniform(), s.normal()) * step);
@@ -368,4 +368,19 @@ fn a_plant_in_the_coordinates_of_a_scanner_is_as_high_as_at_the_origin() {
     assert!((here.height_m - there.height_m).abs() < 1e-9, "{} {}", here.height_m, there.height_m);
     assert!((here.crown_base_m.unwrap() - there.crown_base_m.unwrap()).abs() < 1e-9);
     assert!(there.dbh_m.is_some());
+}
+
+#[test]
+fn columns_add_up_to_the_measures() {
+    let mut p = Plant::default();
+    p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+    let side = [DVec3::Y * 2.0, DVec3::new(3.0, 2.0, 0.0), DVec3::new(3.0, 6.0, 0.0)];
+    p.add_axis(AxisKind::Branch, Some(NodeId::new(1)), 2, &side, None);
+    p.nodes.radius_m = vec![0.1; 5];
+    assert_eq!(p.axis_lengths_m(), [2.0, 7.0]);
+    let angles = p.axis_angles_deg();
+    assert!(angles[0].is_nan());
+    near(angles[1], 90.0);
+    near(p.axis_lengths_m().iter().sum(), p.measure().length_m);
+    assert!(p.organ_areas_m2().is_empty());
 }

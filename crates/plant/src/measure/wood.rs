@@ -7,24 +7,24 @@ use serde::{Deserialize, Serialize};
 use super::BREAST_M;
 use crate::{Axis, NodeId, Plant};
 
-/// What belongs to one branching order.
+/// Measures of one branching order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OrderMeasures {
-    /// 0 for the main axes, 1 for what they bear, and so on.
+    /// Order: 0 for the main axes, 1 for the axes that they bear, and so on.
     pub order: u32,
-    /// Axes.
+    /// Number of axes.
     pub axes: usize,
-    /// Their length, metres.
+    /// Length of the axes, metres.
     pub length_m: f64,
-    /// Volume of their frusta, cubic metres.
+    /// Volume of the frusta, cubic metres.
     pub volume_m3: f64,
-    /// Lateral area of their frusta, square metres.
+    /// Lateral area of the frusta, square metres.
     pub area_m2: f64,
-    /// Mean angle between an axis's first internode and the internode that bears it, degrees, 0 to 180; none for
+    /// Mean angle between an axis's first internode and the internode that bears it, degrees, 0 to 180; `None` for
     /// order 0.
     pub angle_mean_deg: Option<f64>,
-    /// Standard deviation of these angles (n - 1), degrees; none for fewer than two.
+    /// Standard deviation of these angles (n - 1), degrees; `None` for fewer than two.
     pub angle_sd_deg: Option<f64>,
 }
 
@@ -61,20 +61,20 @@ pub(super) fn orders(plant: &Plant, shoot: &[bool]) -> Vec<OrderMeasures> {
     orders
 }
 
-/// Rows of the two nodes of each internode, base first.
+/// Iterates over the rows of the two nodes of each internode, base first.
 pub(super) fn internodes(axis: &Axis) -> impl Iterator<Item = (usize, usize)> + use<> {
     let (start, end) = (axis.nodes.start as usize, axis.nodes.end as usize);
     (start + 1..end).map(|j| (j - 1, j))
 }
 
-/// The internode that bears what sits on a node: the one that ends there, or the first of its axis.
+/// Returns the internode that bears an axis or organ on a node: the one that ends there, or the first of its axis.
 pub(super) fn bearing_internode(plant: &Plant, bearer: NodeId) -> (usize, usize) {
     let (axis, at) = (plant.axis(plant.nodes.axis[bearer.index()]), bearer.index());
     if at > axis.nodes.start as usize { (at - 1, at) } else { (at, at + 1) }
 }
 
-/// Degrees between an axis's first internode that has a length and the one that bears it.
-fn angle(plant: &Plant, axis: &Axis) -> Option<f64> {
+/// Returns the angle between an axis's first internode with a length and the one that bears it, degrees.
+pub(super) fn angle(plant: &Plant, axis: &Axis) -> Option<f64> {
     let direction =
         |(i, j): (usize, usize)| (plant.nodes.position[j] - plant.nodes.position[i]).try_normalize();
     let below = direction(bearing_internode(plant, axis.bearer?))?;
@@ -82,7 +82,7 @@ fn angle(plant: &Plant, axis: &Axis) -> Option<f64> {
     Some(angle_deg(below, own))
 }
 
-/// Between unit vectors; exact at 0, 90 and 180 degrees, where an arc cosine alone loses digits.
+/// Returns the angle between unit vectors; exact at 0, 90 and 180 degrees, where an arc cosine alone loses digits.
 fn angle_deg(a: DVec3, b: DVec3) -> f64 {
     ops::atan2(a.cross(b).length(), a.dot(b)).to_degrees()
 }
@@ -100,7 +100,7 @@ pub(super) fn stems(plant: &Plant, shoot: &[bool]) -> Stems {
     Stems { count: standing().count(), dbh_m }
 }
 
-/// Twice the radius where the axis first passes breast height above its foot.
+/// Returns twice the radius where the axis first passes breast height above its foot.
 fn diameter(plant: &Plant, axis: &Axis) -> Option<f64> {
     let level = plant.nodes.position[axis.nodes.start as usize].y + BREAST_M;
     let (y, r) = (|i: usize| plant.nodes.position[i].y, |i: usize| plant.nodes.radius_m[i]);

@@ -1,6 +1,6 @@
 //! The layers of the network that looks at a picture.
 //!
-//! All numbers of a picture and of what a layer makes of it lie cell by cell, the channels of a cell beside one another. Sums
+//! All numbers of a picture and of a layer's result lie cell by cell, the channels of a cell next to one another. Sums
 //! are taken in one order, so the bits are the same everywhere.
 
 use super::SIDE;
@@ -9,34 +9,34 @@ use super::SIDE;
 pub const CHANNELS: [usize; 4] = [1, 8, 16, 32];
 /// Units between the last convolution and the words.
 pub const HIDDEN: usize = 64;
-/// What the units see: the last convolution, pooled.
+/// Inputs of the units: the last convolution, pooled.
 pub const GLIMPSE: usize = (SIDE / 8) * (SIDE / 8) * CHANNELS[3];
 /// Cells of a kernel, along each side.
 const KERNEL: usize = 3;
 
-/// From every input of every cell of a kernel to every output.
+/// A layer of weights from every input of every cell of a kernel to every output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layer {
-    /// Cells of the kernel: 9 of a convolution, 1 where all is joined with all.
+    /// Cells of the kernel: 9 for a convolution, 1 for a fully connected layer.
     pub cells: usize,
-    /// Channels of each cell that it looks at.
+    /// Input channels of each cell.
     pub inputs: usize,
-    /// Channels of each cell that it gives.
+    /// Output channels of each cell.
     pub outputs: usize,
-    /// By cell, input and output.
+    /// Weights by cell, input and output.
     pub weights: Vec<f32>,
-    /// One for each output.
+    /// Bias of each output.
     pub bias: Vec<f32>,
 }
 
 impl Layer {
-    /// The weights from one input of one cell of the kernel.
+    /// Returns the weights from one input of one cell of the kernel.
     fn row(&self, cell: usize, input: usize) -> &[f32] {
         let at = (cell * self.inputs + input) * self.outputs;
         &self.weights[at..at + self.outputs]
     }
 
-    /// All joined with all: what is 0 costs nothing.
+    /// Applies a fully connected layer; inputs of 0 cost nothing.
     pub fn join(&self, input: &[f32]) -> Vec<f32> {
         let mut out = self.bias.clone();
         for (i, &x) in input.iter().enumerate().filter(|(_, x)| **x != 0.0) {
@@ -45,7 +45,7 @@ impl Layer {
         out
     }
 
-    /// A convolution of `side` by `side` cells, outside of which all is 0.
+    /// Applies a convolution of `side` by `side` cells, outside which everything is 0.
     pub fn convolve(&self, side: usize, input: &[f32]) -> Vec<f32> {
         let mut out: Vec<f32> = self.bias.iter().copied().cycle().take(side * side * self.outputs).collect();
         for (at, i, x) in cells(input, self.inputs) {
@@ -57,7 +57,8 @@ impl Layer {
         out
     }
 
-    /// What the slope of the error by the outputs adds to that by the weights (`own`), and the slope by the inputs.
+    /// Adds the gradient of the error by the weights to `own`, and returns the gradient by the inputs. `slope`: the
+    /// gradient by the outputs.
     pub fn back(&self, side: usize, input: &[f32], slope: &[f32], own: &mut Self) -> Vec<f32> {
         let n = self.outputs;
         slope.chunks(n).for_each(|s| own.bias.iter_mut().zip(s).for_each(|(b, s)| *b += s));
@@ -77,13 +78,14 @@ impl Layer {
     }
 }
 
-/// Each number that is not 0, with its cell and its channel. A unit that is 0 passes nothing on, neither forwards nor back.
+/// Returns each number that is not 0, with its cell and its channel. A unit that is 0 passes nothing on, neither
+/// forwards nor back.
 fn cells(input: &[f32], channels: usize) -> impl Iterator<Item = (usize, usize, f32)> {
     let found = input.iter().enumerate().filter(|(_, x)| **x != 0.0);
     found.map(move |(k, x)| (k / channels, k % channels, *x))
 }
 
-/// The cells that a cell is seen from, with the cell of the kernel through which.
+/// Returns the cells to whose result a cell contributes, with the kernel's cell for each.
 fn reached(side: usize, at: usize) -> impl Iterator<Item = (usize, usize)> {
     let (y, x) = (at / side, at % side);
     (0..KERNEL * KERNEL).filter_map(move |cell| {
@@ -93,8 +95,8 @@ fn reached(side: usize, at: usize) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// The largest of two by two cells, and nothing below 0; of each where it came from. A last row or column that has no other
-/// is left out.
+/// Returns the largest of two by two cells, and nothing below 0, and the place of each in the input. A single last row
+/// or column is left out.
 pub fn pooled(side: usize, channels: usize, input: &[f32]) -> (Vec<f32>, Vec<usize>) {
     let half = side / 2;
     let (mut out, mut from) = (Vec::with_capacity(half * half * channels), Vec::new());
@@ -114,7 +116,7 @@ pub fn pooled(side: usize, channels: usize, input: &[f32]) -> (Vec<f32>, Vec<usi
 /// The whole network.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sight {
-    /// Each looks at what the one before it gave, pooled.
+    /// Convolutions; each takes the pooled result of the one before.
     pub convolutions: [Layer; 3],
     /// From the last convolution to the units.
     pub hidden: Layer,
@@ -122,21 +124,21 @@ pub struct Sight {
     pub words: Layer,
 }
 
-/// What the network makes of a picture, layer by layer.
+/// Results of the network for a picture, layer by layer.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    /// What each convolution looked at; the last is what the units look at.
+    /// Input of each convolution; the last is the input of the units.
     pub looked: [Vec<f32>; 4],
-    /// Where each number of `looked`, but the first, came from in what the convolution before it gave.
+    /// Place of each number of `looked`, but the first, in the result of the convolution before it.
     pub from: [Vec<usize>; 3],
-    /// How much each unit was stirred, 0 or more.
+    /// Activation of each unit, 0 or more.
     pub units: Vec<f32>,
-    /// How well each word says what is seen, before the softmax.
+    /// How well each word describes the picture, before the softmax.
     pub words: Vec<f32>,
 }
 
 impl Sight {
-    /// A network whose coefficients are all 0.
+    /// Returns a network whose coefficients are all 0.
     pub fn empty(words: usize) -> Self {
         let layer = |cells: usize, inputs: usize, outputs: usize| Layer {
             cells,
@@ -153,19 +155,19 @@ impl Sight {
         }
     }
 
-    /// The layers, in the order in which they look.
+    /// Returns the layers in the order in which they are applied.
     pub fn layers(&self) -> [&Layer; 5] {
         let [a, b, c] = &self.convolutions;
         [a, b, c, &self.hidden, &self.words]
     }
 
-    /// As [`Sight::layers`].
+    /// Returns the layers of [`Sight::layers`], to be changed.
     pub fn layers_mut(&mut self) -> [&mut Layer; 5] {
         let [a, b, c] = &mut self.convolutions;
         [a, b, c, &mut self.hidden, &mut self.words]
     }
 
-    /// From its file: for each layer a line with the bias and one for each cell and input.
+    /// Parses the network's file: for each layer a line with the bias and one for each cell and input.
     pub(super) fn parse(text: &str, words: usize) -> Option<Self> {
         let mut lines = text.lines().filter(|l| !l.starts_with('#'));
         let mut row = |to: &mut [f32]| {

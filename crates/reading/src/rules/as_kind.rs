@@ -1,7 +1,7 @@
-//! A drawing taken for one kind of plant: what each stroke is then.
+//! A drawing taken for one kind of plant: the class that each stroke then has.
 //!
-//! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the user
-//! set stay.
+//! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the
+//! user set stay.
 
 use geom::{bounds, contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
@@ -24,65 +24,77 @@ const FOOT: f64 = 0.15;
 const LEVEL: f64 = 0.25;
 /// Wood is narrower than this share of the drawing.
 const NARROW: f64 = 0.55;
-/// A part of a crown has more than this share of the area of the largest part; a fruit in it less than that.
+/// A part of a crown has more than this share of the area of the largest part.
 const MAIN_CROWN: f64 = 0.12;
+/// A fruit in a crown has less than this share of that area.
 const FRUIT: f64 = 0.05;
-/// What is enclosed makes up this share of the hull of the whole tree, or the tree is bare.
+/// The enclosed area is at least this share of the hull of the whole tree, or the tree is bare.
 const COVERED: f64 = 0.15;
 /// The outline of a trunk and its limbs fills less than this share of its hull.
 const HOLLOW: f64 = 0.65;
-/// Sides of limbs meet at tips no wider than this, and are longer than that, shares of the drawing's diagonal.
+/// Sides of limbs meet at tips no wider than this, as a share of the drawing's diagonal.
 const TIP: f64 = 0.1;
+/// Sides of limbs are longer than this, as a share of the drawing's diagonal.
 const SIDE_OF_LIMB: f64 = 0.1;
-/// A level line below this is the ground under a palm, and under a cactus below that.
+/// A level line below this is the ground under a palm.
 const LOW: f64 = 0.2;
+/// A level line below this is the ground under a cactus.
 const LOWEST: f64 = 0.1;
-/// Fronds in one stroke: dips of this share of the reach, more of them than so many.
+/// Depth of the dips between fronds in one stroke, as a share of the reach.
 const FROND_DIP: f64 = 0.2;
+/// Fronds in one stroke have more dips than this.
 const FRONDS: usize = 4;
-/// What the classifier gives this share to be a pot stays one under a cactus; a share of 1.
+/// A stroke to which the classifier gives at least this share to be a pot stays one under a cactus; 0 to 1.
 const POT_SHARE: f64 = 0.3;
 /// An arm of a cactus is larger than this share of the drawing's diagonal; a thorn is smaller.
 const ARM: f64 = 0.25;
-/// A row of grass: dips of this share of the stroke's height, both ends among them, at least so many.
+/// Depth of the dips in a row of grass, as a share of the stroke's height.
 const GRASS_DIP: f64 = 0.3;
+/// Fewest dips in a row of grass, both ends among them.
 const GRASS_DIPS: usize = 4;
 /// The head of a flower begins above this share of its height.
 const HEAD: f64 = 0.35;
-/// Of more pieces of heads each with each is not looked at.
+/// Most pieces of heads of which each is compared with each.
 const MOST_HEADS: usize = 40;
-/// A vein lies in its leaf with this share of its points; a leaflet beside it has more than that share of its area.
+/// A vein lies in its leaf with more than this share of its points.
 const VEIN: f64 = 0.6;
+/// A leaflet has more than this share of the area of the largest one.
 const LEAFLET: f64 = 0.4;
-/// A body beside the largest has more than this share of its area; what lies in one with more than that share of its points is
-/// its skin.
+/// A body has more than this share of the area of the largest one.
 const BODY: f64 = 0.25;
+/// A line that lies in a body with more than this share of its points is on its skin.
 const SKIN: f64 = 0.7;
-/// What stands above this share of a fruit's height, and has less than that share of its area, is a leaf on it.
+/// A leaf on a fruit lies above this share of the fruit's height.
 const TOP: f64 = 0.7;
+/// A leaf on a fruit has less than this share of the fruit's area.
 const LESS_THAN_BODY: f64 = 0.8;
 /// An arc of a body encloses more than this share of the area of the largest part.
 const ARC: f64 = 0.05;
-/// So many bodies are a bunch, and the form of a leaf on it is that much less round than theirs, or its area larger.
+/// Fewest bodies of a bunch.
 const BUNCH: usize = 3;
+/// A leaf on a bunch is less round than its bodies by this factor, or its area larger.
 const UNLIKE: f64 = 0.7;
-/// A mushroom's stem begins below the first share of its cap's height, reaches below it by more than the second, and if it is
-/// drawn as one line, has more than the third of its area.
+/// A mushroom's stem begins below this share of its cap's height.
 const CAP_FOOT: f64 = 0.5;
+/// A mushroom's stem reaches below its cap by more than this share of the cap's height.
 const STEM_LONG: f64 = 0.25;
+/// A mushroom's stem drawn as one line has more than this share of its cap's area.
 const STEM_AREA: f64 = 0.08;
-/// What is smooth is the body under a tuft if its area is more than this share of the tuft's.
+/// A smooth outline is the body under a tuft if its area is more than this share of the tuft's.
 const BESIDE_TUFT: f64 = 0.5;
-/// A pot drawn in lines, shares of the drawing: its lines begin below the first, one of them below the second and wider than
-/// the third.
+/// The lines of a pot begin below this share of the drawing's height.
 const POT_FOOT: f64 = 0.45;
+/// One of these lines begins below this share of the drawing's height.
 const POT_BOTTOM: f64 = 0.08;
+/// That line is wider than this share of the drawing's width.
 const POT_WIDE: f64 = 0.15;
-/// A pot drawn in one go: its bottom and top lie below these shares of the drawing's height, it is wider than this share of its
-/// own height, and fills that share of its box.
+/// The bottom of a pot drawn in one go lies below this share of the drawing's height.
 const BOX_BOTTOM: f64 = 0.06;
+/// Its top lies below this share of the drawing's height.
 const BOX_TOP: f64 = 0.65;
+/// It is wider than this share of its own height.
 const BOX_WIDE: f64 = 0.4;
+/// It fills more than this share of its box.
 const BOX_FULL: f64 = 0.4;
 
 struct Part {
@@ -164,13 +176,13 @@ fn part(draft: &Draft<'_>, stroke: usize) -> Option<Part> {
 
 type Classes = Vec<(usize, StrokeClass)>;
 
-/// What stands and is narrow is wood.
+/// Whether a part is wood: it stands and is narrow.
 fn is_wood(p: &Part, (low, high): (DVec2, DVec2)) -> bool {
     let tall = high.y - low.y;
     p.lo.y < low.y + FOOT * tall && p.wide() < STANDS * p.tall() && p.wide() < NARROW * (high.x - low.x)
 }
 
-/// A line is an axis; two lines, or anything that has an inside, are a trunk.
+/// Classes of wood: one line is an axis; two lines, or anything that has an inside, are a trunk.
 fn wood(parts: &[&Part]) -> Classes {
     let lines = parts.iter().filter(|p| p.is_line()).count();
     parts
@@ -226,7 +238,8 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
     found
 }
 
-/// A bare tree in three lines or more that go up one side of a limb and down its other: all around, they meet at the tips.
+/// Finds the sides of limbs of a bare tree in three lines or more, which go up one side of a limb and down the next:
+/// all around, they meet at the tips.
 fn sides_of_limbs(draft: &Draft<'_>, parts: &[Part], (low, high): (DVec2, DVec2)) -> Vec<usize> {
     let lines: Vec<&Part> =
         parts.iter().filter(|p| p.wide().max(p.tall()) > SIDE_OF_LIMB && !p.is_level()).collect();
@@ -244,7 +257,7 @@ fn sides_of_limbs(draft: &Draft<'_>, parts: &[Part], (low, high): (DVec2, DVec2)
     found.map_or_else(Vec::new, |r| r.parts.iter().map(|&p| lines[p].stroke).collect())
 }
 
-/// An outline with hollows and no neck goes round a trunk and its limbs, unless it is that of a fir.
+/// Whether an outline goes round a trunk and its limbs: it has hollows and no neck, and is not that of a fir.
 fn is_limbs(draft: &Draft<'_>, p: &Part) -> bool {
     let outline = draft.ink.strokes[p.stroke].outline();
     if outline.is_some_and(pointed) {
@@ -254,7 +267,7 @@ fn is_limbs(draft: &Draft<'_>, p: &Part) -> bool {
     hollow && outline.is_none_or(|o| neck(o, true).is_none())
 }
 
-/// What might be a crown encloses too little of the tree: bare branches, a fir of single twigs.
+/// Whether the possible crown encloses too little of the tree: bare branches, a fir of single twigs.
 fn is_bare(draft: &Draft<'_>, parts: &[Part], crown: &[&&Part]) -> bool {
     let all: Vec<DVec2> = parts.iter().flat_map(|p| p.hull.iter().copied()).collect();
     let whole = signed_area(&convex_hull(&all));
@@ -263,7 +276,7 @@ fn is_bare(draft: &Draft<'_>, parts: &[Part], crown: &[&&Part]) -> bool {
         let gaps: f64 = ring.gaps.iter().map(|&g| ring.gap(g)).map(|(a, b)| a.distance(b)).sum();
         let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
         let area = signed_area(&convex_hull(&ring.points));
-        // One line may leave its crown open; ends of twigs that happen to be near one another make none.
+        // A single line may leave its crown open; twigs whose ends happen to lie near one another form none.
         let left_open = ring.parts.len() == 1 && area > COVERED * whole;
         if gaps < CLOSED * drawn || left_open { area } else { 0.0 }
     };
@@ -294,8 +307,7 @@ fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
     found
 }
 
-/// Stems and blades.
-/// `flower`: what may be petals is, not leaves.
+/// Classes of a herb's stems and blades. `flower`: possible petals are petals, not leaves.
 fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Fruit, Other, Pot, TrunkOutline, Vein};
     let low = parts.iter().map(|p| p.lo.y).fold(f64::INFINITY, f64::min);
@@ -304,7 +316,7 @@ fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
     let is_head = |p: &Part| p.lo.y > low + HEAD * (high - low);
     let stems = stem_ends(draft);
     let is_tulip = |p: &Part| is_head(p) && is_cup_on_stem(&draft.ink.strokes[p.stroke].points, &stems);
-    // Its points and its round lower half as two strokes: both, the points first.
+    // The points of a cup and its round lower half as two strokes: both, the points first.
     let heads: Vec<&Part> = parts.iter().filter(|p| upright && is_head(p)).take(MOST_HEADS).collect();
     let cups: Vec<(usize, usize)> = (heads.iter())
         .flat_map(|upper| heads.iter().map(move |lower| (upper, lower)))
@@ -346,7 +358,7 @@ fn grass(draft: &Draft<'_>, parts: &[Part]) -> Classes {
         let heights: Vec<f64> = s.points.iter().map(|q| q.y).collect();
         let low = |y: Option<&f64>| y.is_some_and(|y| *y < p.lo.y + 0.5 * p.tall());
         let blades = dips(&heights, GRASS_DIP * p.tall()).len();
-        // Up and down twice is a row of two; down and up, two lines.
+        // Up and down twice is a row of two; down and up is two lines.
         let row =
             blades >= GRASS_DIPS || (blades + 1 == GRASS_DIPS && low(heights.first()) && low(heights.last()));
         if row && !(p.is_level() && blades < GRASS_DIPS) {
@@ -379,7 +391,7 @@ fn leaf(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     parts.iter().map(|p| (p.stroke, class(p))).collect()
 }
 
-/// Points on all sides in one stroke: the fronds of a palm, the leaves on a pineapple.
+/// Whether a stroke has points on all sides: the fronds of a palm, the leaves on a pineapple.
 fn is_tuft(draft: &Draft<'_>, p: &Part) -> bool {
     let middle = p.lo.midpoint(p.hi);
     let away: Vec<f64> = draft.ink.strokes[p.stroke].points.iter().map(|q| q.distance(middle)).collect();
@@ -387,8 +399,8 @@ fn is_tuft(draft: &Draft<'_>, p: &Part) -> bool {
     dips(&away, FROND_DIP * reach).len() > FRONDS
 }
 
-/// The largest outline is the body, and so are others as large beside it; what lies in it is its skin, and what has points a
-/// tuft of leaves.
+/// Classes of a fruit: the largest outline is the body, and so are others about as large; lines in it are its skin,
+/// and an outline with points is a tuft of leaves.
 fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let by_area = |a: &&Part, b: &&Part| a.area.total_cmp(&b.area).then(b.stroke.cmp(&a.stroke));
     let Some(widest) = parts.iter().max_by(by_area) else { return Vec::new() };
@@ -398,7 +410,7 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     };
     let under = parts.iter().filter(below).max_by(by_area).filter(|_| is_tuft(draft, widest));
     let largest = under.unwrap_or(widest).area;
-    // Where nothing large is closed, lines are sides of the body.
+    // If nothing large is closed, lines are sides of the body.
     let lines = !parts.iter().any(|p| p.open < 0.5 && p.area > 0.5 * largest);
     let tuft = |p: &Part| (p.area < largest || under.is_some()) && is_tuft(draft, p);
     let bodies: Vec<&Part> = parts
@@ -412,7 +424,7 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
             && draft.kind == Some(Kind::Fruit)
     };
     let (upper, lower): (Vec<&Part>, Vec<&Part>) = bodies.iter().copied().partition(on_top);
-    // Of a bunch each is a body but for a leaf.
+    // In a bunch each outline is a body, except for a leaf.
     let bodies = if lower.len() == 1 { lower } else { without_leaf(bodies) };
     let on_top = |p: &Part| bodies.len() == 1 && upper.iter().any(|u| u.stroke == p.stroke);
     let stem =
@@ -457,7 +469,7 @@ fn halves(draft: &Draft<'_>, parts: &[Part], largest: f64) -> Vec<usize> {
     found.flat_map(|r| r.parts).map(|p| arcs[p].stroke).collect()
 }
 
-/// Of many bodies the highest one is a leaf if it is much more pointed or larger than the usual one.
+/// Leaves out the highest of many bodies if it is a leaf: much more pointed or larger than the usual one.
 fn without_leaf(mut bodies: Vec<&Part>) -> Vec<&Part> {
     if bodies.len() < BUNCH {
         return bodies;
@@ -476,13 +488,14 @@ fn without_leaf(mut bodies: Vec<&Part>) -> Vec<&Part> {
     bodies.retain(|p| {
         let top = p.lo.midpoint(p.hi).y >= highest;
         let (unlike, larger) = (form(p) < UNLIKE * round, UNLIKE * p.area > area);
-        // Of three a large one may be all that the others lie on.
+        // If there are three, a large one may be the thing on which the others lie.
         !(top && if few { unlike && !larger } else { unlike || larger })
     });
     bodies
 }
 
-/// The stem of a mushroom that was drawn open at its cap, in one line down and up again or as its two sides; its strokes.
+/// Finds the stem of a mushroom that was drawn open at its cap, in one line down and up again or as its two sides;
+/// returns its strokes.
 fn below_cap(parts: &[Part], (low, high): (f64, f64), largest: f64) -> Vec<usize> {
     let hangs = |p: &&Part| {
         p.hi.y < low + CAP_FOOT * (high - low) && low - p.lo.y > STEM_LONG * (high - low) && p.open > MOUTH
@@ -496,7 +509,7 @@ fn below_cap(parts: &[Part], (low, high): (f64, f64), largest: f64) -> Vec<usize
     }
 }
 
-/// What stands in the pot is no tree.
+/// Classes of a plant in a pot; the plant is no tree.
 fn house_plant(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
     let mut found = pot(parts, all);
     if found.is_empty() {
@@ -509,7 +522,7 @@ fn house_plant(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classe
     found
 }
 
-/// A pot that was drawn in several lines: what lies low, is not tall, and spans what is level there.
+/// Finds a pot that was drawn in several lines: those that lie low, are not tall, and span the level ones there.
 fn pot_of_lines(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     let tall = high.y - low.y;
     let bottom = |p: &&Part| p.hi.y < low.y + 0.5 * tall && p.lo.y < low.y + POT_FOOT * tall;
@@ -520,7 +533,7 @@ fn pot_of_lines(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     parts.iter().filter(bottom).map(|p| (p.stroke, StrokeClass::Pot)).collect()
 }
 
-/// The lowest thing that is wide and has an inside.
+/// Finds the lowest outline that is wide and has an inside.
 fn pot(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
     let tall = high.y - low.y;
     let found = parts

@@ -1,4 +1,4 @@
-//! What colours say against the classifier, which sees none.
+//! The rule about colours, which the classifier does not see.
 
 use ink::StrokeClass;
 
@@ -6,10 +6,11 @@ use super::{Findings, unsure};
 use crate::draft::Draft;
 use crate::near::openness;
 use crate::palette;
+use crate::structure::is_lens;
 use crate::thresholds::STRAIGHT;
 
-/// Green lines that were taken for the side of a trunk or a part of a pot are what the classifier thinks next likely: a line
-/// is an axis, and what encloses something a blade if nothing else is likelier.
+/// Turns green lines that were taken for the side of a trunk or a part of a pot into axes; other green parts of pots,
+/// and green outlines that are pointed at both ends, into blades.
 pub(super) fn green_is_no_bark(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     if !palette::is_painted(draft.ink) {
@@ -22,7 +23,8 @@ pub(super) fn green_is_no_bark(draft: &Draft<'_>) -> Findings {
         }
         let is_line = openness(stroke) > STRAIGHT;
         // A green outline that branches is a stem by its silhouette.
-        if is_line || draft.class[k] == StrokeClass::Pot {
+        let is_blade = draft.class[k] == StrokeClass::Pot || is_lens(&stroke.points);
+        if is_line || is_blade {
             found.set(k, if is_line { StrokeClass::Axis } else { StrokeClass::Blade });
         }
     }

@@ -13,7 +13,7 @@ use geom::bounds;
 const FEWEST_DIPS: usize = 5;
 /// A row turns about its middle by less than this, radians; petals go round.
 const AROUND: f64 = 4.5;
-/// Lines that are grass at least.
+/// Fewest lines that are grass.
 const FEWEST_STALKS: usize = 4;
 /// A blade of grass is no longer than its chord by more than this share.
 const BARE: f64 = 0.85;
@@ -21,15 +21,16 @@ const BARE: f64 = 0.85;
 const ONWARDS: f64 = 0.6;
 /// It dips by this share of its height.
 const DIP: f64 = 0.3;
-/// A leg of a tuft is longer than this share of the stroke's diagonal, and apart from the other by this share of the shorter
-/// one.
+/// A leg of a tuft is longer than this share of the stroke's diagonal.
 const LEG: f64 = 0.25;
+/// The legs of a tuft are apart by more than this share of the shorter one.
 const APART: f64 = 0.15;
-/// The turn between the legs, at this share of the diagonal from the root, is sharper than 114 degrees (the cosine).
+/// Distance from the root at which the turn between the legs is measured, as a share of the diagonal.
 const AT_TURN: f64 = 0.06;
+/// The turn is sharper than 114 degrees: the cosine between the legs is above minus this.
 const SHARP: f64 = 0.4;
 
-/// A stroke that goes up and down and on to the side is a row of grass blades, where no trunk needs a crown.
+/// Finds rows of grass blades: strokes that go up and down and on to the side, if no trunk needs a crown.
 pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Crown, Other, Scribble, TrunkOutline};
     let mut found = Findings::default();
@@ -47,7 +48,7 @@ pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
         })
         .filter(|&k| zigzag(k))
         .collect();
-    // A line that lies beside the row goes on with it; an outline that stands is a plant of another kind.
+    // A line that lies next to the row continues it; an outline that stands is a plant of another kind.
     let (lying, standing): (Vec<usize>, Vec<usize>) =
         draft.of_class(TrunkOutline).into_iter().filter(|k| !rows.contains(k)).partition(|&k| {
             let s = &draft.ink.strokes[k];
@@ -61,8 +62,8 @@ pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// Blades of grass drawn in one go, down to the root and up again: a crown or fruit has no sharp point below from which
-/// two bare lines rise.
+/// Finds blades of grass drawn in one go, down to the root and up again: a crown or fruit has no sharp point below
+/// from which two bare lines rise.
 pub(super) fn tufts(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Other, Pot, TrunkOutline};
     let mut found = Findings::default();
@@ -81,7 +82,8 @@ pub(super) fn tufts(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// Both sides of a line with one sharp turn at its lowest point, each almost straight, apart above.
+/// Returns both sides of a line with one sharp turn at its lowest point, if each is almost straight and they are apart
+/// above.
 fn two_legs(points: &[DVec2]) -> Option<[Vec<DVec2>; 2]> {
     let (lo, hi) = bounds(points)?;
     let low = (0..points.len()).min_by(|&a, &b| points[a].y.total_cmp(&points[b].y))?;
@@ -100,7 +102,7 @@ fn two_legs(points: &[DVec2]) -> Option<[Vec<DVec2>; 2]> {
     (bare(left) && bare(right) && sharp && apart).then(|| [left.to_vec(), right.to_vec()])
 }
 
-/// Several single lines and nothing that a trunk could carry: stalks of grass, not sides of trunks.
+/// Finds several single lines where nothing needs a trunk: stalks of grass, not sides of trunks.
 pub(super) fn grass(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Scribble, TrunkOutline};
     let mut found = Findings::default();

@@ -9,24 +9,25 @@ use crate::draft::Draft;
 use crate::thresholds::{STOPPED_SHORT, STRAIGHT};
 use crate::{Kind, READ_AS};
 
-/// Fruits on twigs are at least so many.
+/// Fewest fruits on twigs.
 const FEWEST: usize = 2;
-/// Of a ring, the shorter side of its box over the longer one at least, and the share of its box that it fills: of a circle
-/// 0.79, of a lens less than 0.6 (*geometry*).
+/// Least ratio of the shorter to the longer side of a ring's box.
 const ROUND: f64 = 0.75;
+/// Least share of its box that a ring fills: a circle fills 0.79, a lens less than 0.6 (*geometry*).
 const FILLS: f64 = 0.68;
-/// It hangs from what touches it above this share of its height.
+/// A fruit hangs from a line that touches it above this share of its height.
 const UPPER: f64 = 0.7;
-/// It is smaller than this share of the drawing, and the largest at most so many times as wide as the smallest.
+/// A fruit is smaller than this share of the drawing.
 const SMALL: f64 = 0.22;
+/// The largest fruit is at most this factor of the smallest one wide.
 const ALIKE: f64 = 2.2;
-/// Rings of a palm are nuts where they are smaller than this share of the drawing.
+/// Rings of a palm are nuts if they are smaller than this share of the drawing.
 const NUT: f64 = 0.12;
-/// A twig is longer than so many rings are wide.
+/// A twig is longer than this factor of a ring's width.
 const TWIG: f64 = 2.0;
 /// An outline of less than this size is a leaf of a bare tree; a larger one may be a limb.
 const LEAF: f64 = 0.2;
-/// Its area over the square of its length at least (of a circle 0.08, *geometry*).
+/// Least area of a leaf over the square of its outline's length (0.08 for a circle, *geometry*).
 const OPEN: f64 = 0.012;
 
 struct Ring {
@@ -35,7 +36,8 @@ struct Ring {
     hi: DVec2,
 }
 
-/// Round rings that hang from twigs are fruits, and the twigs are no fruit.
+/// Turns round rings that hang from twigs into fruits, and other strokes that were taken for fruits into lines or
+/// blades.
 pub(super) fn fruits_on_twigs(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Fruit};
     let mut found = Findings::default();
@@ -84,7 +86,7 @@ fn ring(draft: &Draft<'_>, k: usize) -> Option<Ring> {
     })
 }
 
-/// One end of a line meets a ring at its top, or the line passes there.
+/// Whether one end of a line meets a ring at its top, or the line passes there.
 fn hangs(ring: &Ring, line: &[DVec2]) -> bool {
     let top = DVec2::new(0.5 * (ring.lo.x + ring.hi.x), ring.hi.y);
     let near = STOPPED_SHORT.min(0.5 * (ring.hi.x - ring.lo.x));
@@ -92,7 +94,7 @@ fn hangs(ring: &Ring, line: &[DVec2]) -> bool {
     c.distance < near && c.point.y > ring.lo.y + UPPER * (ring.hi.y - ring.lo.y)
 }
 
-/// What is taken for a bare tree has leaves where small outlines were drawn.
+/// Turns small outlines of a drawing that is taken for a bare tree into leaves.
 pub(super) fn outlines_are_no_twigs(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     if !draft.is_tree() {

@@ -1,11 +1,11 @@
-//! Rules of reading: what the whole drawing says about the class of a stroke, against the classifier.
+//! Rules of reading: evidence of the whole drawing about the class of a stroke, against the classifier.
 //!
-//! A stroke on its own cannot tell a leaf from a cactus or grass from a row of trunks; what lies inside it, what it
-//! stands on and what is missing around it can. Each rule is a row of [`RULES`]; they are applied in that order, and none
-//! changes a class that the user set. `cargo xtask train-strokes` says what each is worth.
+//! A single stroke does not distinguish a leaf from a cactus or grass from a row of trunks; the strokes inside it,
+//! below it and missing around it do. Each rule is a row of [`RULES`]; they are applied in that order, and none
+//! changes a class that the user set. `cargo xtask train-strokes` reports what each is worth.
 //!
-//! Their numbers stand at the top of each module, those of several below; `thresholds` says in which unit they are and where
-//! they come from.
+//! Their thresholds stand at the top of each module, those of several below; `thresholds` states their units and
+//! origins.
 
 mod as_kind;
 mod colours;
@@ -35,39 +35,39 @@ pub(crate) use trees::{IN_CROWN, SMALL};
 
 /// The rule of the kind that a plant is taken for.
 pub const READ_AS: &str = "read-as";
-/// The rule that what a line is follows from where it lies.
+/// The rule that the place of a line decides its class.
 pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
 /// The rule about stamens with their anthers.
 pub(crate) const STAMENS: &str = "stamens";
-/// The rule that petals and leaves are told apart by their colours.
+/// The rule that colours distinguish petals from leaves.
 pub(crate) const GREEN_LEAVES: &str = "green-leaves";
 
-/// Something that the whole drawing says about the class of a stroke.
+/// A rule: evidence of the whole drawing about the class of a stroke.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
-    /// Its name, in kebab-case: what reports and the ablation call it.
+    /// Its name, in kebab-case, in reports and the ablation.
     pub name: &'static str,
-    /// What it holds to be true of drawings, in a sentence for people.
+    /// Its statement about drawings, in a sentence for people.
     pub why: &'static str,
     applied: Applied,
 }
 
-/// Where a rule is applied.
+/// The step in which a rule is applied.
 #[derive(Clone, Copy, Debug)]
 enum Applied {
     /// In turn with the others of the table.
     Here {
-        /// Drawings of more strokes are left as they are: nobody draws one such plant with so many, and rules compare
+        /// Most strokes of a drawing to which it is applied: nobody draws one such plant with more, and rules compare
         /// pairs.
         most_strokes: usize,
-        /// The classes that it gives to strokes of a drawing half understood.
+        /// Finds the classes that it gives to strokes of a partly understood drawing.
         finds: fn(&Draft<'_>) -> Findings,
     },
-    /// At another step, which knows what the table does not.
+    /// In another step, which has information that the table lacks.
     Elsewhere,
 }
 
-/// What a rule found.
+/// Findings of a rule.
 #[derive(Debug, Default)]
 struct Findings {
     classes: Vec<(usize, StrokeClass)>,
@@ -75,7 +75,7 @@ struct Findings {
     legs: Vec<(usize, [Vec<DVec2>; 2])>,
     /// Petals that stand off their disc: the disc's stroke, and theirs.
     rings: Vec<(usize, Vec<usize>)>,
-    /// Stems with leaves on their way, drawn in one go.
+    /// Stems with leaves along them, drawn in one go.
     one_go: Vec<(usize, OneGo)>,
     /// Two of the lines are surely the sides of a trunk.
     trunk: bool,
@@ -109,53 +109,53 @@ const fn elsewhere(name: &'static str, why: &'static str) -> Rule {
     Rule { name, why, applied: Applied::Elsewhere }
 }
 
-/// A drawing of any number of strokes.
+/// Limit for rules about drawings of any number of strokes.
 const ANY: usize = usize::MAX;
-/// Of a plant with many parts.
+/// Limit for rules about a plant with many parts.
 const MANY: usize = 400;
-/// Of a plant with a leaf or a tuft for each of its lines.
+/// Limit for rules about a plant with a leaf or a tuft for each of its lines.
 const SOME: usize = 60;
-/// Of a sketch in a few lines.
+/// Limit for rules about a sketch in a few lines.
 const FEW: usize = 40;
 
-/// The rules, in the order in which they are applied: those that others build on first.
+/// The rules in the order in which they are applied: first those on whose results others build.
 pub const RULES: &[Rule] = &[
     // `ink::classify` applies it, because a preview keeps its class.
     elsewhere(
         LONE_LINE,
-        "A line by itself is a stem: crowns and trunks are recognised by what stands around them.",
+        "A lone line is a stem: crowns and trunks are recognised by the strokes around them.",
     ),
-    // `ink::classify` applies it, because it judges each plant by itself.
+    // `ink::classify` applies it, because it judges each plant separately.
     elsewhere(COMMON_GROUND, "A low, flat line on which several plants stand is their ground."),
     // `ink::clean` finds them, and `read` leaves them to the lines that they follow.
-    elsewhere(DRAWN_AGAIN, "What follows another line all the way is that line, drawn again."),
-    // `read` applies it, because it compares what stands beside one another.
+    elsewhere(DRAWN_AGAIN, "A line that follows another one along its whole length repeats it."),
+    // `read` applies it, because it compares pieces that stand next to one another.
     elsewhere(
         crate::BESIDE_THE_PLANT,
-        "What hangs in the air apart from a plant and needs ground, or looks like no plant, is left out.",
+        "Strokes apart from a plant are left out if they hang in the air but need ground, or if they do not look like a plant.",
     ),
     // `read` applies it, because it compares whole readings.
     elsewhere(
         READ_AS,
-        "What a stroke is follows from the kind of plant that explains the whole drawing best, or that was asked for.",
+        "The class of a stroke follows from the kind of plant that explains the whole drawing best, or that the user chose.",
     ),
     rule(
         "whole-flower",
         MANY,
         whole_flower::whole_flower,
-        "Outlines alike all round a ring, or one lobed outline round it, are petals round a disc.",
+        "Similar outlines all round a ring, or one lobed outline round it, are petals round a disc.",
     ),
     rule(
         "whole-tree",
         FEW,
         whole_tree::whole_tree,
-        "Something round over something narrow that stands is a crown on its trunk, however and in which order they are drawn.",
+        "A round part over a narrow, upright one is a crown on its trunk, in whichever way and order they are drawn.",
     ),
     rule(
         "whole-leaf",
         SOME,
         whole_leaf::whole_leaf,
-        "An outline that holds nothing but a line along its middle, and lines that leave that one, is a leaf with its veins.",
+        "An outline that holds only a line along its middle, and lines that branch off it, is a leaf with its veins.",
     ),
     rule(
         STAMENS,
@@ -167,25 +167,25 @@ pub const RULES: &[Rule] = &[
         "one-go",
         SOME,
         one_go::one_go,
-        "A line that comes back to itself on its way and goes on is a stem, and the loops are its leaves.",
+        "A line that returns to itself on its way and continues is a stem, and the loops are its leaves.",
     ),
     rule(
         "fruits-on-twigs",
         MANY,
         hanging::fruits_on_twigs,
-        "Round rings alike that hang from twigs or stalks are fruits.",
+        "Similar round rings that hang from twigs or stalks are fruits.",
     ),
     rule(
         "outline-is-no-twig",
         MANY,
         hanging::outlines_are_no_twigs,
-        "A small outline on what is taken for a bare tree is a leaf.",
+        "A small outline on a supposedly bare tree is a leaf.",
     ),
     rule(
         "ground-over-roots",
         SOME,
         pots::ground_over_roots,
-        "A long level line on which a plant stands, with nothing but lines below, is the ground over its roots.",
+        "A long level line on which a plant stands, with only lines below, is the ground over its roots.",
     ),
     rule("hill", SOME, pots::hill, "A wide arc over which everything else stands is a hill."),
     rule(
@@ -204,25 +204,25 @@ pub const RULES: &[Rule] = &[
         "crown-on-a-trunk",
         MANY,
         trees::crown_on_trunk,
-        "The largest closed outline is a crown where the tops of a trunk reach it from below, however smooth it is.",
+        "The largest closed outline is a crown if the tops of a trunk reach it from below, however smooth it is.",
     ),
     rule(
         "shading",
         MANY,
         shading::shading,
-        "A line to and fro in an outline, and lines side by side in a crown, are shading.",
+        "A line that runs to and fro in an outline, and lines side by side in a crown, are shading.",
     ),
     rule(
         "line-is-no-fruit",
         MANY,
         trees::line_is_no_fruit,
-        "A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.",
+        "A line that encloses nothing is not a fruit: along the foot of a crown it is the ground, elsewhere a stalk.",
     ),
     rule(
         "fruit-in-a-crown",
         MANY,
         trees::fruit_in_crown,
-        "A small ring inside a crown is a fruit, and a small outline that is longer than wide a leaf.",
+        "A small ring inside a crown is a fruit, and a small outline that is longer than wide is a leaf.",
     ),
     rule(
         "pot",
@@ -240,7 +240,7 @@ pub const RULES: &[Rule] = &[
         "zigzag",
         FEW,
         grass::zigzags,
-        "A stroke that goes up and down and on to the side is a row of grass blades.",
+        "A stroke that goes up and down while it moves sideways is a row of grass blades.",
     ),
     rule(
         "tuft",
@@ -252,18 +252,18 @@ pub const RULES: &[Rule] = &[
         "grass",
         ANY,
         grass::grass,
-        "Several single lines and nothing that a trunk could carry are stalks of grass.",
+        "Several single lines, without anything that a trunk could carry, are stalks of grass.",
     ),
     // `veins::collect` applies it, because it must know where the blades end.
-    elsewhere(VEINS_IN_BLADES, "A line in a blade is a vein, and one that lies in no blade is a stem."),
+    elsewhere(VEINS_IN_BLADES, "A line in a blade is a vein, and a line in no blade is a stem."),
     // `Draft::green_leaves` applies it, because it is about blades that are closed.
     elsewhere(
         GREEN_LEAVES,
-        "What is green beside petals of another colour is a leaf, however it stands round their middle.",
+        "A green part next to petals of another colour is a leaf, even if it lies round their centre.",
     ),
 ];
 
-/// Applies all rules but those that are switched `off`.
+/// Applies all rules except those that are switched `off`.
 pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
     let count = draft.class.len();
     for rule in RULES.iter().filter(|r| !off.contains(&r.name)) {
@@ -276,7 +276,7 @@ pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
     }
 }
 
-/// Puts into the draft what a rule found.
+/// Takes the findings of a rule over into the draft.
 fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
     for (stroke, class) in found.classes {
         draft.class[stroke] = class;
@@ -294,31 +294,31 @@ fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
     draft.rings.extend(found.rings);
 }
 
-/// Ends nearer than this share of the length: an outline that the pen meant to close.
+/// An outline whose ends are nearer than this share of its length was meant to be closed.
 const CLOSED: f64 = 0.2;
-/// Of an outline of a crown or a flower, nearer than this: they are drawn with less care than a box.
+/// The same for an outline of a crown or a flower, which is drawn with less care than a box.
 const SHUT: f64 = 0.24;
-/// Of a closed outline with a stalk, the share of the length that the loop has at least.
+/// Least share of the length that the loop of a closed outline with a stalk has.
 const STALK: f64 = 0.35;
 /// A trunk's top is at most this far from its crown.
 const REACH: f64 = 0.07;
-/// What stands is at most so many times as wide as tall: a trunk with a flared foot.
+/// Greatest width of a standing part relative to its height: a trunk with a flared foot.
 const STANDS: f64 = 1.2;
 /// A line stands if it is higher than this share of its width.
 const UPRIGHT: f64 = 0.8;
 /// Two sides of a trunk are farther apart than this, or the line was drawn twice: three steps of the pen (*sampled*).
 const SIDES_APART: f64 = 0.015;
-/// Every so many points of a stroke are looked at, where its share inside something counts: ink is *sampled* more densely than
+/// Step between points of a stroke of which the share inside something is counted: ink is *sampled* more densely than
 /// outlines bend.
 const STRIDE: usize = 3;
-/// What lies inside a crown does so with this share of its points: it may stick out a little.
+/// A stroke lies inside a crown if at least this share of its points does: it may stick out a little.
 const WITHIN: f64 = 0.8;
 
 fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
     draft.class.iter().any(|c| classes.contains(c))
 }
 
-/// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.
+/// Returns the share of every `stride`th point that lies in a closed outline, 0 to 1; 0 if there are no points.
 pub(crate) fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
     let (mut looked, mut hits) = (0_u32, 0_u32);
     for &p in points.iter().step_by(stride) {
@@ -328,36 +328,36 @@ pub(crate) fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -
     f64::from(hits) / f64::from(looked.max(1))
 }
 
-/// A rule may change it: its class is not sure.
+/// Whether a rule may change the class of a stroke: it is not sure.
 pub(crate) fn unsure(draft: &Draft<'_>, k: usize) -> bool {
     !draft.settled[k] && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
-/// Decided by no more than what the whole is taken for.
+/// Whether at most the kind of the whole decided the class of a stroke.
 fn free(draft: &Draft<'_>, k: usize) -> bool {
     let settled = draft.settled[k] && draft.rule[k] != Some(READ_AS);
     !settled && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
-/// Highest point first, lowest point last.
+/// Returns the highest point and the lowest point.
 fn ends(points: &[DVec2]) -> (DVec2, DVec2) {
     let (a, b) = (points[0], points[points.len() - 1]);
     if a.y > b.y { (a, b) } else { (b, a) }
 }
 
-/// Distance to an outline, 0 inside.
+/// Returns the distance to an outline, 0 inside.
 fn outside(outline: &[DVec2], p: DVec2) -> f64 {
     if contains(outline, p) { 0.0 } else { nearest_on_ring(outline, p).1 }
 }
 
-/// A line that stands: rather straight, and higher than wide.
+/// Whether a line stands: it is rather straight, and higher than wide.
 fn upright(draft: &Draft<'_>, k: usize) -> bool {
     let s = &draft.ink.strokes[k];
     let (top, foot) = ends(&s.points);
     openness(s) > STRAIGHT && top.y - foot.y > UPRIGHT * (top.x - foot.x).abs()
 }
 
-/// Upper and lower ends of the upright lines of a class.
+/// Returns the upper and lower ends of the upright lines of a class.
 fn standing(draft: &Draft<'_>, class: StrokeClass) -> Vec<(usize, DVec2, DVec2)> {
     draft
         .of_class(class)

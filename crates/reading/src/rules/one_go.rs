@@ -1,4 +1,4 @@
-//! The rule about plants drawn in one go: a stem, and leaves or petals as loops on its way.
+//! The rule about plants drawn in one go: a stem, and leaves or petals as loops along it.
 
 use geom::{convex_hull, polyline_length, signed_area};
 use glam::DVec2;
@@ -8,29 +8,34 @@ use super::{Findings, free, unsure};
 use crate::draft::{Draft, OneGo};
 use crate::thresholds::ROUNDING;
 
-/// Stems with leaves at least, where the whole is taken for something that has none.
+/// Fewest stems with leaves if the whole is taken for a kind that has none.
 const FEWEST: usize = 2;
 /// Points of a stroke that are compared with each other.
 const LOOKED: usize = 160;
-/// A loop is at least this share of its stroke, and closes where the pen comes back to within this of itself, but between these
-/// shares of the loop.
+/// A loop is at least this share of its stroke long.
 const LOOP: f64 = 0.07;
+/// A loop closes where the pen comes back to within this distance of its line.
 const CLOSES: f64 = 0.012;
+/// Least closing distance, as a share of the loop's length.
 const CLOSES_SHARE: f64 = 0.05;
+/// Greatest closing distance, as a share of the loop's length.
 const CLOSES_MOST: f64 = 0.08;
-/// Its area over the square of its length; that of a circle is 0.08, of a lens four times as long as wide 0.05 (*geometry*).
+/// Least area of a loop over the square of its length; it is 0.08 for a circle, 0.05 for a lens four times as long as
+/// wide (*geometry*).
 const OPEN: f64 = 0.018;
-/// It fills this share of its hull.
+/// A loop fills more than this share of its hull.
 const FULL: f64 = 0.75;
-/// Its area over the square of its reach: of a lens less than 0.4, of a circle 0.79 (*geometry*). Of one loop alone, which may
-/// be the crown of a tree, and of several.
+/// Greatest area over the square of its reach of a single loop, which may be the crown of a tree: less than 0.4 for a
+/// lens, 0.79 for a circle (*geometry*).
 const LENS: f64 = 0.42;
+/// The same limit for several loops.
 const LENSES: f64 = 0.6;
-/// The stem is at least this share of the stroke, and leads somewhere: its ends are this far apart as a share of it.
+/// The stem is more than this share of the stroke long.
 const STEM: f64 = 0.15;
+/// The ends of the stem are farther apart than this share of its length: it leads somewhere.
 const LEADS: f64 = 0.5;
 
-/// Lines that come back to themselves on their way are stems with leaves.
+/// Finds stems with leaves: lines that come back to themselves along their way.
 pub(super) fn one_go(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Fruit, TrunkOutline, Vein};
     let mut found = Findings::default();
@@ -38,7 +43,7 @@ pub(super) fn one_go(draft: &Draft<'_>) -> Findings {
         .filter(|&k| free(draft, k) && [Axis, Blade, Fruit, TrunkOutline, Vein].contains(&draft.class[k]))
         .filter_map(|k| Some((k, apart(&draft.ink.strokes[k].points)?)))
         .collect();
-    // One may be a fruit with its stalk, if the whole looks like it; several are no chance.
+    // A single one may be a fruit with its stalk, if the whole looks like it; several are no coincidence.
     if parts.len() < FEWEST {
         parts.retain(|(k, _)| unsure(draft, *k));
     }
@@ -47,7 +52,7 @@ pub(super) fn one_go(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// The loops of a line and what is left of it; none where it is no stem with loops.
+/// Separates the loops of a line from its stem; `None` if it is no stem with loops.
 fn apart(points: &[DVec2]) -> Option<OneGo> {
     let length = polyline_length(points);
     let stride = points.len().div_ceil(LOOKED);
@@ -64,7 +69,7 @@ fn apart(points: &[DVec2]) -> Option<OneGo> {
             j += 1;
             continue;
         };
-        // A few points on it may come nearer.
+        // A few points further on may come nearer.
         let ahead = (j + 1..p.len()).map_while(closing).take(LOOKED / 10);
         let best = ahead.fold(first, |a, b| if b.0 < a.0 { b } else { a });
         let (_, start, end) = best;
@@ -92,8 +97,8 @@ fn apart(points: &[DVec2]) -> Option<OneGo> {
         .then_some(OneGo { loops, stem })
 }
 
-/// Where the line from `from` on comes nearest to its point `j` and closes a loop of at least that length: how near, and
-/// from where to where.
+/// Finds where the line from `from` on comes nearest to its point `j` and closes a loop of at least that length: the
+/// distance, and both places.
 fn closing((p, way): (&[DVec2], &[f64]), from: usize, j: usize, least: f64) -> Option<(f64, usize, usize)> {
     let mut best: Option<(f64, usize, usize)> = None;
     let mut i = from;
@@ -103,7 +108,7 @@ fn closing((p, way): (&[DVec2], &[f64]), from: usize, j: usize, least: f64) -> O
         if gap < closes && best.is_none_or(|b| gap < b.0) {
             best = Some((gap, i, j));
         }
-        // It comes nearer by no more than it goes on, and shorter loops close nearer.
+        // The distance shrinks by no more than the length along the line, and shorter loops close nearer.
         let far = way[i] + (gap - closes) - ROUNDING;
         i += 1;
         while i < j && way[i] < far {

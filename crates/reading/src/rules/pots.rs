@@ -1,4 +1,4 @@
-//! Rules about what a plant stands in or on: its pot, and the ground over its roots.
+//! Rules about pots and the ground over roots.
 
 use geom::{bounds, polyline_length, signed_area};
 use glam::DVec2;
@@ -11,39 +11,44 @@ use crate::thresholds::{SAME_PLACE, WELL_SHORT};
 
 /// A pot is at least this wide.
 const NARROWEST: f64 = 0.05;
-/// A pot is so many times as tall as wide.
+/// Height of a pot relative to its width.
 const TALL: core::ops::Range<f64> = 0.25..2.0;
-/// A pot's rim is this share of its width, and what grows from it is narrower than [`FOOT`].
+/// Least width of a pot's rim relative to the pot's width; a plant growing from it is narrower than [`FOOT`].
 const RIM: f64 = 0.8;
-/// Share of a pot's width that the foot of what stands in it has at most.
+/// Greatest width of the foot of a plant in a pot, as a share of the pot's width.
 const FOOT: f64 = 0.9;
-/// The ground is a line whose ends are this far apart as a share of its length, and this share of what it bears wide.
+/// Straightness of the ground: the distance between its ends is more than this share of its length.
 const LEVEL: f64 = 0.95;
+/// The ground is wider than this share of the plant on it.
 const WIDE: f64 = 0.6;
-/// What begins at the ground begins this near to it.
+/// A line that begins at the ground begins this near to it.
 const NEAR: f64 = 0.025;
-/// What stands in a pot begins at its rim, or inside it by less than this share of its height.
+/// A plant in a pot begins at its rim, or inside it by less than this share of its height.
 const INSIDE: f64 = 0.4;
-/// Its foot is its lowest part, of this share of its height.
+/// Lowest share of a plant's height that is its foot.
 const LOWEST: f64 = 0.05;
-/// A pot's rim and bottom are measured at these shares of its height, and the rim is nearly as wide as the bottom.
+/// Share of a pot's height at which its rim is measured.
 const UPPER: f64 = 0.93;
+/// Share of a pot's height at which its bottom is measured.
 const LOWER: f64 = 0.1;
+/// Least width of the rim relative to the bottom.
 const WIDENS: f64 = 0.95;
 /// A pot fills this share of its box.
 const FULL: f64 = 0.6;
-/// The ground rises by less than this share of its width, and what stands on it by more than so many times [`NEAR`].
+/// The ground rises by less than this share of its width, and the plant on it by more than [`RISES`] times [`NEAR`].
 const FLAT: f64 = 0.08;
-/// A taproot is below less than this share as wide as above; a pot is wider.
+/// Greatest width of a taproot below relative to above; a pot is wider.
 const POINTED: f64 = 0.4;
+/// Factor of [`NEAR`] by which a plant rises above the ground.
 const RISES: f64 = 4.0;
-/// The ends of an arc are farther apart than this share of its length; a hill is lower than that share of its width,
-/// and both its ends lie in that lowest share of its height.
+/// The ends of an arc are farther apart than this share of its length.
 const OPEN_ARC: f64 = 0.7;
+/// A hill is lower than this share of its width.
 const HILLY: f64 = 0.5;
+/// Both ends of a hill lie in this lowest share of its height.
 const ENDS_LOW: f64 = 0.25;
 
-/// A box at the bottom with a flat top on which the plant stands is its pot.
+/// Finds pots: a box at the bottom with a flat top on which the plant stands.
 pub(super) fn pots(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Corolla, Crown, Fruit, Ground, Pot, Scribble, TrunkOutline};
     let mut found = Findings::default();
@@ -67,7 +72,7 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
             continue;
         }
         let points = &draft.ink.strokes[k].points;
-        // What stands in it: lines whose foot is at its upper edge and that rise out of it.
+        // Lines in the pot: their foot is at its upper edge and they rise out of it.
         let feet: Vec<(usize, f64)> = (0..draft.class.len())
             .filter(|&j| j != k && [Axis, TrunkOutline].contains(&draft.class[j]))
             .filter(|&j| {
@@ -108,7 +113,8 @@ fn contained(inner: (DVec2, DVec2), outer: (DVec2, DVec2)) -> bool {
         && inner.1.cmple(outer.1 + DVec2::splat(SAME_PLACE)).all()
 }
 
-/// A long level line on which the plant stands, with nothing but lines below it, is the ground, and what is below are roots.
+/// Finds the ground over roots: a long level line on which the plant stands, with nothing but lines below it, which
+/// are roots.
 pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let strokes = &draft.ink.strokes;
@@ -130,14 +136,14 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
         let y = lo.y.midpoint(hi.y);
         let below: Vec<usize> =
             others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
-        // What has a bottom is a pot.
+        // An outline with a bottom is a pot.
         let line = |j: usize| openness(&strokes[j]) > 0.5 && !level(j);
         let lines = below.iter().all(|&j| unsure(draft, j) && (line(j) || tapers(&strokes[j], y)));
         let taproot = below.iter().any(|&j| !line(j)) && others().any(|(_, b)| b.1.y > y + RISES * NEAR);
         let stands = others().any(|(j, b)| {
             b.1.y > y + RISES * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
         });
-        // Roots hang from the ground or from one another: what lies apart is something else.
+        // Roots hang from the ground or from one another: separate lines are something else.
         let hangs = below.iter().any(|&j| boxes[j].1.y > y - NEAR);
         if lines && (stands || taproot) && hangs {
             found.settle(k, StrokeClass::Ground);
@@ -148,7 +154,7 @@ pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// A wide arc over which everything else stands is a hill.
+/// Finds a hill: a wide arc over which everything else stands.
 pub(super) fn hill(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let strokes = &draft.ink.strokes;
@@ -185,7 +191,7 @@ pub(super) fn hill(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// An outline that hangs from a level, open there or closed, and runs to a point below: a taproot.
+/// Whether an outline is a taproot: it hangs from a level, open there or closed, and runs to a point below.
 fn tapers(stroke: &InkStroke, level: f64) -> bool {
     let Some((outline, (lo, hi))) = stroke.outline().zip(bounds(&stroke.points)) else { return false };
     let at = |share: f64| width_at(outline, lo.y + share * (hi.y - lo.y));

@@ -9,25 +9,28 @@ use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::thresholds::STRAIGHT;
 
-/// A line that sweeps to and fro by this share of its breadth so many times, both ends among them, is shading; it is looked
-/// at from so many sides.
+/// Depth of the sweeps of a line that is shading, as a share of its breadth.
 const SWEEP: f64 = 0.3;
+/// Fewest sweeps to and fro of a line that is shading, both ends among them.
 const SWEEPS: usize = 5;
+/// Number of directions in which a line is examined.
 const SIDES: u32 = 8;
-/// It lies in the outline with this share of its points: the hand is quick.
+/// Shading lies in its outline with more than this share of its points: the hand is quick.
 const MOSTLY: f64 = 0.7;
-/// So are short arcs in a crown that touch nothing, from so many on: more open than this, and shorter than that share of the
-/// crown's outline.
+/// Fewest short arcs in a crown that are shading; they touch nothing.
 const ARCS: usize = 3;
+/// Such an arc is more open than this.
 const ARC_OPEN: f64 = 0.3;
+/// Such an arc is shorter than this share of the crown's outline.
 const ARC: f64 = 0.15;
-/// Lines side by side in a crown are shading from so many on, if they lead the same way (the cosine between them) and touch
-/// nothing within this.
+/// Fewest lines side by side in a crown that are shading.
 const HATCHES: usize = 4;
+/// Such lines run in one direction: the cosine between them is above this.
 const ALIKE: f64 = 0.95;
+/// Such lines touch nothing within this distance.
 const TOUCHES: f64 = 0.012;
 
-/// Lines to and fro in an outline, and lines side by side in a crown, are its shading.
+/// Finds the shading of an outline: lines to and fro in it, and lines side by side in a crown.
 pub(super) fn shading(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Disc, Scribble, TrunkOutline, Vein};
     let mut found = Findings::default();
@@ -69,7 +72,7 @@ pub(super) fn shading(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// A line begins or ends at another, other than the crown that it lies in.
+/// Whether a line begins or ends at another, other than the crown that it lies in.
 fn touches(draft: &Draft<'_>, k: usize, crown: usize) -> bool {
     let p = &draft.ink.strokes[k].points;
     let near = |q: DVec2| {
@@ -81,7 +84,7 @@ fn touches(draft: &Draft<'_>, k: usize, crown: usize) -> bool {
     near(p[0]) || near(p[p.len() - 1])
 }
 
-/// Whether a line goes to and fro, seen from any side.
+/// Whether a line goes to and fro in any of the directions.
 fn sweeps(points: &[DVec2]) -> bool {
     (0..SIDES).any(|i| {
         let (s, c) = ops::sin_cos(ops::PI * f64::from(i) / f64::from(SIDES));

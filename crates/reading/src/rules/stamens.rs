@@ -8,15 +8,17 @@ use crate::draft::Draft;
 use crate::thresholds::{FEWEST_PETALS, STRAIGHT};
 use geom::bounds;
 
-/// Stamens at least.
+/// Fewest stamens.
 const FEWEST: usize = 3;
-/// A ring at the end of a line is smaller than this share of the line, and nearer to the end than so many of its own size.
+/// A ring at the end of a line is smaller than this share of the line.
 const SMALL: f64 = 0.45;
+/// Its middle is nearer to the end than this factor of its own size.
 const AT_END: f64 = 1.0;
 /// The lines begin within this share of their length of one place.
 const ONE_PLACE: f64 = 0.6;
-/// Petals are larger than this share of the lines, and come as near to that place.
+/// Petals are larger than this factor of the lines' length.
 const PETAL: f64 = 1.2;
+/// Petals come within this share of the lines' length of that place.
 const NEAR: f64 = 0.6;
 
 struct Stamen {
@@ -26,7 +28,7 @@ struct Stamen {
     long: f64,
 }
 
-/// Lines with a ring at one end that begin in one place, round which there are petals.
+/// Finds stamens: lines with a ring at one end that begin in one place, round which there are petals.
 pub(super) fn stamens(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let strokes = &draft.ink.strokes;
@@ -47,7 +49,7 @@ pub(super) fn stamens(draft: &Draft<'_>) -> Findings {
             let (first, last) = (at(k, a), at(k, b));
             (first != last).then_some((k, if first { b } else { a }))
         });
-        // Of several the one that no other line has.
+        // Takes a ring that no other line has.
         let free = pair.find(|(k, _)| stamens.iter().all(|s| s.knob != *k));
         stamens.extend(free.map(|(knob, foot)| Stamen { line, knob, foot, long: a.distance(b) }));
     }

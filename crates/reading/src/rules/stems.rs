@@ -9,8 +9,8 @@ use crate::draft::Draft;
 /// A stem ends this near to its leaf.
 const TOUCH: f64 = 0.025;
 
-/// Sides of a trunk come closer upwards or run side by side. Lines that spread from one place, each to a leaf of
-/// its own, are stems.
+/// Finds stems: lines that spread from one place, each to a leaf of its own. The sides of a trunk come closer upwards
+/// or run side by side.
 pub(super) fn stems(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let blades: Vec<&[DVec2]> = draft

@@ -1,4 +1,4 @@
-//! Rules about trees: trunks, crowns, and what lies in a crown.
+//! Rules about trees: trunks, crowns, and the strokes in a crown.
 
 use geom::{bounds, signed_area, simple_outline};
 use glam::DVec2;
@@ -13,7 +13,7 @@ use crate::draft::Draft;
 use crate::rings::rings;
 use crate::thresholds::{STOPPED_SHORT, WELL_SHORT};
 
-/// The longer of a trunk's sides is at most one over this times as long as the other.
+/// Least length of the shorter of a trunk's sides, as a share of the longer one.
 const ALIKE: f64 = 0.55;
 /// A trunk is narrower than this share of its crown.
 const NARROW: f64 = 0.7;
@@ -21,46 +21,50 @@ const NARROW: f64 = 0.7;
 const CROWN_AREA: f64 = 0.02;
 /// A fruit in a crown lies there with this share of its points.
 pub(crate) const IN_CROWN: f64 = 0.9;
-/// Of a ring, the shorter side of its box over the longer one at least.
+/// Least ratio of the shorter to the longer side of a ring's box.
 const ROUND: f64 = 0.6;
-/// Ends farther apart than this share of the length: a line, however shaky.
+/// A stroke whose ends are farther apart than this share of its length is a line, however shaky.
 const LINE: f64 = 0.6;
-/// As [`LINE`], of a stalk: a slice of a fruit is an arc.
+/// The same limit for a stalk: a slice of a fruit is an arc.
 const STRAIGHT_LINE: f64 = 0.85;
-/// It fills this share of its box: of a circle 0.79, of a lens that slants less than 0.55 (*geometry*).
+/// Least share of its box that a ring fills: a circle fills 0.79, a slanting lens less than 0.55 (*geometry*).
 const FILLS: f64 = 0.62;
-/// A leaf's area over the square of its outline's length at least: less is a line.
+/// Least area of a leaf over the square of its outline's length: less is a line.
 const OPEN: f64 = 0.015;
 /// A fruit covers less than this share of its crown.
 pub(crate) const SMALL: f64 = 0.03;
-/// Sides of a trunk are nearer to one another than so many times the shorter one's length; so many times as far apart above as
-/// below at most; and both feet stand within this of the lowest point.
+/// Sides of a trunk are nearer to one another than this factor of the shorter one's length.
 const BESIDE: f64 = 1.3;
+/// Sides of a trunk are farther apart above than below by at most this factor.
 const SPREAD: f64 = 1.6;
+/// Both feet of a trunk stand within this distance of the lowest point.
 const FEET: f64 = 0.15;
-/// A trunk that bears fronds is slimmer than this share of its length, and so many ends at least meet at its top.
+/// A trunk that bears fronds is slimmer than this share of its length, and at least [`FAN`] ends meet at its top.
 const SLIM: f64 = 0.3;
-/// A bare trunk is at its top at most so many times as wide as at its foot, and has so many limbs at least; they begin above this
-/// share of its height.
+/// Greatest width of a bare trunk's top relative to its foot.
 const NARROWS: f64 = 1.15;
+/// Fewest limbs of a bare trunk.
 const LIMBS: usize = 3;
+/// Limbs begin above this share of the trunk's height.
 const LIMB_HIGH: f64 = 0.25;
+/// Fewest ends of fronds that meet at a trunk's top.
 const FAN: usize = 4;
 /// The tops of a trunk's sides lie below this share of their crown's height.
 const INTO: f64 = 0.6;
-/// A crown has no outline beside it of more than this share of its area.
+/// A lone crown has no other outline of more than this share of its area.
 const LONE: f64 = 0.25;
 /// A stalk drawn as two lines is narrower than this share of its leaf; a trunk is wider.
 const TRUNK_WIDE: f64 = 0.1;
-/// Lines make up an outline where their ends meet within this share of its diagonal.
+/// Lines form an outline if their ends meet within this share of its diagonal.
 const MEETS: f64 = 0.25;
-/// Every so many points of a ring are looked at: those of fruits are short, and all of one is in or out.
+/// Step between points of a ring that are looked at: rings of fruits are short, and lie all in or all out.
 const FRUIT_STRIDE: usize = 4;
-/// The line of the ground rises by less than this share of its width, and lies in this lowest share of the crown over it.
+/// The line of the ground rises by less than this share of its width.
 const FLAT: f64 = 0.3;
+/// The line of the ground lies in this lowest share of the height of the crown above it.
 const CROWN_FOOT: f64 = 0.2;
 
-/// Two single lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.
+/// Finds the sides of a trunk: two single lines side by side that carry a crown, or a fan of fronds.
 pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     // A trunk that was drawn as a closed outline needs no sides.
@@ -129,7 +133,8 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// Lines that begin on the sides of a trunk, or at its top, and lead away; nothing else may stand as tall, or bear leaves.
+/// Counts lines that begin on the sides of a trunk, or at its top, and lead away; nothing else may stand as tall, or
+/// bear leaves.
 fn limbs(draft: &Draft<'_>, (a, b): (usize, usize), hub: DVec2) -> usize {
     use StrokeClass::{Blade, Corolla, Disc};
     if any(draft, &[Blade, Corolla, Disc]) {
@@ -156,7 +161,7 @@ fn limbs(draft: &Draft<'_>, (a, b): (usize, usize), hub: DVec2) -> usize {
         .count()
 }
 
-/// The largest closed outline of the drawing is a crown where the tops of a drawn trunk reach it from below.
+/// Takes the largest closed outline of the drawing for a crown if the tops of a drawn trunk reach it from below.
 pub(super) fn crown_on_trunk(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Crown, Pot, TrunkOutline, Vein};
     let mut found = Findings::default();
@@ -172,7 +177,7 @@ pub(super) fn crown_on_trunk(draft: &Draft<'_>) -> Findings {
     let Some((lo, hi)) = bounds(outline) else { return found };
     let mut sides: Vec<(usize, DVec2, DVec2)> =
         standing(draft, TrunkOutline).into_iter().filter(|s| !parts.contains(&s.0)).collect();
-    // Sides may have been taken for branches: they begin below the crown, reach it, and are about as long as one another.
+    // Sides may have been taken for branches: they begin below the crown, reach it, and are about equally long.
     let outlined = sides.len();
     if outlined < 2 {
         let branches = standing(draft, Axis).into_iter().filter(|s| unsure(draft, s.0) && s.2.y < lo.y);
@@ -200,8 +205,8 @@ pub(super) fn crown_on_trunk(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// Outlines that may be a crown: area, strokes, polygon. Each closed by itself, or made of lines that do not stand and
-/// whose ends meet.
+/// Returns outlines that may be a crown: area, strokes, polygon. Each is closed, or made of lines that do not stand
+/// and whose ends meet.
 fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
     use StrokeClass::{Blade, Disc, Fruit, Other, TrunkOutline};
     let strokes = &draft.ink.strokes;
@@ -227,7 +232,7 @@ fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
     found
 }
 
-/// A small ring inside a crown is a fruit, and what is longer than wide is a leaf.
+/// Finds small outlines inside a crown: a ring is a fruit, and one longer than wide is a leaf.
 pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Blade, Crown, Disc, Fruit};
     let mut found = Findings::default();
@@ -255,7 +260,8 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.
+/// Finds lines that were taken for fruits but enclose nothing: along the foot of a crown they are the ground,
+/// elsewhere stalks.
 pub(super) fn line_is_no_fruit(draft: &Draft<'_>) -> Findings {
     use StrokeClass::{Axis, Crown, Fruit, Ground};
     let mut found = Findings::default();

@@ -13,43 +13,50 @@ use crate::corolla::{dips, is_cup};
 use crate::draft::Draft;
 use crate::thresholds::STRAIGHT;
 
-/// Petals round a disc at least.
+/// Fewest petals round a disc.
 const FEWEST: usize = 4;
 /// The middle of a petal that begins under the disc lies at least at this share of its farthest point.
 const UNDER: f64 = 0.4;
-/// Between two neighbouring petals at most this angle, radians.
+/// Greatest angle between two neighbouring petals, radians.
 const WIDEST: f64 = 2.2;
-/// More outlines are no flower in a few strokes: each is compared with each.
+/// Most outlines of a flower in a few strokes: each is compared with each.
 const MOST: usize = 80;
-/// An outline of less area is a dot; one whose length squared is so many times its area is a scribble (12.6 of a circle,
-/// *geometry*).
+/// An outline of less area is a dot.
 const NO_AREA: f64 = 1e-5;
+/// An outline whose squared length is more than this factor of its area is a scribble (12.6 for a circle,
+/// *geometry*).
 const SCRIBBLE: f64 = 60.0;
-/// Of a ring, the shorter side of its box over the longer one at least.
+/// Least ratio of the shorter to the longer side of a ring's box.
 const ROUND: f64 = 0.6;
-/// A petal beside the disc keeps this share of the disc's radius away from its middle; its own middle lies this far out; and it
-/// begins within so many radii of the disc and that share of its own radius.
+/// A petal next to the disc keeps more than this share of the disc's radius away from the disc's middle.
 const BESIDE: f64 = 0.2;
+/// The middle of a petal lies farther than this share of the disc's radius from the disc's middle.
 const OUTSIDE: f64 = 0.8;
+/// A petal begins within this number of disc radii, and a share of its own radius, of the disc's middle.
 const AT_DISC: f64 = 1.5;
+/// That share of its own radius for petals at their disc.
 const AT_PETAL: f64 = 0.1;
-/// As [`AT_PETAL`], of petals that stand off their disc: at least so many, with no wider angle than that between two.
+/// That factor of its own radius for petals that stand off their disc.
 const OFF_DISC: f64 = 1.6;
+/// Fewest petals that stand off their disc.
 const RING: usize = 5;
+/// Between two of these no angle is wider than this, radians.
 const RING_GAP: f64 = 1.7;
-/// Circles touch where their middles are nearer than so many times both radii (1 of true circles, *geometry*); a berry behind
-/// others has between these shares of their usual radius.
+/// Circles touch if their middles are nearer than this factor of the sum of their radii (1 for true circles,
+/// *geometry*).
 const TOUCH: f64 = 1.15;
+/// Radius of a berry behind others relative to their usual radius.
 const BERRY: core::ops::Range<f64> = 0.6..1.6;
-/// A disc is smaller than so many times its petals.
+/// A disc is smaller than this factor of its petals.
 const LARGEST_DISC: f64 = 2.5;
-/// The disc of a lobed corolla: this near to its middle, and between these shares of its radius. A lobe dips by that share of
-/// the reach.
+/// The disc of a lobed corolla is this near to the corolla's middle, as a share of its radius.
 const CENTRAL: f64 = 0.25;
+/// Radius of that disc as a share of the corolla's radius.
 const SIZED: core::ops::Range<f64> = 0.1..0.7;
+/// Depth of a dip between lobes, as a share of the reach.
 const LOBE: f64 = 0.12;
 
-/// A stem ends within this share of the size of a cup from it.
+/// A stem ends within this share of a cup's size of the cup.
 const STEM_AT: f64 = 0.1;
 
 struct Loop {
@@ -61,7 +68,7 @@ struct Loop {
     round: bool,
 }
 
-/// Petals round a disc, each an outline or all in one go.
+/// Finds petals round a disc, each an outline or all in one go.
 pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     if draft.kind.is_some_and(|kind| !kind.is_like(Kind::Flower)) {
@@ -92,7 +99,7 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
         found.settle(loops[disc].stroke, StrokeClass::Disc);
         flowers += 1;
     }
-    // Beside other flowers, and over a pot.
+    // Other flowers, or a pot, are there already.
     if flowers > 0 || draft.class.contains(&StrokeClass::Pot) {
         let stems = stem_ends(draft);
         let cups = (0..loops.len()).filter(|&i| !taken[i]).map(|i| loops[i].stroke);
@@ -104,7 +111,7 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     if flowers == 0 {
         return found;
     }
-    // What bears them is a stem, and what the stem bears are leaves.
+    // The line that bears them is a stem, and blades on the stem are leaves.
     let sides: Vec<usize> = (0..draft.class.len())
         .filter(|&k| draft.class[k] == StrokeClass::TrunkOutline && unsure(draft, k))
         .filter(|&k| openness(&draft.ink.strokes[k]) > STRAIGHT)
@@ -115,13 +122,13 @@ pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// Both ends of all lines that are rather straight.
+/// Returns both ends of all lines that are rather straight.
 pub(super) fn stem_ends(draft: &Draft<'_>) -> Vec<DVec2> {
     let lines = draft.ink.strokes.iter().filter(|s| openness(s) > STRAIGHT);
     lines.flat_map(|s| [s.points.first(), s.points.last()]).flatten().copied().collect()
 }
 
-/// Petals seen from the side, in one outline on the end of a stem, as a tulip is drawn.
+/// Whether petals in profile, in one outline, stand on the end of a stem, as a tulip is drawn.
 pub(super) fn is_cup_on_stem(points: &[DVec2], stems: &[DVec2]) -> bool {
     let Some((low, high)) = bounds(points) else { return false };
     let near = STEM_AT * low.distance(high);
@@ -152,7 +159,7 @@ fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
     })
 }
 
-/// The free ring with the most petals round it.
+/// Returns the free ring with the most petals round it.
 fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool], off: f64) -> Option<(usize, Vec<usize>)> {
     let free: Vec<usize> = (0..loops.len()).filter(|&i| !taken[i]).collect();
     let rings = free.iter().copied().filter(|&d| loops[d].round);
@@ -163,7 +170,7 @@ fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool], off: f64) -> Option<(
     })
 }
 
-/// What stands round a ring, if it is petals.
+/// Returns the outlines that stand round a ring, if they are petals.
 fn petals_of(
     draft: &Draft<'_>,
     loops: &[Loop],
@@ -171,7 +178,7 @@ fn petals_of(
     d: usize,
 ) -> Option<Vec<usize>> {
     let disc = &loops[d];
-    // How near to the disc's middle an outline comes, and how far from it.
+    // The least and the greatest distance of an outline from the disc's middle.
     let reach = |l: &Loop| {
         let far = draft.ink.strokes[l.stroke].points.iter().map(|p| p.distance(disc.middle));
         far.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| (least.min(d), most.max(d)))
@@ -182,7 +189,7 @@ fn petals_of(
         .filter(|&i| {
             let l = &loops[i];
             let (way, (gap, far)) = (l.middle.distance(disc.middle), reach(l));
-            // A petal begins beside the disc, or under it and then at its own end.
+            // A petal begins next to the disc, or under it and then at its own end.
             let beside = !contains(&l.hull, disc.middle) && gap > BESIDE * disc.radius;
             let begins = beside || way > UNDER * far;
             i != d && begins && way > OUTSIDE * disc.radius && gap < AT_DISC * disc.radius + off * l.radius
@@ -212,7 +219,7 @@ fn petals_of(
             && l.round
             && beyond
     });
-    // Farther off, only a whole ring of petals alike, which begin alike far from it, belongs to a disc.
+    // Farther off, only a whole ring of similar petals, which begin at similar distances, belongs to a disc.
     let mut gaps = petals.iter().map(|&i| reach(&loops[i]).0);
     let first = gaps.next().unwrap_or(0.0);
     let (least, most) = gaps.fold((first, first), |(a, b), g| (a.min(g), b.max(g)));
@@ -224,7 +231,7 @@ fn petals_of(
     fits.then_some(petals)
 }
 
-/// One lobed outline, with one ring in its middle.
+/// Finds one lobed outline with one ring in its middle.
 fn lobed(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     for (i, outer) in loops.iter().enumerate().filter(|(i, _)| !taken[*i]) {

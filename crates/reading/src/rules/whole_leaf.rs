@@ -15,39 +15,42 @@ use crate::thresholds::MOUTH;
 
 /// The margin is at least this share of the drawing, corner to corner.
 const LARGE: f64 = 0.5;
-/// It fills this share of its hull; one with lobes less, where side veins say what it is.
+/// A leaf without lobes fills more than this share of its hull.
 const FULL: f64 = 0.7;
+/// A lobed leaf with side veins fills more than this share of its hull.
 const LOBED: f64 = 0.35;
-/// What was not drawn of the margin, as a share of its size.
+/// Greatest part of the margin that was not drawn, as a share of its size.
 const GAP: f64 = 0.25;
-/// A vein lies in its leaf with this share of its length; a midrib may go on as a petiole.
+/// A vein lies in its leaf with more than this share of its length.
 const INSIDE: f64 = 0.6;
+/// A midrib does so with more than this share: it may go on as a petiole.
 const MIDRIB_INSIDE: f64 = 0.5;
-/// A midrib is this long beside its leaf at least, and this straight.
+/// A midrib is longer than this share of its leaf.
 const ALONG: f64 = 0.4;
+/// A midrib is straighter than this: its chord over its length.
 const STRAIGHT: f64 = 0.8;
-/// It keeps this near to the middle, as a share of the leaf's width.
+/// A midrib keeps this near to the middle, as a share of the leaf's width.
 const MIDDLE: f64 = 0.25;
 /// A side vein comes this near to the midrib, as a share of the leaf's size.
 const TOUCH: f64 = 0.07;
-/// A leaf without side veins is this many times as long as wide, and its midrib turns from its length by this cosine at
-/// most.
+/// The length of a leaf without side veins is more than this factor of its width.
 const SLENDER: f64 = 1.25;
+/// The cosine of the angle between its midrib and its length is above this.
 const LENGTHWISE: f64 = 0.85;
-/// The longest strokes, of which the margin is made.
+/// Number of the longest strokes that may form the margin.
 const LONGEST: usize = 5;
-/// Of side veins one in so many may be something else.
+/// One in this number of side veins may be something else.
 const ODD: usize = 8;
 /// The farthest point of a line drawn there and back lies half its length away (*geometry*), or nearly.
 const THERE_AND_BACK: core::ops::Range<f64> = 0.45..0.55;
 /// Points of a line that are looked at.
 const SAMPLES: usize = 40;
 
-/// A margin and what it is made of.
+/// A margin and the strokes that form it.
 struct Margin {
     strokes: Vec<usize>,
     outline: Vec<DVec2>,
-    /// Corner to corner.
+    /// Diagonal of its box.
     size: f64,
     /// Share of its hull that it fills.
     full: f64,
@@ -55,7 +58,7 @@ struct Margin {
     rib: Option<Vec<DVec2>>,
 }
 
-/// One leaf with its midrib, and with or without side veins; or nothing.
+/// Finds one leaf with its midrib, and with or without side veins.
 pub(super) fn whole_leaf(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let count = draft.class.len();
@@ -76,7 +79,8 @@ pub(super) fn whole_leaf(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// What may be the margin of a leaf: the strokes that close on themselves, then two or three that close together.
+/// Returns the outlines that may be the margin of a leaf: single strokes that are closed, then two or three that close
+/// together.
 fn margins(draft: &Draft<'_>) -> Vec<Margin> {
     let length = |k: usize| draft.ink.strokes[k].length;
     let mut longest: Vec<usize> = (0..draft.class.len()).collect();
@@ -113,7 +117,7 @@ fn margins(draft: &Draft<'_>) -> Vec<Margin> {
     found
 }
 
-/// The margin of strokes that close together.
+/// Returns the margin of strokes that close together.
 fn closing(draft: &Draft<'_>, strokes: &[usize]) -> Option<Margin> {
     let points: Vec<&[DVec2]> = strokes.iter().map(|&k| draft.ink.strokes[k].points.as_slice()).collect();
     let [ring] = &rings(&points)[..] else { return None };
@@ -132,7 +136,7 @@ fn margin(points: &[DVec2], strokes: Vec<usize>) -> Option<Margin> {
     Some(Margin { strokes, outline, size: lo.distance(hi), full, rib: None })
 }
 
-/// The lines in a leaf, if its margin holds nothing else and one of them is a midrib.
+/// Returns the lines in a leaf, if its margin holds nothing else and one of them is a midrib.
 fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
     let rest: Vec<usize> = (0..draft.class.len()).filter(|k| !margin.strokes.contains(k)).collect();
     let inside = |k: usize| {
@@ -167,7 +171,7 @@ fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
     if lines + side.len() / ODD + usize::from(side.len() > 2) < side.len() {
         return None;
     }
-    // It begins at the midrib, or crosses it.
+    // A side vein begins at the midrib, or crosses it.
     let leaves =
         |k: usize| draft.ink.strokes[k].points.iter().any(|&p| distance(rib, p) < TOUCH * margin.size);
     let branching = side.iter().filter(|&&k| leaves(k)).count();
@@ -181,7 +185,7 @@ fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
     sound.then(|| rest.into_iter().filter(|&k| Some(k) == midrib || inside(k) > INSIDE).collect())
 }
 
-/// A line, drawn once or there and back.
+/// Whether points form a line, drawn once or there and back.
 fn is_line(points: &[DVec2], straight: f64) -> bool {
     let (a, b) = far_ends(points);
     let length = polyline_length(points);
@@ -189,7 +193,7 @@ fn is_line(points: &[DVec2], straight: f64) -> bool {
     once || (a.distance(b) > THERE_AND_BACK.start * length && a.distance(b) < THERE_AND_BACK.end * length)
 }
 
-/// The first point, and the one farthest from it.
+/// Returns the first point and the one farthest from it.
 fn far_ends(points: &[DVec2]) -> (DVec2, DVec2) {
     let a = points[0];
     let far = points.iter().copied().max_by(|p, q| a.distance(*p).total_cmp(&a.distance(*q)));

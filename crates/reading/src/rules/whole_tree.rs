@@ -1,6 +1,6 @@
 //! The rule about a whole tree: something round over something narrow that stands.
 //!
-//! It looks at shapes and places only, so neither the order of drawing nor what the classifier says of one stroke decides.
+//! It looks at shapes and places only, so neither the order of drawing nor the class of a single stroke decides.
 
 use geom::{bounds, contains, convex_hull, crossing_points, perimeter, signed_area};
 use glam::DVec2;
@@ -15,7 +15,7 @@ use crate::draft::Draft;
 const NARROW: f64 = 0.6;
 /// At least this share of the tree's height is bare trunk.
 const BARE: f64 = 0.1;
-/// That share where the trunk has an outline: nobody draws the sides of a trunk that is not to be seen.
+/// That share if the trunk has an outline: nobody draws the sides of a hidden trunk.
 const BARE_OUTLINE: f64 = 0.04;
 /// A trunk's top is no farther from its crown than this.
 const REACH: f64 = 0.08;
@@ -23,63 +23,78 @@ const REACH: f64 = 0.08;
 const FOOT: f64 = 0.12;
 /// A crown drawn as an outline fills this share of its hull.
 const FULL: f64 = 0.6;
-/// Crossings of a line at least, all over the place, before it is a scribble.
+/// Fewest widely spread crossings of a line that is a scribble.
 const TANGLED: usize = 8;
-/// A scribble is this many times as long as the hull around it.
+/// A scribble is longer than this factor of the perimeter of its hull.
 const LONG: f64 = 1.9;
-/// The line of the ground: more open than the first, rising by less than the second share of its width, lower than the third and
-/// wider than the fourth.
+/// The line of the ground is more open than this.
 const GROUND_OPEN: f64 = 0.6;
+/// The line of the ground rises by less than this share of its width.
 const GROUND_FLAT: f64 = 0.2;
+/// The line of the ground lies lower than this.
 const GROUND_LOW: f64 = 0.3;
+/// The line of the ground is wider than this.
 const GROUND_WIDE: f64 = 0.15;
-/// A crown has these shares of the tree's height in height and in width at least: a smaller head on its stalk is a flower's or a
-/// fruit's.
+/// A crown is higher than this share of the tree's height: a smaller head on its stalk is a flower or a fruit.
 const CROWN_HEIGHT: f64 = 0.2;
+/// A crown is wider than this share of the tree's height.
 const CROWN_WIDTH: f64 = 0.22;
-/// A trunk ends below this share of its crown's height, and is off its middle by less than that share of its width.
+/// A trunk ends below this share of its crown's height.
 const INTO: f64 = 0.75;
+/// A trunk's tip is off its crown's middle by less than this share of the crown's width.
 const UNDER: f64 = 0.4;
-/// A trunk of one or two lines: ends farther apart than this share of the length, wide by less than that share of the height.
+/// The ends of a trunk of one or two lines are farther apart than this share of the line's length.
 const LINE_OPEN: f64 = 0.75;
+/// Such a line is less wide than this share of its height.
 const LINE_LEANS: f64 = 0.45;
-/// A trunk drawn as an outline may be open above or below, where its ends differ in height by less than this share of it; it is
-/// narrower than this share of its height, and fills that share of its box.
+/// A trunk drawn as an outline may be open above or below: its ends then differ in height by less than this share of
+/// its height.
 const OPENING: f64 = 0.35;
+/// It is narrower than this share of its height.
 const TRUNK_NARROW: f64 = 0.8;
+/// It fills more than this share of its box.
 const TRUNK_FULL: f64 = 0.55;
-/// The sides of a trunk are nearer than so many times the lower one's height.
+/// The sides of a trunk are nearer than this factor of the lower one's height.
 const SIDES_NEAR: f64 = 1.1;
-/// A lobe has more than this share of the area of the largest, and that one more than this area.
+/// A lobe has more than this share of the area of the largest.
 const MAIN: f64 = 0.2;
+/// The largest lobe has more than this area.
 const CROWN_AREA: f64 = 0.01;
-/// The shorter side of a crown over the longer one at least: of one that is high, and of one that is wide.
+/// Least width of a high crown relative to its height.
 const SLENDEREST: f64 = 0.4;
+/// Least height of a wide crown relative to its width.
 const FLATTEST: f64 = 0.25;
-/// A ring of more area than this in the very middle, within this share of the crown's size, is the disc of a flower.
+/// A ring in the very middle with more area than this is the disc of a flower.
 const RING_AREA: f64 = 1e-4;
+/// The very middle: within this share of the crown's size.
 const CENTRAL: f64 = 0.15;
-/// Petals, in one stroke with dips of this share of the reach, or one by one, are at least so many; petals one by one are at
-/// least this evenly far from their middle, the nearest over the farthest.
+/// Depth of the dips between petals in one stroke, as a share of the reach.
 const PETAL_DIP: f64 = 0.27;
+/// Fewest petals, in one stroke or one by one.
 const PETALS: usize = 4;
+/// Least ratio of the nearest to the farthest distance of single petals from their middle.
 const UNEVEN: f64 = 0.6;
-/// Crossings that are looked at, and those farther from the middle than this share of the stroke's diagonal are all over the
-/// place.
+/// Most crossings that are examined.
 const MOST_CROSSINGS: usize = 400;
+/// Crossings farther from the middle than this share of the stroke's diagonal are widely spread.
 const MIDDLE: f64 = 0.12;
-/// A line that sweeps to and fro by this share of its width so many times, both ends among them, is shading.
+/// Depth of the sweeps of a line that is shading, as a share of its width.
 const SWEEP: f64 = 0.4;
+/// Fewest sweeps to and fro of a line that is shading, both ends among them.
 const SWEEPS: usize = 6;
-/// Most lobes of one crown, and how near they come to one another.
+/// Most lobes of one crown.
 const MOST_LOBES: usize = 9;
+/// Lobes touch within this distance.
 const LOBES_TOUCH: f64 = 0.02;
-/// A cloud has at least so many dips of this share of its reach, both ends among them.
+/// Depth of the dips of a cloud, as a share of its reach.
 const CLOUD_DIP: f64 = 0.04;
+/// Fewest dips of a cloud, both ends among them.
 const CLOUDY: usize = 7;
-/// A vein is more open than this, and longer than that share of its leaf; a leaf is so many times as tall as wide.
+/// A vein is more open than this.
 const VEIN_OPEN: f64 = 0.8;
+/// A vein is longer than this share of its leaf's height.
 const VEIN_LONG: f64 = 0.4;
+/// Least height of a leaf relative to its width.
 const LEAF_TALL: f64 = 1.45;
 
 struct Part {
@@ -116,7 +131,7 @@ enum Wood {
     Outline,
 }
 
-/// One crown over one trunk, each drawn in any way and order.
+/// Finds one crown over one trunk, each drawn in any way and order.
 pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let all: Vec<usize> = (0..draft.class.len()).collect();
@@ -180,7 +195,8 @@ pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
     found
 }
 
-/// What stands is one trunk: a line, two lines side by side, or one outline that is higher than wide.
+/// Returns how the standing parts form one trunk: a line, two lines side by side, or one outline that is higher than
+/// wide.
 fn trunk(draft: &Draft<'_>, wood: &[Part]) -> Option<Wood> {
     let line = |p: &Part| p.open > LINE_OPEN && p.width() < LINE_LEANS * p.height();
     match wood {
@@ -260,14 +276,14 @@ fn crown(draft: &Draft<'_>, green: &[Part], wood: Wood) -> Option<Green> {
     Some(Green { strokes, hull, inner, scribble })
 }
 
-/// One outline that fills its hull.
+/// Whether a part is one outline that fills its hull.
 fn outlined(draft: &Draft<'_>, p: &Part) -> bool {
     let stroke = &draft.ink.strokes[p.stroke];
     stroke.outline().is_some_and(|o| signed_area(o) > FULL * p.area())
         && stroke.length < LONG * perimeter(&p.hull)
 }
 
-/// Few deep, even hollows over a single line: petals.
+/// Whether a part is petals: few deep, even hollows above a single line.
 fn petals(draft: &Draft<'_>, p: &Part, wood: Wood) -> bool {
     let points = &draft.ink.strokes[p.stroke].points;
     let centre = geom::centroid(&p.hull);
@@ -277,7 +293,7 @@ fn petals(draft: &Draft<'_>, p: &Part, wood: Wood) -> bool {
     wood == Wood::Line && cuts >= PETALS
 }
 
-/// A line round and round all over the place.
+/// Whether a line goes round and round with crossings all over the place.
 fn tangled(draft: &Draft<'_>, p: &Part) -> bool {
     let s = &draft.ink.strokes[p.stroke];
     if s.length < LONG * perimeter(&p.hull) {
@@ -291,7 +307,7 @@ fn tangled(draft: &Draft<'_>, p: &Part) -> bool {
     (crossings.len() > TANGLED || to_and_fro) && 2 * wide >= crossings.len()
 }
 
-/// Several round outlines that overlap and make up one crown, rather than petals round a middle.
+/// Whether several round outlines overlap and form one crown, rather than petals round a middle.
 fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool {
     let round = |p: &&&Part| {
         p.open < 0.5 && p.width().min(p.height()) > 0.5 * p.width().max(p.height()) && p.hull.len() > 2
@@ -315,7 +331,7 @@ fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool 
     if !joined.iter().all(|j| *j) {
         return false;
     }
-    // Petals stand round a middle that none of them covers, alike and alike far from it.
+    // Petals stand round a middle that none of them covers, similar and at similar distances from it.
     let centre = geom::centroid(hull);
     let covered = lobes.iter().filter(|p| contains(&p.hull, centre)).count();
     let far: Vec<f64> = lobes.iter().map(|p| p.middle().distance(centre)).collect();
@@ -323,7 +339,7 @@ fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool 
     lobes.len() < PETALS || covered > 0 || near < UNEVEN * most
 }
 
-/// An outline on a single line is a leaf if it is long or pointed, or if the line runs on through it.
+/// Whether an outline on a single line is a leaf: it is long or pointed, or the line runs on through it.
 fn leaf_on_a_stalk(draft: &Draft<'_>, crown: &Green, line: &Part, (lo, hi): (DVec2, DVec2)) -> bool {
     if crown.scribble || crown.strokes.len() > 1 {
         return false;

@@ -1,5 +1,5 @@
-//! Blades whose outline was drawn in several strokes, from end to end: both sides of a leaf, which meet at its tip, or a lobe a
-//! stroke.
+//! Finds blades whose outline was drawn in several strokes, from end to end: both sides of a leaf, which meet at its
+//! tip, or one stroke for each lobe.
 //!
 //! `ends of lines -> partners -> chains -> outlines`
 
@@ -10,17 +10,18 @@ use ink::{Ink, StrokeMode};
 use super::sheet::{Form, Sheet, convexity, goes_round};
 use crate::near::Near;
 
-/// When lines that meet are the outline of one blade. Lengths are in ink units (the drawing's diagonal is 1).
+/// Limits of lines that meet and form the outline of one blade. Lengths are in ink units (the drawing's diagonal is
+/// 1).
 struct ChainLimits {
     /// Two ends meet if they are nearer than this.
     meet: f64,
-    /// Each line is at least so long.
+    /// Least length of each line.
     length: f64,
     /// Most lines of one outline.
     most: usize,
     /// The outline has at least this share of the area of its hull.
     convex: f64,
-    /// At most so many ends of lines outside it lie on it: an axis bears more.
+    /// Most ends of lines outside the outline that lie on it: an axis bears more.
     borne: usize,
     /// Other lines may end where two meet if more than this share of their points lies in the outline: midribs do.
     inside: f64,
@@ -46,8 +47,8 @@ struct Step {
     is_turned: bool,
 }
 
-/// The blades of a drawing whose outlines were drawn in several strokes. `may_be`: rows that may be parts of one. Cost: pairs of
-/// ends of lines, and the strokes for each chain.
+/// Finds the blades of a drawing whose outlines were drawn in several strokes. `may_be`: whether a row may be part of
+/// one. Cost: pairs of ends of lines, and the strokes for each chain.
 pub(crate) fn chains(ink: &Ink, sheet: &Sheet, may_be: impl Fn(usize) -> bool) -> Vec<Chain> {
     let is_part = |&k: &usize| {
         let (facts, stroke) = (&sheet.facts[k], &ink.strokes[k]);
@@ -67,7 +68,7 @@ pub(crate) fn chains(ink: &Ink, sheet: &Sheet, may_be: impl Fn(usize) -> bool) -
             found.extend(outlines_from(ink, &near, &partners, Step { row, is_turned }));
         }
     }
-    // A line belongs to the outline that is most like a blade; of equals to that of more lines.
+    // A line belongs to the outline that is most like a blade; if several are, to that of more lines.
     base::sort_by(&mut found, |a, b| {
         b.convexity.total_cmp(&a.convexity).then(b.rows.len().cmp(&a.rows.len())).then(a.rows.cmp(&b.rows))
     });
@@ -82,7 +83,7 @@ pub(crate) fn chains(ink: &Ink, sheet: &Sheet, may_be: impl Fn(usize) -> bool) -
 
 /// Ends of lines that are nearest to one another.
 struct Partners {
-    /// Of the start and the end of each line, by rows, the line that goes on from there.
+    /// The line that continues from the start or the end of each line, by rows.
     next: base::LiteMap<(usize, bool), Step>,
 }
 
@@ -117,7 +118,7 @@ impl Partners {
     }
 }
 
-/// The outlines of blades that begin with a line.
+/// Returns the outlines of blades that begin with a line.
 fn outlines_from(ink: &Ink, near: &Near, partners: &Partners, first: Step) -> Vec<Chain> {
     let mut steps = vec![first];
     let mut outline = followed(ink, first);
@@ -146,13 +147,13 @@ fn followed(ink: &Ink, step: Step) -> Vec<DVec2> {
     if step.is_turned { points.iter().rev().copied().collect() } else { points.clone() }
 }
 
-/// How convex an outline is, if it is that of a blade.
+/// Returns the convexity of an outline, if it is that of a blade.
 fn blade_convexity(outline: &[DVec2]) -> Option<f64> {
     let own = convexity(outline);
     (own > LIMITS.convex && goes_round(outline, geom::polyline_length(outline))).then_some(own)
 }
 
-/// Whether nothing else ends where the lines meet but what lies in the outline, and it bears little outside.
+/// Whether only lines in the outline end where its lines meet, and it bears little outside.
 fn are_free(ink: &Ink, near: &Near, steps: &[Step], outline: &[DVec2]) -> bool {
     let is_other = |k: usize| {
         let points = &ink.strokes[k].points;
@@ -164,7 +165,7 @@ fn are_free(ink: &Ink, near: &Near, steps: &[Step], outline: &[DVec2]) -> bool {
         && ends_on(ink, outline, is_other) <= LIMITS.borne
 }
 
-/// How many ends of some strokes lie on an outline.
+/// Counts the ends of strokes that lie on an outline.
 fn ends_on(ink: &Ink, outline: &[DVec2], is_other: impl Fn(usize) -> bool) -> usize {
     let is_on = |p: DVec2| geom::distance_to_polyline(outline, p).is_some_and(|d| d < super::LIMITS.junction);
     let others = (0..ink.strokes.len()).filter(|&k| is_other(k)).map(|k| &ink.strokes[k].points);

@@ -1,4 +1,4 @@
-//! What strokes are by their structure.
+//! The classes of strokes by their structure.
 
 use base::LiteMap;
 use glam::DVec2;
@@ -9,21 +9,21 @@ use super::hidden::hidden_root;
 use super::readers::widest_gap;
 use super::sheet::{Facts, Form, Outline, Sheet};
 
-/// The rule that what a stroke is follows from what it encloses, what covers it and what it lies in.
+/// The rule that the class of a stroke follows from the things that it encloses, that cover it and that hold it.
 pub(crate) const STRUCTURE: &str = "structure";
 
 /// An outline that goes on behind others.
 #[derive(Clone, Debug)]
 pub(crate) struct Hidden {
     pub(crate) outline: Vec<DVec2>,
-    /// Where it is attached: in the hidden part.
+    /// Its attachment, in the hidden part.
     pub(crate) root: Option<DVec2>,
 }
 
-/// What a drawing says by its structure.
+/// The structure of a drawing.
 #[derive(Clone, Debug)]
 pub(crate) struct Structure {
-    /// The class of each stroke of which the structure says one.
+    /// The class of each stroke, if the structure gives one.
     classes: Vec<Option<StrokeClass>>,
     /// Completed outlines, by rows.
     hidden: LiteMap<usize, Hidden>,
@@ -34,14 +34,14 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// What the facts say, with the rows of a pot; `classes`: what the user or the classifier says. The user's stand, and the classifier's where no fact
-    /// contradicts them.
+    /// Finds the structure from the facts, with the rows of a pot; `classes`: those of the user or the classifier. The
+    /// user's classes stay, and the classifier's if no fact contradicts them.
     pub(crate) fn new(sheet: &Sheet, pot: &[usize], classes: &[Classified]) -> Self {
         let said = |k: usize| classes.get(k).copied().unwrap_or_default();
         let by_user = |k: usize| said(k).source == Source::User;
         let found = |k: usize| if by_user(k) { None } else { class_of(sheet, k, said) };
         let mut classes: Vec<Option<StrokeClass>> = (0..sheet.facts.len()).map(found).collect();
-        // Heads say which blades are petals of one flower, and that its middle is a disc; classes of the user may say otherwise.
+        // A head makes its blades petals of one flower and its middle a disc; the user's classes may contradict that.
         let agrees = |head: &Vec<usize>| {
             head.iter().enumerate().all(|(place, &k)| {
                 let class = if place == 0 { StrokeClass::Disc } else { StrokeClass::Blade };
@@ -70,7 +70,8 @@ impl Structure {
         Self { classes, hidden, heads, leaves }
     }
 
-    /// What a reader says of the strokes that it made of the drawing: the class of each, and where blades are attached.
+    /// Takes over a reader's results for the strokes that it made of the drawing: the class of each, and the
+    /// attachment of blades.
     pub(crate) fn of_parts(
         classes: Vec<StrokeClass>,
         hidden: LiteMap<usize, Hidden>,
@@ -79,35 +80,35 @@ impl Structure {
         Self { classes: classes.into_iter().map(Some).collect(), hidden, heads, leaves: Vec::new() }
     }
 
-    /// The class of each stroke of which the structure says one.
+    /// Returns the class of each stroke, if the structure gives one.
     pub(crate) fn classes(&self) -> &[Option<StrokeClass>] {
         &self.classes
     }
 
-    /// Completed outlines of blades, by rows.
+    /// Returns completed outlines of blades, by rows.
     pub(crate) const fn hidden(&self) -> &LiteMap<usize, Hidden> {
         &self.hidden
     }
 
-    /// Rows of blades that are leaves by their venation.
+    /// Returns rows of blades that are leaves by their venation.
     pub(crate) fn leaves(&self) -> &[usize] {
         &self.leaves
     }
 
-    /// Rows of the petals of each flower that is known as a whole.
+    /// Returns rows of the petals of each flower that is known as a whole.
     pub(crate) fn heads(&self) -> &[Vec<usize>] {
         &self.heads
     }
 
-    /// Whether it says anything that the classifier does not.
+    /// Whether it differs from the classifier's classes or completes an outline.
     pub(crate) fn differs(&self, classes: &[Classified]) -> bool {
         !self.hidden.is_empty()
             || self.classes.iter().zip(classes).any(|(own, said)| own.is_some_and(|own| own != said.class))
     }
 }
 
-/// Flower heads: rows of a disc, and of the rays all round it. A disc is an outline that touches many outlines alike; rays of a
-/// second row touch those of the first.
+/// Finds flower heads: rows of a disc, and of the rays all round it. A disc is an outline that touches many similar
+/// outlines; rays of a second row touch those of the first.
 fn heads(sheet: &Sheet) -> Vec<Vec<usize>> {
     let outline = |k: usize| sheet.facts[k].outline.as_ref();
     let touches = |a: usize, b: usize| outline(a).zip(outline(b)).is_some_and(|(a, b)| a.touches(b));
@@ -142,7 +143,7 @@ fn heads(sheet: &Sheet) -> Vec<Vec<usize>> {
     found
 }
 
-/// Whether an outline is what others leave to be seen of a ray: it touches one, is no larger than the largest, and
+/// Whether an outline is the visible part of a ray behind others: it touches one, is no larger than the largest, and
 /// its middle lies among them.
 fn is_sliver(sheet: &Sheet, k: usize, rays: &[usize]) -> bool {
     let outline = |k: usize| sheet.facts[k].outline.as_ref();
@@ -158,12 +159,12 @@ fn lies_among<'a>(own: &Outline, others: impl Iterator<Item = &'a Outline>) -> b
     geom::contains(&geom::convex_hull(&points), geom::centroid(&own.points))
 }
 
-/// How many of some outlines are like one.
+/// Counts the outlines among some that are like a given one.
 fn alike_among(sheet: &Sheet, k: usize, among: &[usize]) -> usize {
     sheet.alike(k).iter().filter(|j| among.contains(j)).count()
 }
 
-/// What one stroke is, if its structure says so.
+/// Returns the class of one stroke, if its structure gives one.
 fn class_of(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Option<StrokeClass> {
     let facts = &sheet.facts[k];
     match (facts.form, facts.holder) {
@@ -173,12 +174,13 @@ fn class_of(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified) -> Opti
     }
 }
 
-/// A mark in an outline: one of many is texture, one of few or of a venation is a vein.
+/// Returns the class of a mark in an outline: one of many is texture, one of few or of a venation is a vein.
 fn mark_in(holder: &Facts) -> StrokeClass {
     if holder.marks > LIMITS.texture && !holder.is_veined { StrokeClass::Scribble } else { StrokeClass::Vein }
 }
 
-/// A line that lies in nothing is no blade, disc or fruit, and a pot, trunk or crown only if the classifier is sure.
+/// Returns the class of a line that lies in no outline: it is no blade, disc or fruit, and a pot, trunk or crown only
+/// if the classifier is sure.
 fn class_of_line(said: Classified) -> Option<StrokeClass> {
     let is_line = match said.class {
         StrokeClass::Axis | StrokeClass::Ground => true,
@@ -226,8 +228,8 @@ fn class_of_outline(sheet: &Sheet, k: usize, said: impl Fn(usize) -> Classified)
     Some(if textured { StrokeClass::Fruit } else { StrokeClass::Blade })
 }
 
-/// Whether most of some round outlines alike lie each where three larger outlines meet, and none touches another of them: the
-/// middles of flowers along a stem. Berries touch one another, or hang.
+/// Whether most of some similar round outlines lie each where three larger outlines meet, and none touches another of
+/// them: discs of flowers along a stem. Berries touch one another, or hang.
 fn are_discs(sheet: &Sheet, alike: &[usize]) -> bool {
     let outline = |k: usize| sheet.facts[k].outline.as_ref();
     let is_disc = |&&k: &&usize| {
@@ -254,7 +256,8 @@ fn stand_alone(sheet: &Sheet, alike: &[usize]) -> bool {
     3 * whole >= alike.len() && 2 * free > alike.len()
 }
 
-/// Whether most outlines stand round an empty middle with those that they touch, as petals do; fruits of a bunch fill it.
+/// Whether most outlines stand round an empty middle together with those that they touch, as petals do; fruits of a
+/// bunch fill the middle.
 fn stand_in_rings(sheet: &Sheet, alike: &[usize]) -> bool {
     let outlines: Vec<&Outline> = alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref()).collect();
     let middles: Vec<DVec2> = outlines.iter().map(|o| geom::centroid(&o.points)).collect();
@@ -280,7 +283,8 @@ fn stand_in_rings(sheet: &Sheet, alike: &[usize]) -> bool {
     2 * (0..group.len()).filter(in_ring).count() > group.len()
 }
 
-/// What outlines alike are: round ones that are small, or stand in no ring, are fruits or florets, others blades.
+/// Returns the class of similar outlines: round ones that are small, or stand in no ring, are fruits or florets,
+/// others blades.
 fn class_of_repeated(sheet: &Sheet, alike: &[usize]) -> StrokeClass {
     let outlines = || alike.iter().filter_map(|&j| sheet.facts[j].outline.as_ref());
     let middle =

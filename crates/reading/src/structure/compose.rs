@@ -1,4 +1,4 @@
-//! From the parts that a reader proposes to ink of their own, and from what was read of that back to the drawing.
+//! Makes ink of the parts that a reader proposes, and maps its reading back to the drawing.
 
 use base::LiteMap;
 use glam::DVec2;
@@ -17,35 +17,36 @@ use crate::{Reading, StrokeReading};
 /// Several strokes of a drawing as one line.
 #[derive(Clone, Debug)]
 pub(crate) struct Joined {
-    /// Their rows, the first most of it; at least one.
+    /// Their rows, the one with the largest part first; at least one.
     pub(crate) rows: Vec<usize>,
     pub(crate) line: Vec<DVec2>,
     pub(crate) class: StrokeClass,
 }
 
 impl Joined {
-    /// Both sides of an axis as that axis.
+    /// Joins both sides of an axis into that axis.
     pub(crate) fn axis(tube: &Tube) -> Self {
         Self { rows: tube.rows(), line: tube.middle.clone(), class: StrokeClass::Axis }
     }
 
-    /// The lines round a blade as its outline.
+    /// Joins the lines round a blade into its outline.
     pub(crate) fn blade(chain: &Chain) -> Self {
         Self { rows: chain.rows.clone(), line: chain.outline.clone(), class: StrokeClass::Blade }
     }
 }
 
-/// Ink that was cut anew from the strokes of a drawing, and what is said of it.
+/// Ink that was cut anew from the strokes of a drawing, with its classes.
 pub(crate) struct Composed {
     pub(crate) ink: Ink,
     pub(crate) classes: Vec<Classified>,
     pub(crate) structure: Structure,
-    /// Of each of its strokes the rows of those that it is made of, the first most of it.
+    /// For each of its strokes the rows of the drawing's strokes that it is made of, the one with the largest part
+    /// first.
     made_of: Vec<Vec<usize>>,
 }
 
 impl Composed {
-    /// The parts of a proposal as strokes of their own.
+    /// Makes the parts of a proposal into strokes of their own.
     pub(crate) fn new(ink: &Ink, proposal: &Proposal) -> Self {
         let made_of: Vec<Vec<usize>> = proposal.parts.iter().map(|p| p.strokes.clone()).collect();
         let own = ink.with_lines(&lines(proposal.parts.iter().map(|p| p.points.clone()), &made_of));
@@ -66,7 +67,7 @@ impl Composed {
         Self { ink: own, classes: classified, structure, made_of }
     }
 
-    /// The strokes of a drawing with one line in place of those that were joined; `None` where none were.
+    /// Returns the strokes of a drawing with one line in place of those that were joined; `None` if none were.
     pub(crate) fn with_joined(ink: &Ink, classes: &[Classified], joined: &[Joined]) -> Option<Self> {
         if joined.is_empty() {
             return None;
@@ -86,7 +87,7 @@ impl Composed {
         Some(Self { ink: own, classes: classified, structure, made_of })
     }
 
-    /// What was read of the parts, as a reading of the drawing: in its coordinates, with its strokes.
+    /// Maps the reading of the parts to a reading of the drawing: in its coordinates, with its strokes.
     pub(crate) fn back(&self, ink: &Ink, parts: Reading) -> Reading {
         let mut reading = Reading::default();
         Back { whole: ink.map, part: self.ink.map }.add(&mut reading, parts);
@@ -109,8 +110,8 @@ impl Composed {
         reading
     }
 
-    /// What became of each stroke of the drawing: what became of the first part that is made of it, those of which it is most
-    /// first.
+    /// Returns the organ of each stroke of the drawing: that of the part among whose strokes it comes earliest, the
+    /// first of several.
     fn strokes(&self, ink: &Ink, parts: &[StrokeReading]) -> Vec<StrokeReading> {
         let part_of = |row: usize| {
             let place = |part: usize| self.made_of[part].iter().position(|&k| k == row);
@@ -129,12 +130,12 @@ impl Composed {
     }
 }
 
-/// Lines, each with the stroke that it is most of.
+/// Returns lines, each with the stroke that is its largest part.
 fn lines(points: impl Iterator<Item = Vec<DVec2>>, made_of: &[Vec<usize>]) -> Vec<(Vec<DVec2>, usize)> {
     points.zip(made_of).map(|(points, rows)| (points, rows.first().copied().unwrap_or(0))).collect()
 }
 
-/// A class that a rule gives a line.
+/// Returns a class that a rule gives to a line.
 fn said(class: StrokeClass, score: f64, rule: &'static str) -> Classified {
     let shares = StrokeClass::ALL.map(|c| if c == class { score } else { 0.0 });
     Classified { class, confidence: score, source: Source::Rule(rule), shares, shown: None }

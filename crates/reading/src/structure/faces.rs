@@ -1,10 +1,10 @@
-//! What lines enclose together: the faces of a drawing, and how each line runs between them.
+//! The faces that lines enclose together, and how each line runs between them.
 //!
 //! `strokes -> bridged gaps -> faces, runs`
 //!
-//! A pen does not close what it draws: an outline ends where another begins, a petal stops behind its neighbour, a vein leaves
-//! a leaf through the gap at its base. The faces are found in a picture of square cells (gaps are bridged first); their outlines
-//! run along the drawn lines themselves.
+//! A pen does not close every outline: an outline ends where another begins, a petal stops behind its neighbour, a
+//! vein leaves a leaf through the gap at its base. The faces are found in a picture of square cells (gaps are bridged
+//! first); their outlines run along the drawn lines themselves.
 
 use base::LiteMap;
 use geom::{polyline_length, simple_outline, simplify};
@@ -15,7 +15,7 @@ use super::shape::Shape;
 use crate::near::Near;
 use crate::raster::{BESIDE, Cells, around};
 
-/// When gaps are bridged, and what is too small to count. Lengths are in ink units (the drawing's diagonal is 1).
+/// Limits for bridging gaps, and for faces too small to count. Lengths are in ink units (the drawing's diagonal is 1).
 struct FaceLimits {
     /// Cells along the longer side of the drawing.
     along: usize,
@@ -29,21 +29,23 @@ struct FaceLimits {
     ends_share: f64,
     /// A free end nearer than this to the side of a stroke belongs to it.
     side: f64,
-    /// Another free end goes straight on, as it did over this last part of its way, to ink nearer than this,
+    /// Another free end is led straight on, in the direction of its last part of this length,
     heading: f64,
+    /// to ink nearer than this
     ahead: f64,
-    /// and nearer than this share of its stroke; its own ink is behind it after so many cells.
+    /// and nearer than this share of its stroke;
     ahead_share: f64,
+    /// its own ink lies behind it after this number of cells.
     clear: f64,
-    /// Faces hang together over ink of so many cells to either side.
+    /// Faces are connected across ink of this number of cells to either side.
     seam: isize,
     /// Faces of fewer cells are ink that ran together.
     dirt: usize,
     /// Corners of an outline lie within this of its cells, in cells.
     calm: f64,
-    /// Runs of a line shorter than this are of the run before.
+    /// Runs of a line shorter than this belong to the run before.
     run: f64,
-    /// What lies on either side of a line is looked for at these distances, in cells.
+    /// Distances from a line, in cells, at which the faces on either side are looked up.
     sides: [f64; 3],
     /// Two faces are one that a vein divides if their outlines have at least this share of the shorter one in common,
     vein: f64,
@@ -51,7 +53,7 @@ struct FaceLimits {
     vein_area: f64,
     /// and both together are as convex as this (area over that of the hull).
     vein_convex: f64,
-    /// More faces are no veins: nothing is united.
+    /// Most faces that are checked for a dividing vein: with more, nothing is united.
     most_united: usize,
 }
 
@@ -77,17 +79,18 @@ const LIMITS: FaceLimits = FaceLimits {
     most_united: 48,
 };
 
-/// Cells round the drawing, so that the outside is one.
+/// Margin of cells round the drawing, so that the outside is connected.
 const MARGIN: f64 = 3.0;
 
-/// Labels of cells: ink, and the outside; faces follow.
+/// Label of cells with ink.
 const INK: u32 = u32::MAX;
+/// Label of cells of the outside; faces follow.
 const OUTSIDE: u32 = 0;
 
-/// What lines enclose.
+/// An area that lines enclose.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
-    /// Along the lines, simple, counter-clockwise.
+    /// Outline along the lines, simple, counter-clockwise.
     pub(crate) outline: Vec<DVec2>,
     pub(crate) shape: Shape,
     /// The strokes along which its outline runs, the longest part first.
@@ -96,14 +99,14 @@ pub(crate) struct Face {
     labels: Vec<u32>,
 }
 
-/// Where a part of a line runs.
+/// The place in which a part of a line runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     /// The outside lies on both sides of it.
     Outside,
     /// The same face lies on both sides of it.
     Within(usize),
-    /// It parts two faces, or a face from the outside.
+    /// It separates two faces, or a face from the outside.
     Between,
 }
 
@@ -130,7 +133,7 @@ struct Mark {
     at: DVec2,
 }
 
-/// The picture: what each cell belongs to, and where a line runs through it.
+/// The picture: the label of each cell, and the stroke that runs through it.
 #[derive(Clone, Debug)]
 pub(crate) struct Picture {
     cells: Cells,
@@ -139,8 +142,8 @@ pub(crate) struct Picture {
 }
 
 impl Faces {
-    /// The faces of all strokes drawn as parts. Cost: the cells of a picture of fixed size, and linear in points; asked for
-    /// drawings of at most some hundred strokes.
+    /// Finds the faces of all strokes drawn in parts mode. Cost: the cells of a picture of fixed size, and linear in
+    /// points; used for drawings of at most some hundred strokes.
     pub(crate) fn new(ink: &Ink) -> Option<Self> {
         let lines: Vec<&[DVec2]> = ink.strokes.iter().map(|s| s.points.as_slice()).collect();
         let cells = Cells::new(&lines, LIMITS.along, MARGIN)?;
@@ -177,11 +180,46 @@ impl Faces {
     }
 }
 
-/// The outline around several faces has at least this share of their area, or it is that of one of them.
+/// Least area of several faces as a share of that of their hull; with less, they are no convex whole.
+const FILLS_HULL: f64 = 0.85;
+
+impl Face {
+    /// Returns the area that an outline of several strokes encloses as a face; it has no cells in the picture.
+    pub(crate) fn around(outline: &[DVec2], strokes: &[usize]) -> Option<Self> {
+        let mut outline = outline.to_vec();
+        if geom::signed_area(&outline) < 0.0 {
+            outline.reverse();
+        }
+        let shape = Shape::new(&outline)?;
+        Some(Self { outline, shape, strokes: strokes.to_vec(), labels: Vec::new() })
+    }
+
+    /// Returns the convex hull of several faces as one face; `None` if they fill too little of it.
+    pub(crate) fn hull(faces: &[&Self]) -> Option<Self> {
+        let points: Vec<DVec2> = faces.iter().flat_map(|f| f.outline.iter().copied()).collect();
+        let outline = geom::convex_hull(&points);
+        let shape = Shape::new(&outline)?;
+        let area: f64 = faces.iter().map(|f| f.shape.area).sum();
+        if area < FILLS_HULL * shape.area {
+            return None;
+        }
+        let mut strokes: Vec<usize> = Vec::new();
+        for &stroke in faces.iter().flat_map(|f| &f.strokes) {
+            if !strokes.contains(&stroke) {
+                strokes.push(stroke);
+            }
+        }
+        let labels = faces.iter().flat_map(|f| f.labels.iter().copied()).collect();
+        Some(Self { outline, shape, strokes, labels })
+    }
+}
+
+/// Least area of the outline around several faces as a share of their areas; with less, it is that of only one.
 const WHOLE: f64 = 0.9;
 
 impl Picture {
-    /// Several faces as one: what their outlines enclose together. `None` where they do not hang together by their ink.
+    /// Unites several faces into the area that their outlines enclose together. `None` if they are not connected by
+    /// their ink.
     pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
         let labels: Vec<u32> = faces.iter().flat_map(|f| f.labels.iter().copied()).collect();
         let whole = self.face(&labels)?;
@@ -198,7 +236,7 @@ impl Picture {
         });
     }
 
-    /// Where a line that stops short would have gone on to: the first ink ahead of its end, if it is near.
+    /// Returns where a line that stops short would have ended: the first ink ahead of its end, if it is near.
     fn ahead(&self, points: &[DVec2]) -> Option<DVec2> {
         let end = *points.last()?;
         let length = polyline_length(points);
@@ -217,7 +255,7 @@ impl Picture {
         None
     }
 
-    /// Labels what lines enclose, 1 and up; returns the last label.
+    /// Labels the areas that lines enclose, 1 and up; returns the last label.
     fn flood(&mut self) -> u32 {
         const FREE: u32 = u32::MAX - 1;
         self.label.iter_mut().filter(|l| **l != INK).for_each(|l| *l = FREE);
@@ -247,7 +285,7 @@ impl Picture {
         next.saturating_sub(1)
     }
 
-    /// The outline around all cells of some labels, along the ink.
+    /// Returns the outline around all cells of some labels, along the ink.
     fn face(&self, labels: &[u32]) -> Option<Face> {
         let own: Vec<bool> = self.label.iter().map(|l| labels.contains(l)).collect();
         // Between two faces several lines may run side by side.
@@ -274,7 +312,7 @@ impl Picture {
         Some(Face { outline, shape, strokes, labels: labels.to_vec() })
     }
 
-    /// Gives the halves of a leaf that its midrib divides one label; returns the last label.
+    /// Gives one label to the halves of a leaf that its midrib divides; returns the last label.
     fn unite(&mut self, last: u32) -> u32 {
         if last as usize > LIMITS.most_united {
             return last;
@@ -289,13 +327,13 @@ impl Picture {
                     *label = give;
                 }
             }
-            // Ink between the halves is of the line that divides them: it stays ink.
+            // Ink between the halves belongs to the line that divides them: it stays ink.
             last -= 1;
         }
         last
     }
 
-    /// Two faces that are halves of one, if there are such.
+    /// Returns two faces that are halves of one, if there are any.
     fn halves(&self, last: u32) -> Option<(u32, u32)> {
         let common = self.common();
         let faces: Vec<Option<Face>> = (1..=last).map(|l| self.face(&[l])).collect();
@@ -310,7 +348,7 @@ impl Picture {
         })
     }
 
-    /// How many cells of ink part two faces.
+    /// Counts the cells of ink that separate each pair of faces.
     fn common(&self) -> LiteMap<(u32, u32), usize> {
         let mut common = LiteMap::new();
         for at in (0..self.label.len()).filter(|&at| self.label[at] == INK) {
@@ -329,8 +367,8 @@ impl Picture {
         common
     }
 
-    /// The label on one side of a line; `None` where ink lies all the way.
-    fn beside(&self, p: DVec2, out: DVec2) -> Option<u32> {
+    /// Returns the label on one side of a line; `None` if there is ink all the way.
+    fn label_on_side(&self, p: DVec2, out: DVec2) -> Option<u32> {
         let look = |d: &f64| self.label[self.cells.place(p + out * (d * self.cells.size))];
         LIMITS.sides.iter().map(look).find(|l| *l != INK)
     }
@@ -340,7 +378,7 @@ impl Picture {
         let face = |label: u32| rows.get((label as usize).wrapping_sub(1)).copied().flatten();
         let place = |k: usize| {
             let out = (points[(k + 1).min(n - 1)] - points[k.saturating_sub(1)]).normalize_or_zero().perp();
-            match (self.beside(points[k], out), self.beside(points[k], -out)) {
+            match (self.label_on_side(points[k], out), self.label_on_side(points[k], -out)) {
                 (Some(OUTSIDE), Some(OUTSIDE)) => Some(Place::Outside),
                 (Some(a), Some(b)) if a == b => face(a).map(Place::Within),
                 (Some(_), Some(_)) => Some(Place::Between),
@@ -348,7 +386,7 @@ impl Picture {
             }
         };
         let mut places: Vec<Option<Place>> = (0..n).map(place).collect();
-        // Unknown where lines run together: as before it, or as after it.
+        // Labels are unknown where lines run together: takes that before, or else that after.
         for k in 1..n {
             places[k] = places[k].or(places[k - 1]);
         }
@@ -383,7 +421,7 @@ impl Picture {
         }
         runs.into_iter()
             .map(|(place, from, to)| {
-                // The step to the next run is of this one.
+                // The step to the next run belongs to this one.
                 Run { stroke, place, points: points[from..=(to + 1).min(n - 1)].to_vec() }
             })
             .filter(|run| run.points.len() > 1)
@@ -394,8 +432,8 @@ impl Picture {
 /// A line with the stroke that it belongs to.
 type Owned = (Vec<DVec2>, usize);
 
-/// Short lines over the gaps between free ends, and from free ends to the sides of strokes; and strokes whose last point is an
-/// end that stays free.
+/// Returns short lines over the gaps between free ends, and from free ends to the sides of strokes; and strokes whose
+/// last point is an end that stays free.
 fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
     let mut near = Near::new(LIMITS.side);
     let parts = || ink.strokes.iter().enumerate().filter(|(_, s)| s.mode == StrokeMode::Parts);
@@ -424,26 +462,26 @@ fn bridges(ink: &Ink) -> (Vec<Owned>, Vec<Owned>) {
     let partner: Vec<Option<usize>> = (0..free.len()).map(nearest).collect();
     let (mut lines, mut loose) = (Vec::new(), Vec::new());
     for (i, &(p, k)) in free.iter().enumerate() {
-        match partner[i] {
-            Some(j) if partner[j] == Some(i) => {
-                if i < j {
-                    lines.push((vec![p, free[j].0], k));
-                }
+        let side = near.nearest(p, LIMITS.side, |owner| owner != k).map(|(entry, _)| entry.point);
+        let partner_of_end = partner[i].filter(|&j| partner[j] == Some(i));
+        if let Some(j) = partner_of_end {
+            if i < j {
+                lines.push((vec![p, free[j].0], k));
             }
-            _ => {
-                if let Some((entry, _)) = near.nearest(p, LIMITS.side, |owner| owner != k) {
-                    lines.push((vec![p, entry.point], k));
-                } else {
-                    let mut points = ink.strokes[k].points.clone();
-                    if points[0] == p {
-                        points.reverse();
-                    }
-                    loose.push((points, k));
-                }
+            // The end of a petal lies on its disc, and near the end of its neighbour as well.
+            let is_nearer = |q: &DVec2| p.distance(*q) < p.distance(free[j].0);
+            lines.extend(side.filter(is_nearer).map(|q| (vec![p, q], k)));
+        } else if let Some(q) = side {
+            lines.push((vec![p, q], k));
+        } else {
+            let mut points = ink.strokes[k].points.clone();
+            if points[0] == p {
+                points.reverse();
             }
+            loose.push((points, k));
         }
     }
-    // A stroke that overlaps its own beginning closes by itself; one that stops short of its own side is left open.
+    // A stroke that overlaps its own beginning is closed; one that stops short of its own side stays open.
     for (k, stroke) in parts() {
         let (start, end) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
         let gap = start.distance(end);

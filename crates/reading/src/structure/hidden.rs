@@ -1,4 +1,4 @@
-//! Outlines that go on behind what covers them.
+//! Outlines that go on behind the strokes that cover them.
 
 use glam::DVec2;
 
@@ -6,19 +6,19 @@ use glam::DVec2;
 const HIDDEN_POINTS: usize = 9;
 /// Points over which the direction at an end is taken.
 const TANGENT_POINTS: usize = 3;
-/// Handles of the hidden curve where the ends converge, a share of the way to where they meet: between an arc of a circle
-/// (0.55 for a quarter of it) and a point (1).
+/// Length of the handles of the hidden curve if the ends converge, as a share of the distance to their meeting point:
+/// between an arc of a circle (0.55 for a quarter of it) and a point (1).
 const HANDLE_TO_MEETING: f64 = 0.7;
-/// Handles of the hidden curve where the ends do not converge, a share of their distance.
+/// Length of the handles if the ends do not converge, as a share of the distance between the ends.
 const HANDLE: f64 = 0.6;
 /// The hidden part reaches at most this share of the visible extent beyond the ends.
 const REACH: f64 = 0.8;
 
-/// An open line, both ends of which stop on something that covers it, closed behind that: `line` first, then the hidden
-/// points from its end back to its start.
+/// Closes an open line whose ends both stop on something that covers it, behind that: returns `line` first, then the
+/// hidden points from its end back to its start.
 ///
-/// The hidden part continues both ends smoothly and bends monotonically ("relatable" edges: Kellman and Shipley 1991): a
-/// cubic Bezier curve, whose handles meet where the ends converge.
+/// The hidden part continues both ends smoothly and bends monotonically ("relatable" edges: Kellman and Shipley 1991):
+/// a cubic Bezier curve, whose handles meet where the ends converge.
 pub(crate) fn complete(line: &[DVec2]) -> Vec<DVec2> {
     let (Some(&start), Some(&end)) = (line.first(), line.last()) else { return Vec::new() };
     let gap = start.distance(end);
@@ -39,12 +39,12 @@ pub(crate) fn complete(line: &[DVec2]) -> Vec<DVec2> {
     line.iter().copied().chain(hidden).collect()
 }
 
-/// Where an outline that was completed behind something is attached: the middle of its hidden part.
+/// Returns the attachment of an outline that was completed behind something: the middle of its hidden part.
 pub(crate) fn hidden_root(completed: &[DVec2]) -> Option<DVec2> {
     completed.len().checked_sub(HIDDEN_POINTS / 2 + 1).and_then(|k| completed.get(k)).copied()
 }
 
-/// How far two rays go until they meet, if they do.
+/// Returns the lengths of two rays up to their intersection, if they meet.
 fn meeting(p: DVec2, along_p: DVec2, q: DVec2, along_q: DVec2) -> Option<[f64; 2]> {
     let cross = along_p.perp_dot(along_q);
     if cross.abs() <= crate::thresholds::ROUNDING {

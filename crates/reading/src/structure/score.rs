@@ -7,18 +7,19 @@ use super::LIMITS;
 use super::sheet::Sheet;
 use crate::{OrganWord, Reading};
 
-/// What a stroke is worth that lies in a solid (a fruit, a trunk, a pot) without being its texture: the solid was made over it.
+/// Worth of a stroke that lies in a solid (a fruit, a trunk, a pot) without being its texture: the solid was made over
+/// it.
 const UNDER_A_SOLID: f64 = 0.3;
-/// What a stroke is worth whose organ hangs on nothing, where there is something to hang on.
+/// Worth of a stroke whose organ hangs on nothing, if there is something to hang on.
 const FLOATS: f64 = 0.5;
-/// What a line is worth that is one side of an axis and became an axis of its own.
+/// Worth of a line that is one side of an axis and became an axis of its own.
 const ONE_SIDE: f64 = 0.5;
-/// How much of the score is lost where outlines that are alike became organs of several kinds.
+/// Share of the score that is lost if similar outlines became organs of several kinds.
 const UNLIKE: f64 = 0.4;
 
-/// How well a reading explains the ink: 0 (nothing) to 1 (every stroke is a part of its own that is attached, and what is alike
-/// is of one kind). Kinds of plants play no part. `sides`: rows of lines that are two sides of one axis each, and were read as axes of
-/// their own. Cost: pairs of outlines.
+/// Returns how well a reading explains the ink: 0 (nothing) to 1 (every stroke is a part of its own that is attached,
+/// and similar outlines are of one kind). Kinds of plants play no part. `sides`: rows of lines that are two sides of
+/// one axis each, and were read as axes of their own. Cost: pairs of outlines.
 pub(crate) fn score(ink: &Ink, sheet: &Sheet, reading: &Reading, sides: &[usize]) -> f64 {
     let organs = Organs::new(ink, reading);
     let (mut sum, mut whole) = (0.0, 0.0);
@@ -31,7 +32,7 @@ pub(crate) fn score(ink: &Ink, sheet: &Sheet, reading: &Reading, sides: &[usize]
     explained * (1.0 - UNLIKE * organs.disagreement(sheet))
 }
 
-/// What became of each stroke, by rows.
+/// The organ of each stroke, by rows.
 struct Organs {
     organ: Vec<(StrokeClass, OrganWord)>,
     floats: Vec<bool>,
@@ -76,7 +77,8 @@ impl Organs {
         }
     }
 
-    /// The share of repeated outlines that became another kind of organ than most of those that are like them, 0 to 1.
+    /// Returns the share of repeated outlines that became another kind of organ than most of those that are like them,
+    /// 0 to 1.
     fn disagreement(&self, sheet: &Sheet) -> f64 {
         let (mut repeated, mut differ) = (0_usize, 0_usize);
         for k in 0..self.organ.len() {
@@ -92,7 +94,7 @@ impl Organs {
     }
 }
 
-/// Petals and leaves are both blades.
+/// Returns the kind of an organ: petals and leaves are both blades.
 fn kind(organ: OrganWord) -> OrganWord {
     if organ == OrganWord::Petal { OrganWord::Leaf } else { organ }
 }

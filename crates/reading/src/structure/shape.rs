@@ -1,14 +1,14 @@
 //! The form of an outline: how convex and how slender it is, and where its corners are.
 
 use base::ops;
-use geom::{centroid, convex_hull, perimeter, resample, signed_area, smooth_gaussian_closed};
+use geom::{centroid, convex_hull, perimeter, resample, signed_area, simple_outline, smooth_gaussian_closed};
 use glam::DVec2;
 
 use super::sheet::slenderness;
 
-/// Points round an outline at which it is looked at.
+/// Points round an outline at which it is measured.
 const ROUND: usize = 64;
-/// The turn at a point is taken over so many points to either side.
+/// Points to either side over which the turn at a point is measured.
 const SPAN: usize = 4;
 /// A corner turns by more than this, radians; a circle turns by 0.4 over as many points.
 const CORNER: f64 = 0.95;
@@ -21,13 +21,13 @@ pub(crate) struct Shape {
     pub(crate) area: f64,
     pub(crate) perimeter: f64,
     pub(crate) middle: DVec2,
-    /// Area over the area of the hull: 1 of a convex outline.
+    /// Area over the area of the hull: 1 for a convex outline.
     pub(crate) convexity: f64,
     /// Width over length, by second moments: 0 to 1.
     pub(crate) slenderness: f64,
-    /// Where it points outwards.
+    /// Points at which it turns outwards.
     pub(crate) corners: Vec<DVec2>,
-    /// Where it points inwards.
+    /// Points at which it turns inwards.
     pub(crate) notches: Vec<DVec2>,
     /// Its two points that are farthest apart.
     pub(crate) ends: [DVec2; 2],
@@ -61,19 +61,47 @@ impl Shape {
         })
     }
 
-    /// Longest diameter.
+    /// Returns the longest diameter.
     pub(crate) fn length(&self) -> f64 {
         self.ends[0].distance(self.ends[1])
     }
 
-    /// The corner farthest from a point.
+    /// Returns the corner farthest from a point.
     pub(crate) fn tip_from(&self, root: DVec2) -> Option<DVec2> {
         let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(root).total_cmp(&b.distance_squared(root));
         self.corners.iter().max_by(far).copied()
     }
 }
 
-/// Corners and notches of an outline of even steps: the sharpest place of each.
+/// Least convexity of a lens (area over that of the hull).
+const LENS_CONVEX: f64 = 0.93;
+/// Slenderness of a lens (width over length).
+const LENS_SLENDER: core::ops::Range<f64> = 0.08..0.6;
+/// A lens covers less than this share of the box along it; a strip with flat ends covers more.
+const LENS_FULL: f64 = 0.8;
+/// The two corners of a lens are farther apart than this share of its length.
+const LENS_ENDS: f64 = 0.85;
+
+/// Whether a closed line is a lens: convex and slender, with exactly two corners, one at each end. Leaves and petals
+/// have this form; fruits and roots are blunt at one end at least.
+pub(crate) fn is_lens(line: &[DVec2]) -> bool {
+    is_lens_of(line, LENS_SLENDER)
+}
+
+/// Whether a closed line is a lens of such a slenderness (width over length).
+pub(crate) fn is_lens_of(line: &[DVec2], slender: core::ops::Range<f64>) -> bool {
+    let Some(shape) = simple_outline(line).and_then(|outline| Shape::new(&outline)) else { return false };
+    let [a, b] = shape.corners[..] else { return false };
+    let across = (b - a).normalize_or_zero().perp();
+    let (low, high) =
+        line.iter().map(|p| (*p - a).dot(across)).fold((0.0_f64, 0.0_f64), |(l, h), w| (l.min(w), h.max(w)));
+    shape.convexity > LENS_CONVEX
+        && shape.area < LENS_FULL * (high - low) * shape.length()
+        && slender.contains(&shape.slenderness)
+        && a.distance(b) > LENS_ENDS * shape.length()
+}
+
+/// Returns corners and notches of an outline of even steps: the sharpest place of each.
 fn corners(even: &[DVec2]) -> (Vec<DVec2>, Vec<DVec2>) {
     let n = even.len();
     if n <= 2 * SPAN {

@@ -1,4 +1,4 @@
-//! The facts of each stroke: form, outline, what holds it, what it holds.
+//! The facts of each stroke: its form, its outline, the outline that holds it, the strokes that it holds.
 
 use base::ops;
 use geom::{bounds, contains, convex_hull, distance_to_polyline, pca2, polyline_length, signed_area};
@@ -10,13 +10,13 @@ use super::hidden::complete;
 use crate::blade::nearest_on_ring;
 use crate::near::Near;
 
-/// Points of a stroke that are looked at, where its share in an outline counts.
+/// Points of a stroke that are looked at to find its share in an outline.
 const PLACES: usize = 9;
 
 /// How a stroke lies on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// It closes by itself.
+    /// It is closed.
     Ring,
     /// Both ends stop on other strokes and it bulges between them: it goes on behind those.
     Bay,
@@ -27,13 +27,13 @@ pub(crate) enum Form {
 /// An outline with its measures.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
-    /// Its points; of a bay with the part that is hidden.
+    /// Its points; for a bay with the hidden part.
     pub(crate) points: Vec<DVec2>,
     low: DVec2,
     high: DVec2,
     /// Share of the squared diagonal of the drawing, at least 0.
     pub(crate) area: f64,
-    /// 4 pi area / perimeter^2: 1 of a circle.
+    /// 4 pi area / perimeter^2: 1 for a circle.
     pub(crate) roundness: f64,
     /// Width over length, by the second moments of its points: 0 to 1.
     pub(crate) slenderness: f64,
@@ -50,14 +50,14 @@ impl Outline {
         Some(Self { points, low, high, area, roundness, slenderness })
     }
 
-    /// Two outlines are of one kind of organ, by size and form.
+    /// Whether two outlines are of one kind of organ, by size and form.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let ratio = self.area / other.area.max(f64::MIN_POSITIVE);
         (1.0 / LIMITS.alike_area..LIMITS.alike_area).contains(&ratio)
             && (self.slenderness - other.slenderness).abs() < LIMITS.alike_slenderness
     }
 
-    /// Whether a point of it lies on the other one.
+    /// Whether a point of it lies on another outline.
     pub(crate) fn touches(&self, other: &Self) -> bool {
         let reach = 2.0 * LIMITS.junction;
         let is_near =
@@ -65,7 +65,7 @@ impl Outline {
         is_near && self.points.iter().any(|&p| nearest_on_ring(&other.points, p).1 < reach)
     }
 
-    /// A line lies inside, or on the margin.
+    /// Whether a line lies inside, or on the margin.
     fn holds(&self, line: &[DVec2]) -> bool {
         let (low, high) = (self.low - LIMITS.junction, self.high + LIMITS.junction);
         let is_in = |p: &DVec2| {
@@ -85,7 +85,7 @@ impl Outline {
 #[derive(Clone, Debug)]
 pub(crate) struct Facts {
     pub(crate) form: Form,
-    /// Of rings and bays.
+    /// The outline of a ring or bay.
     pub(crate) outline: Option<Outline>,
     /// The smallest outline in which it lies, by its stroke's row.
     pub(crate) holder: Option<usize>,
@@ -95,7 +95,7 @@ pub(crate) struct Facts {
     pub(crate) marks: usize,
     /// Whether these are the venation of a leaf: a midrib with others that begin on it.
     pub(crate) is_veined: bool,
-    /// Whether one of them leads through most of it: a midrib.
+    /// Whether one of them leads through most of the outline: a midrib.
     pub(crate) has_midrib: bool,
     /// Whether these are many and small: scales or seeds.
     pub(crate) is_textured: bool,
@@ -105,12 +105,13 @@ pub(crate) struct Facts {
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     pub(crate) facts: Vec<Facts>,
-    /// The share of the ends of open strokes that lie on other strokes, 0 to 1; 1 where all are closed.
+    /// The share of the ends of open strokes that lie on other strokes, 0 to 1; 1 if all are closed.
     joined: f64,
 }
 
 impl Sheet {
-    /// Cost: strokes times outlines, a few looks each; asked for drawings of at most some hundred strokes.
+    /// Finds the facts. Cost: strokes times outlines, a few comparisons each; used for drawings of at most some
+    /// hundred strokes.
     pub(crate) fn new(ink: &Ink) -> Self {
         let mut near = Near::new(LIMITS.junction);
         ink.strokes.iter().enumerate().for_each(|(k, s)| near.add_line(k, &s.points));
@@ -140,12 +141,12 @@ impl Sheet {
         Self { facts, joined }
     }
 
-    /// It was drawn with care: most lines end on others.
+    /// Whether it was drawn with care: most lines end on others.
     pub(crate) fn is_careful(&self) -> bool {
         self.joined > LIMITS.careful
     }
 
-    /// Rows of the outlines that are like that of a stroke, itself among them; none of a line.
+    /// Returns rows of the outlines that are like that of a stroke, including itself; none for a line.
     pub(crate) fn alike(&self, k: usize) -> Vec<usize> {
         let Some(own) = &self.facts[k].outline else { return Vec::new() };
         let like = |f: &Facts| f.outline.as_ref().is_some_and(|o| own.is_like(o));
@@ -153,15 +154,16 @@ impl Sheet {
     }
 }
 
-/// Bays in which several outlines lie are no outlines: they are branches that span what hangs from them.
+/// Returns bays in which several outlines lie: they are no outlines but branches that span the organs that hang from
+/// them.
 fn spanning(facts: &[Facts], holders: &[Option<usize>]) -> Vec<usize> {
     let held =
         |k: usize| (0..facts.len()).filter(|&j| holders[j] == Some(k) && facts[j].form != Form::Line).count();
     (0..facts.len()).filter(|&k| facts[k].form == Form::Bay && held(k) >= LIMITS.spanned).collect()
 }
 
-/// What a stroke is by itself and by what its ends lie on. `is_of_many`: whether the drawing is one of many organs; in others an
-/// open arc is a gloss, or a line of a hasty hand.
+/// Returns the facts of a stroke from the stroke itself and from the strokes at its ends. `is_of_many`: whether the
+/// drawing is one of many organs; in others an open arc is a gloss, or a line of a hasty hand.
 fn alone(near: &Near, k: usize, stroke: &InkStroke, is_of_many: bool) -> Facts {
     let points = &stroke.points;
     let (start, end) = (points[0], points[points.len() - 1]);
@@ -190,8 +192,8 @@ fn alone(near: &Near, k: usize, stroke: &InkStroke, is_of_many: bool) -> Facts {
     }
 }
 
-/// Whether a line leads out and back again, round something: both sides of a blade, with its tip between them, however its ends
-/// lie. Two stalks that spread from one foot go round nothing: they are straight, or bend outwards.
+/// Whether a line leads out and back again, round something: both sides of a blade, with its tip between them,
+/// wherever its ends lie. Two stalks that spread from one foot go round nothing: they are straight, or bend outwards.
 pub(crate) fn goes_round(points: &[DVec2], length: f64) -> bool {
     let (start, end) = (points[0], points[points.len() - 1]);
     let Some(tip) = farthest_from_chord(points) else { return false };
@@ -202,19 +204,19 @@ pub(crate) fn goes_round(points: &[DVec2], length: f64) -> bool {
         && convexity(points) > LIMITS.round_convex
 }
 
-/// The area that a line encloses, over that of its hull: 1 of a convex outline.
+/// Returns the area that a line encloses, over that of its hull: 1 for a convex outline.
 pub(crate) fn convexity(points: &[DVec2]) -> f64 {
     signed_area(points).abs() / signed_area(&convex_hull(points)).abs().max(f64::MIN_POSITIVE)
 }
 
-/// The point of a line that is farthest from the middle between its ends.
+/// Returns the point of a line that is farthest from the middle between its ends.
 fn farthest_from_chord(points: &[DVec2]) -> Option<DVec2> {
     let middle = points.first()?.midpoint(*points.last()?);
     let off = |p: &DVec2| p.distance_squared(middle);
     points.iter().max_by(|a, b| off(a).total_cmp(&off(b))).copied()
 }
 
-/// What the marks in each outline are. `held`: of each outline the rows of the strokes in it.
+/// Describes the marks in each outline. `held`: for each outline the rows of the strokes in it.
 fn describe_marks(ink: &Ink, facts: &mut [Facts], held: &[Vec<usize>]) {
     for (k, held) in held.iter().enumerate() {
         let Some(outline) = &facts[k].outline else { continue };
@@ -234,8 +236,8 @@ fn describe_marks(ink: &Ink, facts: &mut [Facts], held: &[Vec<usize>]) {
     }
 }
 
-/// Whether lines in an outline of an extent are the venation of a leaf: the longest leads through most of it, and most of its marks
-/// are lines that begin on that.
+/// Whether lines in an outline of this extent are the venation of a leaf: the longest leads through most of it, and
+/// most of its marks are lines that begin on that.
 fn is_venation(lines: Vec<&InkStroke>, marks: usize, extent: f64) -> bool {
     let Some(midrib) = lines.iter().copied().max_by(|a, b| a.length.total_cmp(&b.length)) else {
         return false;
@@ -251,7 +253,7 @@ fn is_venation(lines: Vec<&InkStroke>, marks: usize, extent: f64) -> bool {
         && side_veins + 1 >= LIMITS.veins
 }
 
-/// Whether a line leaves its chord to one side, and far.
+/// Whether a line leaves its chord far, and to one side.
 fn bulges(points: &[DVec2]) -> bool {
     let (start, end) = (points[0], points[points.len() - 1]);
     let chord = end - start;
@@ -262,7 +264,7 @@ fn bulges(points: &[DVec2]) -> bool {
     more > LIMITS.bulge * chord.length() && less < LIMITS.one_sided * more
 }
 
-/// The smallest outline in which a stroke lies.
+/// Returns the smallest outline in which a stroke lies.
 fn holder(ink: &Ink, facts: &[Facts], k: usize) -> Option<usize> {
     let own = facts[k].outline.as_ref().map(|o| o.area);
     let holds = |(j, f): (usize, &Facts)| {
@@ -273,7 +275,7 @@ fn holder(ink: &Ink, facts: &[Facts], k: usize) -> Option<usize> {
     facts.iter().enumerate().filter_map(holds).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, j)| j)
 }
 
-/// Width over length of a set of points: the square root of the ratio of their second moments.
+/// Returns width over length of a set of points: the square root of the ratio of their second moments.
 pub(crate) fn slenderness(points: &[DVec2]) -> f64 {
     let [long, wide] = pca2(points).map_or([0.0; 2], |p| p.lambda);
     if long > 0.0 { (wide / long).sqrt() } else { 1.0 }

@@ -10,7 +10,7 @@ use crate::{Kind, read};
 
 const TAU: f64 = std::f64::consts::TAU;
 
-fn at(angle: f64, radius: f64) -> DVec2 {
+fn polar(angle: f64, radius: f64) -> DVec2 {
     DVec2::new(radius * ops::cos(angle), radius * ops::sin(angle))
 }
 
@@ -19,21 +19,21 @@ fn straight(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
     (0..=40).map(|i| from.lerp(to, f64::from(i) / 40.0)).collect()
 }
 
-/// A ring of arcs, each from the end of the one before to the start of the next, round what lies inside.
+/// A ring of arcs, each from the end of the one before to the start of the next, round the middle.
 fn arcs(count: u32, radius: f64, height: f64, phase: f64) -> Vec<Vec<DVec2>> {
     let step = TAU / f64::from(count);
     (0..count)
         .map(|k| {
             let from = phase + step * f64::from(k);
             let bulge = |t: f64| radius + height * (4.0 * t * (1.0 - t)).sqrt();
-            (0..=24).map(|i| f64::from(i) / 24.0).map(|t| at(from + step * t, bulge(t))).collect()
+            (0..=24).map(|i| f64::from(i) / 24.0).map(|t| polar(from + step * t, bulge(t))).collect()
         })
         .collect()
 }
 
 /// A disc in two rings of petals, hidden lines removed.
 fn rosette() -> Vec<Vec<DVec2>> {
-    let disc = (0..=60).map(|k| at(TAU * f64::from(k) / 60.0, 0.2)).collect();
+    let disc = (0..=60).map(|k| polar(TAU * f64::from(k) / 60.0, 0.2)).collect();
     let mut lines = vec![disc];
     lines.extend(arcs(8, 0.2, 0.12, 0.0));
     lines
@@ -58,7 +58,7 @@ fn petals_drawn_behind_a_disc_become_petals() {
     let classes = ink::classify(&ink, &base::Run::plain());
     let reading = read(&ink, &classes, &mut Report::default());
     let organs = reading.flowers.iter().map(|f| f.petals.len()).sum::<usize>() + reading.leaves.len();
-    assert!(organs >= 8, "{organs} petals and leaves, {:?}", Kind::of(&reading));
+    assert!(organs >= 8, "{organs} petals and leaves, {:?}", Kind::from_reading(&reading));
     assert_eq!(reading.validate().count(), 0);
     let sheet = Sheet::new(&ink);
     assert!(score(&ink, &sheet, &reading, &[]) > 0.9);
@@ -66,7 +66,7 @@ fn petals_drawn_behind_a_disc_become_petals() {
 
 #[test]
 fn marks_in_an_outline_are_texture_if_there_are_many_and_veins_if_few() {
-    let body: Vec<DVec2> = (0..=60).map(|k| at(TAU * f64::from(k) / 60.0, 1.0)).collect();
+    let body: Vec<DVec2> = (0..=60).map(|k| polar(TAU * f64::from(k) / 60.0, 1.0)).collect();
     let mark = |k: usize| {
         let y = -0.6 + 0.15 * k as f64;
         vec![DVec2::new(-0.2, y), DVec2::new(0.0, y + 0.02), DVec2::new(0.2, y)]
@@ -88,7 +88,7 @@ fn lines_that_stop_short_of_one_another_are_no_structure() {
     let lines: Vec<Vec<DVec2>> = arcs(8, 0.2, 0.25, 0.0)
         .into_iter()
         .enumerate()
-        .map(|(k, line)| line.into_iter().map(|p| p + at(k as f64, 0.05)).collect())
+        .map(|(k, line)| line.into_iter().map(|p| p + polar(k as f64, 0.05)).collect())
         .collect();
     let ink = clean(&Drawing::from_polylines("doodle", &lines), &mut Report::default());
     assert!(!Sheet::new(&ink).is_careful());
@@ -122,13 +122,13 @@ fn lines_side_by_side_up_a_stem_are_one_and_hatching_is_none() {
     assert!(tubes_of(&many).is_empty());
 }
 
-/// A flower of three petals about a small ring, hidden lines removed.
+/// A flower of three petals round a small ring, hidden lines removed.
 fn orchid(centre: DVec2) -> Vec<Vec<DVec2>> {
-    let ring: Vec<DVec2> = (0..=30).map(|k| centre + at(TAU * f64::from(k) / 30.0, 0.06)).collect();
+    let ring: Vec<DVec2> = (0..=30).map(|k| centre + polar(TAU * f64::from(k) / 30.0, 0.06)).collect();
     let petal = |k: i32| {
         let way = TAU * f64::from(k) / 3.0;
-        let middle = centre + at(way, 0.31);
-        (0..=40).map(|i| middle + at(way + TAU * f64::from(i) / 40.0, 0.25)).collect()
+        let middle = centre + polar(way, 0.31);
+        (0..=40).map(|i| middle + polar(way + TAU * f64::from(i) / 40.0, 0.25)).collect()
     };
     let mut lines = vec![ring];
     lines.extend((0..3).map(petal));
@@ -177,7 +177,7 @@ fn sides_that_bend_outwards_and_meet_at_a_tip_are_one_blade_and_stalks_from_one_
     let mut found = chains_of(&[stem.clone(), left.clone(), right.clone()]);
     found.iter_mut().for_each(|rows| rows.sort_unstable());
     assert_eq!(found, [[1, 2]]);
-    // Of three parts, with the midrib up to the tip.
+    // In three parts, with the midrib up to the tip.
     let (low, high) = (right[..16].to_vec(), right[15..].to_vec());
     let midrib = straight((0.0, -3.0), (30.0, 25.0));
     let mut found = chains_of(&[stem.clone(), left, low, high, midrib]);
@@ -194,9 +194,9 @@ fn sides_that_bend_outwards_and_meet_at_a_tip_are_one_blade_and_stalks_from_one_
 #[test]
 fn blades_with_a_midrib_and_side_veins_are_leaves() {
     let leaf = |way: f64| {
-        let turn = |p: DVec2| at(way, 1.0).rotate(p);
+        let turn = |p: DVec2| polar(way, 1.0).rotate(p);
         let outline: Vec<DVec2> = (0..=60)
-            .map(|k| DVec2::new(6.0, 0.0) + at(TAU * f64::from(k) / 60.0, 1.0) * DVec2::new(5.0, 2.5))
+            .map(|k| DVec2::new(6.0, 0.0) + polar(TAU * f64::from(k) / 60.0, 1.0) * DVec2::new(5.0, 2.5))
             .collect();
         let vein = |x: f64, y: f64| straight((x, 0.0), (x + 1.5, y));
         let midrib = straight((1.0, 0.0), (11.0, 0.0));

@@ -6,25 +6,27 @@ use ink::{Ink, StrokeMode};
 
 use super::sheet::{Form, Sheet};
 
-/// When two lines are the sides of one axis. Lengths are in ink units (the drawing's diagonal is 1).
+/// Limits of two lines that are the sides of one axis. Lengths are in ink units (the drawing's diagonal is 1).
 struct TubeLimits {
     /// Sides are nearer than this to one another,
     apart: f64,
-    /// and run side by side over more than this share of the shorter one, and over so many times their distance.
+    /// and run side by side over more than this share of the shorter one,
     along: f64,
+    /// and over this factor of their distance.
     slender: f64,
     /// Their distance is nowhere less than this share of the greatest: a leaf narrows to its tip.
     narrow: f64,
-    /// A third line that is as near, so many times the distance, makes them hatching, veins or a bundle.
+    /// A third line within this factor of the distance makes them hatching, veins or a bundle.
     third: f64,
     /// Its ends are farther apart than this share of its length: half a circle has 0.64.
     straight: f64,
-    /// The shorter side is at least so long.
+    /// Least length of the shorter side.
     length: f64,
-    /// Places of a line that are looked at, at least.
+    /// Fewest places of a line that are looked at.
     places: usize,
-    /// A bundle of so many lines at most, each longer than that, is the stem of sheaths or fibres: a banana, an old trunk.
+    /// Number of lines of a bundle that is the stem of sheaths or fibres: a banana, an old trunk.
     sheaths: core::ops::RangeInclusive<usize>,
+    /// Each line of such a bundle is longer than this.
     sheath: f64,
 }
 
@@ -48,9 +50,9 @@ pub(crate) struct Tube {
     pub(crate) sides: [usize; 2],
     /// The line in the middle between them.
     pub(crate) middle: Vec<DVec2>,
-    /// How far they are apart, on average.
+    /// Mean distance between the sides.
     pub(crate) width: f64,
-    /// Rows of lines between them, of a bundle.
+    /// Rows of lines between them, for a bundle.
     pub(crate) between: Vec<usize>,
 }
 
@@ -60,23 +62,23 @@ impl Tube {
         self.sides.contains(&row) || self.between.contains(&row)
     }
 
-    /// Whether it is between two lines.
+    /// Whether two lines are its sides.
     fn joins(&self, one: usize, other: usize) -> bool {
         self.sides.contains(&one) && self.sides.contains(&other)
     }
 
-    /// Whether a line is of both.
+    /// Whether a line belongs to both.
     fn meets(&self, other: &Self) -> bool {
         other.rows().iter().any(|&row| self.has(row))
     }
 
-    /// The rows of all its lines.
+    /// Returns the rows of all its lines.
     pub(crate) fn rows(&self) -> Vec<usize> {
         self.sides.iter().chain(&self.between).copied().collect()
     }
 }
 
-/// All pairs of sides. Cost: pairs of lines that are near, their points each.
+/// Finds all pairs of sides. Cost: pairs of lines that are near, their points each.
 pub(crate) fn tubes(ink: &Ink, sheet: &Sheet) -> Vec<Tube> {
     let lines: Vec<usize> = (0..ink.strokes.len())
         .filter(|&k| {
@@ -103,8 +105,8 @@ pub(crate) fn tubes(ink: &Ink, sheet: &Sheet) -> Vec<Tube> {
     kept
 }
 
-/// Lines side by side of which each pair is near, as one axis between the outer two. Of bundles with a line in common that of
-/// most lines.
+/// Joins lines side by side of which each pair is near into one axis between the outer two. Among bundles with a line
+/// in common, keeps that of most lines.
 fn bundles(ink: &Ink, pairs: &[Tube]) -> Vec<Tube> {
     let mut lines: Vec<usize> = pairs.iter().flat_map(|t| t.sides).collect();
     lines.sort_unstable();
@@ -120,7 +122,7 @@ fn bundles(ink: &Ink, pairs: &[Tube]) -> Vec<Tube> {
     kept
 }
 
-/// A pair with the lines that are near to both its sides, if they all lie between these and are long.
+/// Returns a pair with the lines that are near to both its sides, if they all lie between these and are long.
 fn bundle(ink: &Ink, pairs: &[Tube], lines: &[usize], widest: &Tube) -> Option<Tube> {
     let width = |one: usize, other: usize| pairs.iter().find(|t| t.joins(one, other)).map(|t| t.width);
     let [a, b] = widest.sides;
@@ -134,7 +136,7 @@ fn bundle(ink: &Ink, pairs: &[Tube], lines: &[usize], widest: &Tube) -> Option<T
     (are_between && are_long && LIMITS.sheaths.contains(&rows.len())).then_some(tube)
 }
 
-/// Two lines as the sides of one axis, if they run side by side.
+/// Returns two lines as the sides of one axis, if they run side by side.
 fn tube(ink: &Ink, a: usize, b: usize) -> Option<Tube> {
     let (one, other) = (&ink.strokes[a], &ink.strokes[b]);
     let (short, long) = if one.length < other.length { (one, other) } else { (other, one) };
@@ -166,7 +168,7 @@ fn tube(ink: &Ink, a: usize, b: usize) -> Option<Tube> {
     let (least, most) = widths().fold((f64::INFINITY, 0.0_f64), |(l, m), w| (l.min(w), m.max(w)));
     let middle: Vec<DVec2> = pairs.iter().map(|(p, q)| p.midpoint(*q)).collect();
     let length = polyline_length(&middle);
-    // The line between leads on: it does not run to and fro.
+    // The line between them leads on: it does not run to and fro.
     let reach = middle[0].distance(middle[middle.len() - 1]);
     let leads_on = reach > LIMITS.straight * length;
     let long_enough = length > LIMITS.slender * width;

@@ -6,25 +6,26 @@ use geom::bounds;
 use glam::DVec2;
 use ink::Ink;
 
-/// When strokes at the foot of a drawing are a pot. Lengths are in ink units (the drawing's diagonal is 1).
+/// Limits of strokes at the foot of a drawing that form a pot. Lengths are in ink units (the drawing's diagonal is 1).
 struct VesselLimits {
-    /// The rim is so many times as wide as high,
+    /// The width of the rim is at least this factor of its height,
     level: f64,
-    /// and at least so wide.
+    /// and at least this.
     rim: f64,
-    /// Strokes of the pot lie within the rim, but for this share of its width.
+    /// Strokes of the pot lie within the rim, except for this share of its width.
     slack: f64,
     /// On both sides a line goes down from the rim, from within this share of its width from its end,
     side: f64,
     /// over at least this share of the pot's height below the rim.
     down: f64,
-    /// A side that is a line of its own has its ends farther apart than this share of its length: fruits that hang are rings.
+    /// A side that is a line of its own has its ends farther apart than this share of its length: fruits that hang are
+    /// rings.
     open: f64,
-    /// Leaves that hang over the rim reach at most this share of the height down beside the pot.
+    /// Leaves that hang over the rim reach down next to the pot by at most this share of its height.
     hang: f64,
-    /// It is drawn with at most so many strokes: more hang from a twig.
+    /// Most strokes of a pot: more hang from a twig.
     most_strokes: usize,
-    /// The pot is between these many times as high as wide.
+    /// Height of the pot relative to its width.
     high: core::ops::Range<f64>,
 }
 
@@ -40,8 +41,8 @@ const LIMITS: VesselLimits = VesselLimits {
     high: 0.12..1.6,
 };
 
-/// The strokes of a pot at the foot of a drawing, its rim first; none unless something stands above it and nothing reaches
-/// far below its rim beside it. Cost: strokes times rims.
+/// Returns the strokes of a pot at the foot of a drawing, its rim first; none unless something stands above it and
+/// nothing reaches far below its rim next to it. Cost: strokes times rims.
 pub(crate) fn vessel(ink: &Ink) -> Vec<usize> {
     let boxes: Vec<(DVec2, DVec2)> =
         ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
@@ -57,12 +58,13 @@ pub(crate) fn vessel(ink: &Ink) -> Vec<usize> {
     rims.filter_map(|rim| below(&boxes, &open, rim)).max_by_key(Vec::len).unwrap_or_default()
 }
 
-/// The strokes below a rim, if they make a pot with it.
+/// Returns the strokes below a rim, if they form a pot with it.
 fn below(boxes: &[(DVec2, DVec2)], open: &[bool], rim: usize) -> Option<Vec<usize>> {
     let (low, high) = boxes[rim];
     let wide = high.x - low.x;
     let slack = LIMITS.slack * wide;
-    // What begins above the rim grows in the pot; what ends below it and is no part of it stands beside.
+    // A stroke that begins above the rim grows in the pot; one that ends below it and is no part of it stands next to
+    // it.
     let is_part = |&k: &usize| {
         k != rim
             && boxes[k].1.y < high.y + 0.5 * slack

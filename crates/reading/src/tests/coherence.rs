@@ -89,10 +89,10 @@ fn tubes_that_are_alike_along_a_stem_are_flowers_of_one_petal() {
     let (r, _) = reading(&strokes);
     assert_eq!((r.flowers.len(), r.leaves.len()), (5, 0), "{:?}", organs(&r));
     assert!(r.flowers.iter().all(|f| f.petals.len() == 1 && f.bearer.is_some()));
-    assert_eq!(Kind::of(&r), Kind::Flowers);
+    assert_eq!(Kind::from_reading(&r), Kind::Flowers);
 }
 
-/// Blades that fan out from the top of a stem, each on a stalk so long; those behind stop at those in front.
+/// Blades that fan out from the top of a stem, each on a stalk of this length; those behind stop at those in front.
 fn fan_on_stalks(stalk: f64) -> Vec<(StrokeClass, Vec<DVec2>)> {
     let top = DVec2::new(5.0, 8.0);
     let mut strokes = vec![(StrokeClass::Axis, line((5.0, 0.0), (5.0, 8.0)))];

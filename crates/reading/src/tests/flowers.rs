@@ -1,4 +1,4 @@
-//! Petals, discs and what is no flower.
+//! Petals, discs and groups of blades that are no flower.
 
 use super::*;
 
@@ -75,7 +75,7 @@ fn petals_on_a_ring_without_a_disc_are_one_flower() {
 
 #[test]
 fn leaves_along_a_stem_and_two_flowers_side_by_side_are_no_ring() {
-    // Five pairs of leaves, and two flowers of which each petal is nearer to the other flower's than to its own.
+    // Five pairs of leaves, and two flowers in which each petal is nearer to the other flower's than to its own.
     let mut strokes = vec![(StrokeClass::Axis, line((5.0, 12.0), (5.2, 0.0)))];
     for k in 0..5 {
         let y = 2.0 + 2.0 * f64::from(k);
@@ -99,7 +99,7 @@ fn leaves_along_a_stem_and_two_flowers_side_by_side_are_no_ring() {
     }
 }
 
-/// The petals of a cone with radius and height, whose axis stands out of the sheet by an angle, as they are seen.
+/// The petals of a cone with radius and height, whose axis stands out of the sheet by an angle, as they appear.
 fn petals_of_a_cone(n: i32, (radius, height): (f64, f64), out: f64) -> Vec<Vec<DVec2>> {
     let (s, c) = ops::sin_cos(out.to_radians());
     let seen = |t: f64, a: f64| {
@@ -190,7 +190,7 @@ fn green_beside_petals_of_another_colour_is_a_leaf() {
     paint(&mut drawing, [200, 30, 60], [40, 150, 50]);
     assert_eq!(of(&drawing, &[]), (6, 2));
     assert_eq!(of(&drawing, &["green-leaves"]), (8, 0));
-    // Where all are green, or none is, colours say nothing.
+    // If all are green, or none is, colours mean nothing.
     paint(&mut drawing, [40, 150, 50], [90, 180, 60]);
     assert_eq!(of(&drawing, &[]), (8, 0));
     paint(&mut drawing, [200, 30, 60], [230, 200, 40]);
@@ -276,7 +276,19 @@ fn green_is_no_bark_in_a_painted_drawing() {
         stroke.color = Some(color);
     }
     assert_eq!(woods(&drawing), (0, false));
-    // In one colour alone green is the pen's.
+    // An outline that is pointed at both ends is a leaf, and one that branches may be a stem.
+    let is_blade = |outline: Vec<DVec2>| {
+        let mut painted = Drawing::from_polylines("herb", &[outline, circle((4.0, 7.0), 1.5)]);
+        painted.strokes[0].color = Some([60, 140, 40]);
+        painted.strokes[1].color = Some([250, 220, 30]);
+        let ink = clean(&painted, &mut Report::default());
+        let classes = [perhaps(StrokeClass::TrunkOutline, 0.3), perhaps(StrokeClass::Blade, 0.5)];
+        let r = read_without(&[READ_AS], &ink, &classes, &mut Report::default());
+        r.strokes[0].class == StrokeClass::Blade
+    };
+    assert!(is_blade(leaf((0.0, 0.0), (4.0, 6.0), 1.2)));
+    assert!(!is_blade(path(&[(3.0, 0.0), (3.0, 8.0), (4.0, 8.0), (4.0, 0.0), (3.0, 0.0)])));
+    // In a drawing of one colour, green is the pen's.
     drawing.strokes.iter_mut().for_each(|s| s.color = Some([60, 140, 40]));
     assert_eq!(woods(&drawing).0, 2);
 }
@@ -293,7 +305,7 @@ fn a_stem_of_two_lines_under_a_wide_flower_is_no_wood() {
     strokes.extend(petals(head, 8, 3.0).into_iter().map(|p| (StrokeClass::Blade, p)));
     let (r, _) = reading(&strokes);
     assert_eq!((r.flowers.len(), r.woody), (1, false));
-    // A blossom that is small beside the trunk leaves it wood.
+    // A blossom that is small compared with the trunk leaves it wood.
     strokes[0].1 = line((2.0, 0.0), (2.0, 17.0));
     strokes[1].1 = line((8.0, 0.0), (8.0, 17.0));
     let (r, _) = reading(&strokes);

@@ -1,8 +1,8 @@
-//! What else is on a sheet: lines drawn twice or in one go, fruits on twigs, stamens, roots, shading.
+//! Other marks on a sheet: lines drawn twice or in one go, fruits on twigs, stamens, roots, shading.
 
 use super::*;
 
-/// As [`drawn`], with what the strokes became.
+/// Reads lines as [`drawn`] does; returns the organs of the strokes, too.
 fn read_of(lines: &[Vec<DVec2>]) -> (Reading, Vec<&'static str>) {
     let (reading, _) = drawn(lines);
     assert_eq!(reading.validate().count(), 0);
@@ -33,7 +33,7 @@ fn what_was_drawn_twice_is_one_line() {
     assert_eq!(twice.len(), 2, "{:?}", r.strokes);
     let (plain, _) = read_of(&once);
     assert_eq!((r.axes.len(), r.leaves.len()), (plain.axes.len(), 0));
-    // What the user says it is, it is.
+    // The class that the user sets stays.
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let mut classes = ink::classify(&ink, &base::Run::plain());
     let named = twice[0] as usize;
@@ -142,7 +142,7 @@ fn stamens_over_petals_are_no_veins() {
         );
         assert!(words[6..].iter().all(|w| *w == "stamen"), "{words:?}");
     }
-    // A lily seen from the side, of which they stand out.
+    // A lily in profile, out of which they stand.
     let fan = |n: i32, k: i32, each: f64| {
         let (s, c) = ops::sin_cos(ops::FRAC_PI_2 + each * (f64::from(k) - 0.5 * f64::from(n - 1)));
         move |r: f64| (5.0 + r * c, 5.0 + r * s)

@@ -1,4 +1,4 @@
-//! Drawings taken for a kind: what is then built of them.
+//! Drawings taken for a kind, and the plants that are then built.
 
 use std::cell::RefCell;
 
@@ -9,7 +9,7 @@ use crate::bare::BareWood;
 use crate::draft::Draft;
 use crate::silhouette::{Drawn, Shaping, Silhouette};
 
-/// What is built of lines that are taken for a kind.
+/// Reads lines taken for a kind.
 fn taken(kind: Kind, lines: &[Vec<DVec2>]) -> Reading {
     let ink = clean(&Drawing::from_polylines("taken", lines), &mut Report::default());
     let classes = ink::classify(&ink, &base::Run::plain());
@@ -19,7 +19,7 @@ fn taken(kind: Kind, lines: &[Vec<DVec2>]) -> Reading {
 }
 
 fn has_silhouette(ink: &ink::Ink) -> bool {
-    Shaping::of(ink, &Reading::default()).is_some_and(|s| Silhouette::of(&Drawn::new(&s.lines)).is_some())
+    Shaping::find(ink, &Reading::default()).is_some_and(|s| Silhouette::find(&Drawn::new(&s.lines)).is_some())
 }
 
 fn thick(r: &Reading) -> usize {
@@ -40,14 +40,14 @@ fn a_tree_of_bare_branches_has_no_crown_and_no_thorns() {
     let classes: Vec<Classified> = (0..lines.len()).map(said).collect();
     let r = read_as(Some(Kind::Tree), &ink, &classes, &mut Report::default());
     assert_eq!(r.validate().count(), 0);
-    assert_eq!(Kind::of(&r), Kind::Tree);
+    assert_eq!(Kind::from_reading(&r), Kind::Tree);
     assert!(r.regions.is_empty() && r.thorns.is_empty() && r.leaves.is_empty(), "{:?}", r.strokes);
     assert!(r.axes.iter().filter(|a| a.bearer.is_some()).count() >= 6, "each twig is borne");
     // With its crown it is as before.
     let crown = [lines[..2].to_vec(), vec![circle((0.0, 6.5), 2.4)]].concat();
     let ink = clean(&Drawing::from_polylines("tree", &crown), &mut Report::default());
     let r = read_as(Some(Kind::Tree), &ink, &classes[..3], &mut Report::default());
-    assert_eq!((Kind::of(&r), r.regions.len()), (Kind::Tree, 1));
+    assert_eq!((Kind::from_reading(&r), r.regions.len()), (Kind::Tree, 1));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_tree_in_one_line_is_cut_at_its_waist_and_bare_limbs_are_not() {
     ]);
     let r = taken(Kind::Tree, &[waist]);
     assert_eq!((r.regions.len(), thick(&r)), (1, 1), "{:?}", r.strokes);
-    assert_eq!(Kind::of(&r), Kind::Tree);
+    assert_eq!(Kind::from_reading(&r), Kind::Tree);
     // Three limbs on a trunk, in one line.
     let limbs = path(&[
         (-1.0, 0.0),
@@ -150,8 +150,8 @@ fn a_tree_of_many_open_arcs_is_read_by_its_silhouette() {
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &[], &kept);
-    let shaping = Shaping::of(&ink, &Reading::default()).expect("it has lines");
-    let silhouette = || Silhouette::of(&Drawn::new(&shaping.lines)).expect("a tree");
+    let shaping = Shaping::find(&ink, &Reading::default()).expect("it has lines");
+    let silhouette = || Silhouette::find(&Drawn::new(&shaping.lines)).expect("a tree");
     assert!(silhouette().fit(&Reading::default()) < 0.01, "nothing covers nothing");
     let fit = silhouette().fit(&taken(Kind::Tree, &lines));
     assert!(fit > 0.75, "what was read of it covers {fit}");
@@ -329,8 +329,11 @@ fn a_short_trunk_with_an_outline_makes_a_tree_and_a_short_line_a_bush() {
     use StrokeClass::{Axis, Crown, TrunkOutline};
     let crown = circle((0.0, 5.0), 4.5);
     let sides = path(&[(-0.6, 1.8), (-0.7, 0.0), (0.7, 0.0), (0.6, 1.8)]);
-    assert_eq!(Kind::of(&reading(&[(Crown, crown.clone()), (TrunkOutline, sides)]).0), Kind::Tree);
-    assert_eq!(Kind::of(&reading(&[(Crown, crown), (Axis, line((0.0, 1.8), (0.0, 0.0)))]).0), Kind::Bush);
+    assert_eq!(Kind::from_reading(&reading(&[(Crown, crown.clone()), (TrunkOutline, sides)]).0), Kind::Tree);
+    assert_eq!(
+        Kind::from_reading(&reading(&[(Crown, crown), (Axis, line((0.0, 1.8), (0.0, 0.0)))]).0),
+        Kind::Bush
+    );
 }
 
 #[test]
@@ -350,8 +353,8 @@ fn the_sides_of_a_bare_trunk_run_on_into_limbs() {
     let ink = clean(&Drawing::from_polylines("bare", &lines), &mut Report::default());
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &[], &kept);
-    let shaping = Shaping::of(&ink, &Reading::default()).expect("it has lines");
-    let wood = BareWood::of(&Drawn::new(&shaping.lines), &Reading::default()).expect("a trunk");
+    let shaping = Shaping::find(&ink, &Reading::default()).expect("it has lines");
+    let wood = BareWood::find(&Drawn::new(&shaping.lines), &Reading::default()).expect("a trunk");
     assert!(wood.fit(&Reading::default()) < 0.01, "nothing covers nothing");
     wood.read(&shaping, &mut draft);
     let (scale, trunk) = (ink.map.scale, &draft.forest.axes[draft.bodies[0]]);
@@ -399,7 +402,7 @@ fn a_line_that_leaves_a_crown_and_comes_back_is_a_lobe_of_it_and_one_that_ends_o
     let tall = |r: &Reading| {
         geom::bounds(&r.regions[0].outline).map_or(0.0, |b| (b.1.y - b.0.y) / r.plants[0].height)
     };
-    // Of the 9.6 of the drawing with a lobe, 5.8.
+    // The crown has 5.8 of the 9.6 of the drawing with a lobe.
     assert!((tall(&lobe) - 5.8 / 9.6).abs() < 0.03, "the crown reaches as high as the lobe: {}", tall(&lobe));
 }
 
@@ -438,8 +441,8 @@ fn a_tree_that_came_apart_keeps_its_roots() {
     assert_eq!(roots, 2, "{:?}", known.strokes);
     let kept = RefCell::default();
     let mut draft = Draft::new(&ink, &classes, &kept);
-    let shaping = Shaping::of(&ink, &known).expect("it has lines");
-    let silhouette = Silhouette::of(&Drawn::new(&shaping.lines)).expect("a trunk and a crown");
+    let shaping = Shaping::find(&ink, &known).expect("it has lines");
+    let silhouette = Silhouette::find(&Drawn::new(&shaping.lines)).expect("a trunk and a crown");
     silhouette.read(&shaping, &mut draft);
     assert_eq!((draft.regions.len(), draft.bodies.len(), draft.lines.len()), (1, 1, 2));
     let foot = draft.forest.axes[draft.bodies[0]].points[0].y;

@@ -1,4 +1,4 @@
-//! The reading's lines as rows of nodes: one node wherever something is borne, the others evenly between.
+//! The reading's lines as rows of nodes: one node at each attachment, the others evenly between.
 
 use base::Seed;
 use glam::{DVec2, DVec3};
@@ -10,7 +10,7 @@ use reading::{Attachment, Reading};
 const STEP: f64 = 0.02;
 /// Two attachments nearer than this share a node, ink units.
 const SAME: f64 = 1e-4;
-/// More nodes than this on one line are not kept apart (a scribble may be many drawings long).
+/// Most nodes of one line that are kept apart (a scribble may be many drawings long).
 const MOST_NODES: f64 = 2000.0;
 
 /// One axis of the reading, ready to get its depth. Ink units; `z` towards the viewer.
@@ -20,22 +20,22 @@ pub(crate) struct AxisPlan {
     pub(crate) points: Vec<DVec3>,
     /// The nodes as they were drawn, whatever bends `points` later.
     pub(crate) drawn: Vec<DVec2>,
-    /// Where each node lies along the drawn line; below 0 for the link to a bearer that it does not touch.
+    /// Place of each node along the drawn line; below 0 for the link to a bearer that it does not touch.
     pub(crate) at: Vec<f64>,
     /// Drawn half width at each node; empty for a line.
     pub(crate) half_width: Vec<f64>,
     /// Row of the bearing axis and its node.
     pub(crate) bearer: Option<(usize, usize)>,
-    /// What it is.
+    /// Kind of axis.
     pub(crate) kind: AxisKind,
     /// Stable key.
     pub(crate) key: u64,
-    /// Drawn as this stroke.
+    /// The stroke that it was drawn as.
     pub(crate) source: Option<u32>,
 }
 
 impl AxisPlan {
-    /// The node nearest to a place along the drawn line.
+    /// Returns the node nearest to a place along the drawn line.
     pub(crate) fn node_at(&self, at: f64) -> usize {
         let i = self.at.partition_point(|&a| a < at);
         if i == 0 {
@@ -47,13 +47,13 @@ impl AxisPlan {
         }
     }
 
-    /// Unit direction of the drawing at a node, over about `window` ink units to both sides.
+    /// Returns the unit direction of the drawing at a node, over about `window` ink units to both sides.
     pub(crate) fn direction(&self, node: usize, window: f64) -> DVec2 {
         let (lo, hi) = self.window(node, window);
         (self.points[hi] - self.points[lo]).truncate().try_normalize().unwrap_or(DVec2::Y)
     }
 
-    /// Rise of `z` per unit of drawn length at a node.
+    /// Returns the rise of `z` per unit of drawn length at a node.
     pub(crate) fn slope(&self, node: usize, window: f64) -> f64 {
         let (lo, hi) = self.window(node, window);
         let run = (self.points[hi] - self.points[lo]).truncate().length();
@@ -74,7 +74,7 @@ impl AxisPlan {
         (lo, hi)
     }
 
-    /// Drawn half width at a node, 0 for a line.
+    /// Returns the drawn half width at a node, 0 for a line.
     pub(crate) fn width_at(&self, node: usize) -> f64 {
         self.half_width.get(node).copied().unwrap_or(0.0)
     }
@@ -84,18 +84,18 @@ impl AxisPlan {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Plans {
     pub(crate) rows: Vec<Option<AxisPlan>>,
-    /// For rows without length: what bears them instead.
+    /// Bearer that takes the place of each row without length.
     stand_in: Vec<Option<Attachment>>,
     /// Rows that are the rachis of a compound leaf, or the petiole at whose end its leaflets stand.
     rachis: Vec<bool>,
 }
 
-/// A compound leaf has so many leaflets at least.
+/// Fewest leaflets of a compound leaf.
 const FEWEST_LEAFLETS: usize = 3;
 
 impl Plans {
-    /// Plans every axis of a reading. Never fails: lines without two different finite points are left out, and
-    /// what they bear goes to their own bearer.
+    /// Plans every axis of a reading. Never fails: lines without two different finite points are left out, and the
+    /// parts that they bear go to their own bearer.
     pub(crate) fn new(reading: &Reading) -> Self {
         let lines: Vec<Option<Line>> =
             reading.axes.iter().map(|a| Line::new(&a.points, &a.half_width)).collect();
@@ -163,10 +163,11 @@ impl Plans {
         plans
     }
 
-    /// How the surface of the compound leaf rises towards the viewer where one of its leaflets stands, per unit of the drawing;
-    /// `None` where `bearer` is no part of a compound leaf.
+    /// Returns the rise of the compound leaf's surface towards the viewer at one of its leaflets, per unit of the
+    /// drawing; `None` if `bearer` is no part of a compound leaf.
     ///
-    /// Leaflets lie in the plane of their rachis and of the direction across it, in which the drawing shows their full width.
+    /// Leaflets lie in the plane of their rachis and of the direction across it, in which the drawing shows their full
+    /// width.
     pub(crate) fn leaflet_gradient(&self, bearer: Attachment) -> Option<DVec2> {
         let (mut row, mut node) = self.locate(bearer)?;
         if !self.rachis[row] {
@@ -177,7 +178,8 @@ impl Plans {
         Some(plan.direction(node, LEAFLET_WINDOW) * plan.slope(node, LEAFLET_WINDOW))
     }
 
-    /// The row and node that bear something: the attachment's own, or what stands in for a line without length.
+    /// Returns the row and node of a bearer: the attachment's own, or that which takes the place of a line without
+    /// length.
     pub(crate) fn locate(&self, bearer: Attachment) -> Option<(usize, usize)> {
         let a = self.resolve_in(bearer, |row| self.rows.get(row).is_some_and(Option::is_some))?;
         let node = self.rows.get(a.axis)?.as_ref()?.node_at(a.at);
@@ -193,10 +195,10 @@ impl Plans {
     }
 }
 
-/// Over which length of a rachis the plane of its leaflets is taken, ink units.
+/// Length of a rachis over which the plane of its leaflets is measured, ink units.
 const LEAFLET_WINDOW: f64 = 0.05;
 
-/// Which axes bear the leaflets of one compound leaf: they are borne themselves, and bear nothing but leaves.
+/// Finds the axes that bear the leaflets of one compound leaf: they are borne themselves, and bear nothing but leaves.
 fn rachises(reading: &Reading) -> Vec<bool> {
     let count = reading.axes.len();
     let mut leaves = vec![0_usize; count];
@@ -220,7 +222,7 @@ fn rachises(reading: &Reading) -> Vec<bool> {
         .collect()
 }
 
-/// What a key names, so that an axis and a leaf of one stroke differ.
+/// The part that a key names, so that an axis and a leaf of one stroke differ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Part {
     Axis = 1,
@@ -235,8 +237,8 @@ pub(crate) enum Part {
     Pot = 10,
 }
 
-/// A key that is stable under edits of other parts: by the stroke for what was drawn, else by bearer and rank.
-/// `rank` tells apart several parts of one stroke.
+/// Returns a key that is stable under edits of other parts: by the stroke for a drawn part, else by bearer and rank.
+/// `rank` distinguishes several parts of one stroke.
 pub(crate) fn key_of(part: Part, source: Option<u32>, rank: u64, bearer_key: u64) -> u64 {
     let seed = Seed::new(part as u64);
     match source {
@@ -291,7 +293,7 @@ impl Line {
         (self.points[i - 1].lerp(self.points[i], t), width)
     }
 
-    /// Nodes at the stations and evenly between: points, places, half widths.
+    /// Returns nodes at the stations and evenly between: points, places, half widths.
     fn nodes(&self, stations: &[f64]) -> (Vec<DVec3>, Vec<f64>, Vec<f64>) {
         let length = self.length();
         let pieces = (length / STEP).ceil().clamp(4.0, MOST_NODES);

@@ -24,9 +24,9 @@ const LEAST: f64 = 12.0 * (ops::PI / 180.0);
 const FREE: f64 = 0.15;
 /// Sweeps of the coordinate ascent (the paper needs no optimum).
 const SWEEPS: usize = 80;
-/// Siblings farther apart than this along the bearer's order do not see each other: the cost stays linear.
+/// Greatest distance in the bearer's order at which siblings affect each other: the cost stays linear.
 const SEEN: usize = 16;
-/// Over which length directions at an attachment are taken, ink units.
+/// Length over which directions at an attachment are measured, ink units.
 const WINDOW: f64 = 0.03;
 /// Steepest rise that a branch takes over from its bearer.
 const HANDED_ON: f64 = 1.2;
@@ -47,7 +47,7 @@ pub(crate) struct Child {
 }
 
 impl Child {
-    /// Displacement in space at a rotation: along, across, towards the viewer.
+    /// Returns the displacement in space at a rotation: along, across, towards the viewer.
     fn space(&self, q: DVec2, phi: f64) -> DVec3 {
         DVec3::new(q.x, q.y, self.side * q.y * ops::tan(phi) + q.x * self.rise)
     }
@@ -56,7 +56,7 @@ impl Child {
         self.space(self.middle, phi).try_normalize().unwrap_or(DVec3::X)
     }
 
-    /// (length in space - drawn length) / drawn length.
+    /// Returns (length in space - drawn length) / drawn length.
     fn lengthening(&self, phi: f64) -> f64 {
         let flat: f64 = self.pieces.iter().map(|q| q.length()).sum();
         let deep: f64 = self.pieces.iter().map(|&q| self.space(q, phi).length()).sum();
@@ -64,7 +64,7 @@ impl Child {
     }
 }
 
-/// Gives every planned axis its depth, bearers before what they bear.
+/// Gives every planned axis its depth, bearers before the axes that they bear.
 pub(crate) fn branch_depths(plans: &mut Plans, mode: BranchDepth, seed: Seed) {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); plans.rows.len()];
     let mut ground = Vec::new();
@@ -104,8 +104,9 @@ pub(crate) fn branch_depths(plans: &mut Plans, mode: BranchDepth, seed: Seed) {
     }
 }
 
-/// Several axes that stand on the ground fan out about the plumb line through the first of the longest. Those whose feet are
-/// farther apart than the longer of them is long are of plants side by side, and do not see each other.
+/// Spreads several axes that stand on the ground about the plumb line through the first of the longest. Axes whose
+/// feet are farther apart than the length of the longer one belong to plants side by side, and do not affect each
+/// other.
 fn spread_ground(plans: &mut Plans, ground: &[usize], mode: BranchDepth, seed: Seed) {
     let standing: Vec<usize> = ground.to_vec();
     if standing.len() < 2 {
@@ -169,11 +170,11 @@ fn child(plan: &AxisPlan, along: DVec2, rise: f64, mode: BranchDepth, seed: Seed
     }
 }
 
-/// The rotations of siblings at which Eq 4 is large: coordinate ascent with halving steps.
+/// Returns the rotations of siblings at which Eq 4 is large: coordinate ascent with halving steps.
 ///
 /// `paper`: `alpha * mean angle + beta * mean exp(-lengthening)`; `riesz`: `-alpha * mean 1/angle^2` instead, since
-/// the sum of angles cannot tell an even spread from two clumps (docs/papers.md). alpha = beta = 1. Siblings in the
-/// order of their places along the bearer; `sees`: which of those near in that order see each other.
+/// the sum of angles does not distinguish an even spread from two clumps (docs/papers.md). alpha = beta = 1. Siblings
+/// in the order of their places along the bearer; `sees`: whether two that are near in that order affect each other.
 pub(crate) fn most_entropy(
     children: &[Child],
     mode: BranchDepth,
@@ -204,7 +205,7 @@ pub(crate) fn most_entropy(
         angles / pairs.max(1.0) + ops::exp(-(children[i].lengthening(at) - free).max(0.0)) / count
     };
     let mut step = 12.0 * (ops::PI / 180.0);
-    // Tried at this step, and none of those that it sees has moved since: it would stay where it is.
+    // Tried at this step, and none of those that affect it has moved since: it would stay in place.
     let mut settled = vec![false; n];
     for _ in 0..SWEEPS {
         let mut moved = false;
@@ -239,8 +240,8 @@ pub(crate) fn most_entropy(
     phi
 }
 
-/// Bends borne branches towards the light (up) and down under their weight, along their length; what they bear
-/// moves with them. Changes the front view: both are 0 by default.
+/// Bends borne branches towards the light (up) and down under their weight, along their length; the parts that they
+/// bear move with them. Changes the front view: both are 0 by default.
 pub(crate) fn bend_by_light_and_weight(plans: &mut Plans, spec: &SketchSpec) {
     let sound = |x: f64, lo: f64| if x.is_finite() { x.clamp(lo, 1.0) } else { 0.0 };
     let (light, weight) = (sound(spec.phototropism, -1.0), sound(spec.gravity, 0.0));
@@ -346,7 +347,7 @@ mod tests {
             branch_depths(&mut plans, BranchDepth::Riesz, Seed::new(3));
             plans
         };
-        // Less the depth of their feet, which follows from the longest of all.
+        // Less the depth of their feet, which follows from the longest axis.
         let deep = |plans: &Plans, row: usize| {
             let points = &plans.rows[row].as_ref().expect("a stem").points;
             points.iter().map(|p| p.z - points[0].z).collect::<Vec<f64>>()

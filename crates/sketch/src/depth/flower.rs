@@ -13,32 +13,34 @@ use super::fruit::{Profile, profile};
 use super::leaf::LocalBlade;
 use super::scene::{Bearing, Scene, around_one, drawn_light, sane, usable, usual_colour};
 
-/// Half opening of a flower whose drawing does not tell (60 degrees).
+/// Half opening of a flower whose drawing does not show it (60 degrees).
 const OPEN: f64 = ops::PI / 3.0;
-/// How much steeper each inner whorl stands.
+/// Factor by which the opening shrinks from whorl to whorl inwards.
 const STEEPER: f64 = 0.78;
 /// Below this the axis lies in the drawing plane and petals alternate between front and back.
 const SIDEWAYS: f64 = 0.08;
 /// A petal that would become longer than this many times its drawn length is tilted instead.
 const STEEPEST: f64 = 1.7;
-/// A petal is longer than the longest that was drawn by no more than this factor; by so much of that it may rise in any case.
+/// Greatest length of a petal relative to the longest drawn one.
 const LONGER: f64 = 1.5;
+/// Depth by which a petal may always rise, as a share of the longest drawn one.
 const LEAST_DEPTH: f64 = 0.8;
-/// Radius of the inside of a bell, a share of that of its outside; and the largest slope of its axis out of the drawing.
+/// Radius of the inside of a bell, as a share of that of its outside.
 const INSIDE: f64 = 0.93;
+/// Largest slope of a bell's axis out of the drawing.
 const LEAN: f64 = 0.35;
-/// How wide the fan of petals of a flower in profile is, radians: from nearly closed to flat.
+/// Least and greatest angle of the fan of petals of a flower in profile, radians: from nearly closed to flat.
 const PROFILE_FAN: [f64; 2] = [0.25, 3.0];
-/// So few tips show no ellipse of a rim.
+/// Most tips that are too few to show the ellipse of a rim.
 const FEW_TIPS: usize = 4;
-/// Petals at the flanks lie so much of the distance of others before those behind them.
+/// Share of their distance from the petals behind them that petals at the flanks keep.
 const AT_FLANKS: f64 = 0.2;
-/// Keys of petals that the drawing does not show.
+/// First key of petals that the drawing does not show.
 const BEHIND: u64 = 1 << 32;
 /// Distance in depth of neighbouring petals, share of a petal's length: less would flicker.
 const APART: f64 = 0.015;
 
-/// A flower on its way: everything in metres.
+/// A flower during construction: everything in metres.
 struct Corolla {
     /// Drawn middle.
     centre: DVec2,
@@ -55,7 +57,7 @@ struct Corolla {
 }
 
 impl Corolla {
-    /// The nested cone of a whorl: same apex and axis, steeper from ring to ring.
+    /// Returns the nested cone of a whorl: same apex and axis, steeper from ring to ring.
     fn cone(&self, whorl: u32) -> Cone {
         let steep = ops::powf(STEEPER, f64::from(whorl.min(8)));
         let half_angle = (self.fit.cone.half_angle * steep).max(0.2).min(self.fit.cone.half_angle);
@@ -73,7 +75,7 @@ impl Corolla {
     }
 }
 
-/// Adds a drawn flower: petals, disc, stamens; and a stalk where its stem ends short of it.
+/// Adds a drawn flower: petals, disc, stamens; and a stalk if its stem ends short of it.
 pub(crate) fn place_flower(
     plant: &mut Plant,
     scene: &Scene<'_>,
@@ -92,7 +94,7 @@ pub(crate) fn place_flower(
     if let Some((_, given)) = seat {
         at.z = given.z;
     }
-    // Not by the stroke of a petal: the flower stays the same without it.
+    // The key does not use the stroke of a petal: the flower stays the same without it.
     let key = key_of(Part::Flower, None, index as u64, bearing.map_or(0, |b| b.key));
     let link = key_of(Part::Link, None, 0, key);
     let bearer = scene.stalk(plant, bearing.as_ref(), flower.centre, at, AxisKind::Stem, link);
@@ -122,14 +124,14 @@ pub(crate) fn place_flower(
     part.centre(flower, &corolla);
 }
 
-/// The corolla of a flower that was drawn from the side in one outline: petals that are grown together.
+/// Returns the corolla of a flower that was drawn in profile in one outline: united petals.
 fn bell(flower: &FlowerReading) -> Option<&BladeReading> {
     let [petal] = &flower.petals[..] else { return None };
     let is_alone = flower.disc.is_none() && flower.stamens.is_empty();
     (is_alone && usable(petal.root)).then_some(petal)
 }
 
-/// The cone of a flower seated at `at`, metres.
+/// Returns the cone of a flower seated at `at`, metres.
 fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -> Corolla {
     let s = scene.map.metres_per_ink;
     let centre = at.truncate();
@@ -155,7 +157,7 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     let z = if facing { 1.0 } else { -1.0 };
     let fitted = cone_in_profile(centre, &tips).or_else(|| flower_cone(centre, &tips, facing));
     let mut fit = fitted.filter(sound).unwrap_or_else(|| {
-        // One or two petals tell nothing: open, facing the viewer.
+        // One or two petals are not enough to fit a cone: open, facing the viewer.
         let (sin, cos) = ops::sin_cos(OPEN);
         let cone = Cone { apex: DVec3::ZERO, axis: DVec3::Z * z, half_angle: OPEN };
         let radius = reach.max(1e-9);
@@ -179,8 +181,8 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     corolla
 }
 
-/// The cone of a flower that is seen from the side: its petals fan out to one side of its centre. It opens along the middle of
-/// the fan, in the plane of the drawing. `None` where petals stand all round, or where their tips show the ellipse of a rim.
+/// Returns the cone of a flower in profile: its petals fan out to one side of its centre. It opens along the middle of
+/// the fan, in the plane of the drawing. `None` if petals stand all round, or if their tips show the ellipse of a rim.
 fn cone_in_profile(centre: DVec2, tips: &[DVec2]) -> Option<FlowerCone> {
     let ways: Vec<DVec2> = tips.iter().map(|t| *t - centre).collect();
     let middle = ways.iter().filter_map(|w| w.try_normalize()).sum::<DVec2>().try_normalize()?;
@@ -193,7 +195,7 @@ fn cone_in_profile(centre: DVec2, tips: &[DVec2]) -> Option<FlowerCone> {
         return None;
     }
     let axis = middle.rotate(base::turn::direction((first + last) / 2.0));
-    // As deep as it is wide: where petals in the middle are as long as those at the flanks, they bend inwards.
+    // As deep as it is wide: if petals in the middle are as long as those at the flanks, they bend inwards.
     let height = ways.iter().map(|w| axis.dot(*w)).fold(0.0, f64::max);
     let radius = ways.iter().map(|w| axis.perp_dot(*w).abs()).fold(0.0, f64::max);
     let cone =
@@ -201,21 +203,21 @@ fn cone_in_profile(centre: DVec2, tips: &[DVec2]) -> Option<FlowerCone> {
     Some(FlowerCone { cone, height, radius, rho: 0.0 })
 }
 
-/// What the organs of one flower have in common.
+/// Common data of the organs of one flower.
 struct Organs<'a, 'b> {
     plant: &'a mut Plant,
     scene: &'a Scene<'b>,
     flower: FlowerId,
     bearer: Option<NodeId>,
     key: u64,
-    /// Of the petal at hand.
+    /// Colour of the current petal.
     color: Option<[u8; 3]>,
-    /// Of petals that were drawn in ink alone.
+    /// Colour of petals that were drawn in ink alone.
     usual: Option<[u8; 3]>,
 }
 
 impl Organs<'_, '_> {
-    /// The colour that a petal was drawn in, or that of its neighbours.
+    /// Returns the colour in which a petal was drawn, or that of its neighbours.
     fn colour_of(&self, petal: &BladeReading) -> Option<[u8; 3]> {
         petal.color.filter(|&c| drawn_light(c).is_some()).or(self.usual)
     }
@@ -237,7 +239,7 @@ impl Organs<'_, '_> {
         });
     }
 
-    /// The petals of one ring, in angular order.
+    /// Places the petals of one ring, in angular order.
     fn whorl(&mut self, flower: &FlowerReading, corolla: &Corolla, whorl: u32, ring: u32) {
         let cone = corolla.cone(ring);
         let middle = corolla.fit.cone.axis.truncate().try_normalize().unwrap_or(DVec2::Y);
@@ -268,7 +270,7 @@ impl Organs<'_, '_> {
             corolla.fit.height * if ring == 0 { 1.0 } else { (reach / corolla.reach).clamp(0.1, 1.0) };
         for (rank, &(angle, i, petal)) in petals.iter().enumerate() {
             let tip = corolla.centre + (petal.tip - flower.centre) * s;
-            // What the drawing says, or every other one.
+            // As the drawing shows, or else alternating.
             let even = rank.abs_diff(front).is_multiple_of(2);
             let even = petal.front.map_or(even, |f| f >= 0.0);
             let sheet = if corolla.is_in_profile() {
@@ -296,7 +298,7 @@ impl Organs<'_, '_> {
         }
     }
 
-    /// A bell or tube: the outline turned about its middle, open at the far end, with a wall.
+    /// Places a bell or tube: the outline turned about its middle, open at the far end, with a wall.
     fn bell(&mut self, petal: &BladeReading, at: DVec3) {
         let outline: Vec<DVec2> = petal.outline.iter().copied().filter(|&p| usable(p)).collect();
         let Some(all) = pca2(&outline) else { return };
@@ -359,7 +361,7 @@ impl Organs<'_, '_> {
         };
         let mut curl = self.scene.seed.child(key).stream(Draw::Curl);
         let spec = &self.scene.spec.relief;
-        // Seen from its edge a petal's normal lies in the drawing: only the part along the view may move.
+        // The normal of a petal seen edge-on lies in the drawing: only the part along the view may move.
         let seen = inner.z.abs().max(0.2);
         let relief = Relief {
             bend_a: sane(spec.petal_bend_a, 1.0) * seen * around_one(curl.uniform(), 0.35),
@@ -381,7 +383,7 @@ impl Organs<'_, '_> {
         self.push(OrganKind::Petal, Shape::Blade(blade), frame, key, petal.source);
     }
 
-    /// Disc, stamens, pistil: as drawn, else what such a flower has.
+    /// Places disc, stamens and pistil: as drawn, else those that such a flower has.
     fn centre(&mut self, flower: &FlowerReading, corolla: &Corolla) {
         let cone = corolla.fit.cone;
         let s = self.scene.map.metres_per_ink;
@@ -430,7 +432,7 @@ impl Organs<'_, '_> {
         }
     }
 
-    /// A pistil and six stamens, about the axis.
+    /// Places a pistil and six stamens, about the axis.
     fn default_stamens(&mut self, corolla: &Corolla, raised: f64) {
         let cone = corolla.fit.cone;
         let base = cone.apex
@@ -474,7 +476,7 @@ impl Organs<'_, '_> {
     }
 }
 
-/// A frame whose normal is `axis`.
+/// Returns a frame whose normal is `axis`.
 fn facing_frame(origin: DVec3, axis: DVec3) -> Frame {
     let up = DVec3::Y - axis * axis.y;
     let along = up.try_normalize().filter(|_| up.length_squared() > 1e-6).unwrap_or_else(|| {

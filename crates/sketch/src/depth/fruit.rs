@@ -15,52 +15,54 @@ use super::solid::span;
 
 /// Rings of a body from pole to pole.
 const RINGS: usize = 13;
-/// Longer than so many times its width a body has an axis of its own; below it looks round (the ratio of the variances is the
-/// square).
+/// A body whose length is more than this factor of its width has an axis of its own; a less slender one looks round
+/// (the ratio of the variances is the square).
 const ROUND: f64 = 1.25;
-/// About another axis than that of its stalk it is that much more alike on both sides, a share of its half width; than about a
-/// long one without a stalk, that much.
+/// Gain in symmetry, as a share of the half width, for which another axis is taken instead of that of the stalk.
 const CLEARLY: f64 = 0.1;
+/// That gain if a long body has no stalk.
 const MORE: f64 = 0.04;
-/// What bears it lies on its skin and is no stalk, if it is inside by more than this share of half its width: stalks begin in a
+/// A bearer that lies inside by more than this share of half its width is on its skin and no stalk: stalks begin in a
 /// hollow.
 const ON_SKIN: f64 = 0.3;
-/// Down but for 53 degrees: its cosine.
+/// Cosine of the angle within which a direction counts as down: 53 degrees.
 const NEARLY_DOWN: f64 = 0.6;
-/// A bent body is so many times as long as wide, along its middle; shorter ones are lopsided.
+/// Least length of a bent body relative to its width, along its middle; shorter ones are lopsided.
 const BENT_LENGTH: f64 = 2.0;
-/// Its middle bows by more than this share of the distance of its ends: a banana's by 0.2, a straight root's that was drawn by
-/// hand by 0.05.
+/// Its middle bows by more than this share of the distance of its ends: 0.2 for a banana, 0.05 for a straight root
+/// drawn by hand.
 const BOW: f64 = 0.1;
-/// Its outline fills less than this share of its hull: one side is hollow, as that of half a disc is not.
+/// Its outline fills less than this share of its hull: one side is hollow, unlike that of half a disc.
 const HOLLOW: f64 = 0.9;
-/// So many times as long as wide, nothing turns about an axis across.
+/// Slenderness above which a body does not turn about an axis across it.
 const LONGEST: f64 = 3.0;
-/// Its rings are this much narrower than long, so that the inner side of a bend does not fold: a share of the radius of the
-/// bend.
+/// Greatest radius of its rings as a share of the radius of the bend, so that the inner side of the bend does not
+/// fold.
 const FOLDS: f64 = 0.95;
-/// Points around an outline of which any two may be its ends, and pairs of points that are compared from end to end.
+/// Points around an outline, any two of which may be its ends.
 const AROUND: usize = 72;
+/// Pairs of points that are compared from end to end.
 const PAIRS: usize = 24;
-/// How far along its middle a bent body is evened out: the variance in steps.
+/// Variance, in steps, of the smoothing of a bent body's middle.
 const EVENED: f64 = 6.0;
+/// Half window of that smoothing, in steps.
 const EVENED_WINDOW: usize = 4;
 
 /// The form of a body in the plane of the drawing.
 #[derive(Debug)]
 enum Body {
-    /// About `along` through `root`: `(radius, way from the root)`.
+    /// A body turned about `along` through `root`: `(radius, distance from the root along it)`.
     Straight { root: DVec2, along: DVec2, profile: Vec<DVec2> },
-    /// Along a line, with a half width at each of its points.
+    /// A body along a line, with a half width at each of its points.
     Bent { line: Vec<DVec2>, half_width: Vec<f64> },
 }
 
-/// Adds a drawn fruit. A long one whose middle bows goes along it; another is its outline turned about the axis in which it is
-/// most alike on both sides, rather where its stalk is.
+/// Adds a drawn fruit. A long one whose middle bows follows its middle; another is its outline turned about its axis
+/// of greatest symmetry, preferring that of its stalk. `depth`: how far it lies in front of its place, ink units.
 pub(crate) fn place_fruit(
     plant: &mut Plant,
     scene: &Scene<'_>,
-    fruit: &FruitReading,
+    (fruit, depth): (&FruitReading, f64),
     rank: usize,
     seat: Option<(Bearing, DVec3)>,
 ) {
@@ -78,6 +80,7 @@ pub(crate) fn place_fruit(
     if let Some((_, at)) = seat {
         origin.z = at.z;
     }
+    origin.z += depth * scene.map.metres_per_ink;
     let key = key_of(Part::Fruit, fruit.source, rank as u64, bearing.map_or(0, |b| b.key));
     let link = key_of(Part::Link, None, 0, key);
     let bearer = scene.stalk(plant, bearing.as_ref(), root, origin, AxisKind::Petiole, link);
@@ -108,7 +111,7 @@ pub(crate) fn place_fruit(
     });
 }
 
-/// The form of an outline that hangs at `bearer`; without one its upper end is its root.
+/// Returns the form of an outline that hangs at `bearer`; without a bearer its upper end is its root.
 fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
     let all = pca2(outline)?;
     let stalk = stalk(outline, bearer);
@@ -122,7 +125,7 @@ fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
     let others = [DVec2::NEG_Y, all.major, all.minor];
     let axes = if longest { vec![all.major] } else { [usual].into_iter().chain(others).collect() };
     let lopsided = |along: &DVec2| profile(outline, all.centre, *along).map_or(f64::INFINITY, |p| p.lopsided);
-    // Clearly more alike than about the usual axis, and then the first of equals.
+    // Clearly more symmetric than about the usual axis; on a plateau the first.
     let margin = if long && stalk.is_none() { MORE } else { CLEARLY };
     let worth = |(k, along): (usize, DVec2)| (lopsided(&along) + if k > 0 { margin } else { 0.0 }, along);
     let along = axes.into_iter().enumerate().map(worth).reduce(|a, b| if b.0 < a.0 { b } else { a })?.1;
@@ -132,8 +135,8 @@ fn body(outline: &[DVec2], bearer: Option<DVec2>) -> Option<Body> {
     Some(Body::Straight { root, along, profile: rings })
 }
 
-/// The way from the stalk to the middle, down where it is nearly that: stalks are drawn beside the middle. None where what
-/// bears it lies in it, such as a line on its skin.
+/// Returns the direction from the stalk to the middle, exactly down if it is nearly that: stalks are drawn off the
+/// middle. `None` if the bearer lies inside, such as a line on the skin.
 fn stalk(outline: &[DVec2], bearer: Option<DVec2>) -> Option<DVec2> {
     let (all, bearer) = (pca2(outline)?, bearer?);
     let away = (centroid(outline) - bearer).try_normalize()?;
@@ -144,20 +147,20 @@ fn stalk(outline: &[DVec2], bearer: Option<DVec2>) -> Option<DVec2> {
     Some(if away.dot(DVec2::NEG_Y) > NEARLY_DOWN { DVec2::NEG_Y } else { away })
 }
 
-/// An outline about an axis.
+/// The profile of an outline about an axis.
 #[derive(Debug)]
 pub(super) struct Profile {
-    /// `(radius, way from the root)`, from pole to pole.
+    /// `(radius, distance from the root along the axis)`, from pole to pole.
     pub(super) rings: Vec<DVec2>,
-    /// Where the lower pole is along the axis.
+    /// Place of the lower pole along the axis.
     pub(super) low: f64,
-    /// How far its middle lies to the left of the axis.
+    /// Distance of its middle to the left of the axis.
     pub(super) aside: f64,
-    /// How far the middles of its rings lie from that one, a share of its half width.
+    /// Mean distance of the middles of its rings from that middle, as a share of its half width.
     lopsided: f64,
 }
 
-/// Mean half width across `along` at rings from pole to pole.
+/// Returns the mean half width across `along` at rings from pole to pole.
 pub(super) fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<Profile> {
     let across = along.perp();
     let local: Vec<DVec2> =
@@ -189,13 +192,13 @@ pub(super) fn profile(outline: &[DVec2], centre: DVec2, along: DVec2) -> Option<
         return None;
     }
     let aside = middles.iter().map(|(r, m)| r * m).sum::<f64>() / total;
-    // Where it is narrow, such as at one of the two humps of an apple, it counts little.
+    // A narrow place, such as one of the two humps of an apple, has little weight.
     let off: f64 = middles.iter().map(|(r, m)| r * (m - aside).abs()).sum();
     let square: f64 = middles.iter().map(|(r, _)| r * r).sum();
     Some(Profile { rings, low, aside, lopsided: off / square })
 }
 
-/// A long body whose middle bows; it begins at the end that is nearer to `stalk`.
+/// Returns a long body whose middle bows; it begins at the end nearer to `stalk`.
 fn bent(outline: &[DVec2], stalk: DVec2) -> Option<Body> {
     if signed_area(outline).abs() > HOLLOW * signed_area(&convex_hull(outline)) {
         return None;
@@ -225,7 +228,7 @@ fn bent(outline: &[DVec2], stalk: DVec2) -> Option<Body> {
     Some(Body::Bent { line, half_width })
 }
 
-/// The radius of the circle through a point of a line and those two before and after it; infinite at its ends.
+/// Returns the radius of the circle through a point of a line and those two before and after it; infinite at its ends.
 fn bend_radius(line: &[DVec2], k: usize) -> f64 {
     let Some((a, c)) = k.checked_sub(2).and_then(|i| line.get(i)).zip(line.get(k + 2)) else {
         return f64::INFINITY;
@@ -235,8 +238,8 @@ fn bend_radius(line: &[DVec2], k: usize) -> f64 {
     p.length() * q.length() * (p + q).length() / (2.0 * area).max(f64::MIN_POSITIVE)
 }
 
-/// Both sides of an outline from one end to the other, as many points each: of all ways to take two of its points for its ends,
-/// the one in which what lies opposite is nearest.
+/// Returns both sides of an outline from one end to the other, with equally many points. The ends are the two points
+/// of the outline for which opposite points are nearest.
 fn sides(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
     let mut ring = outline.to_vec();
     ring.push(*outline.first()?);

@@ -11,8 +11,9 @@ use super::axes::{Part, key_of};
 use super::scene::{Bearing, Scene, around_one, sane, usable};
 use crate::LeafDepth;
 
-/// Largest slope of a `drawn` leaf out of the plane: 35 degrees along it, 25 across.
+/// Largest slope of a `drawn` leaf out of the plane along its axis: 35 degrees.
 const TILT_ALONG: f64 = 35.0 * (ops::PI / 180.0);
+/// Largest slope of a `drawn` leaf out of the plane across its axis: 25 degrees.
 const TILT_ACROSS: f64 = 25.0 * (ops::PI / 180.0);
 /// Least slope along it, 8 degrees: or the plant is a card when seen from the side.
 const TILT_LEAST: f64 = 8.0 * (ops::PI / 180.0);
@@ -33,8 +34,8 @@ pub(crate) struct LocalBlade {
 }
 
 impl LocalBlade {
-    /// `mirrored`: the blade's upper side looks away from the viewer; `boldness`: of a stroke. `None` for an outline without
-    /// extent.
+    /// `mirrored`: the blade's upper side looks away from the viewer; `boldness`: of its stroke. `None` for an outline
+    /// without extent.
     pub(crate) fn new(
         blade: &BladeReading,
         metres_per_ink: f64,
@@ -81,12 +82,12 @@ impl LocalBlade {
     }
 }
 
-/// Keys of blades: the stroke and which blade of that stroke.
+/// Returns the key of a blade: its stroke and its rank in that stroke.
 pub(crate) fn blade_key(part: Part, blade: &BladeReading, rank: usize, bearer_key: u64) -> u64 {
     key_of(part, blade.source, rank as u64, bearer_key)
 }
 
-/// Adds the shape of a drawn leaf: what it looks like before it has a place. `None` for an outline without extent.
+/// Adds the shape of a drawn leaf, independent of its place. `None` for an outline without extent.
 pub(crate) fn leaf_shape(
     plant: &mut Plant,
     scene: &Scene<'_>,
@@ -118,7 +119,7 @@ pub(crate) fn leaf_shape(
     Some((plant.add_shape(Shape::Blade(blade)), local))
 }
 
-/// Towards the viewer or away from him: with its compound leaf, as the drawing says, or by chance where it does not.
+/// Returns the tilt towards the viewer or away: with its compound leaf, as the drawing shows, or else by chance.
 fn tilt(scene: &Scene<'_>, leaf: &BladeReading, local: &LocalBlade, key: u64) -> DVec2 {
     let mut s = scene.seed.child(key).stream(Draw::LeafAngle);
     if let Some(rise) = leaf.bearer.and_then(|b| scene.plans.leaflet_gradient(b)) {
@@ -132,7 +133,7 @@ fn tilt(scene: &Scene<'_>, leaf: &BladeReading, local: &LocalBlade, key: u64) ->
     DVec2::new(ops::tan(across), ops::tan(along))
 }
 
-/// Puts a drawn leaf into the plant: at its bearer's depth (or at a given seat), turned as the spec's leaf mode says.
+/// Puts a drawn leaf into the plant: at its bearer's depth (or at a given seat), turned by the spec's leaf mode.
 pub(crate) fn place_leaf(
     plant: &mut Plant,
     scene: &Scene<'_>,
@@ -177,18 +178,18 @@ pub(crate) fn place_leaf(
     });
 }
 
-/// Where the light prior turns a leaf.
+/// Directions in which the light prior turns a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Turned {
     /// Every leaf to +X and on towards -Z.
     AsPrinted,
-    /// Left leaves stay left, and go on away from the viewer, or towards him: the drawing does not say.
+    /// Left leaves stay left, and turn away from the viewer, or towards the viewer: the drawing does not show which.
     ToBack,
     ToFront,
 }
 
-/// The light prior: the blade turns about its axis until it stands on edge, then to the horizontal (but for the
-/// first disturbance), then about the plumb line by `phi * pi^(-|cos phi|)` plus the second.
+/// Returns the frame of the light prior: the blade turns about its axis until it stands on edge, then to the
+/// horizontal (but for the first disturbance), then about the plumb line by `phi * pi^(-|cos phi|)` plus the second.
 ///
 /// `va`, `vb`: unit directions of leaf and bearer in the drawing (docs/papers.md).
 fn light_frame(origin: DVec3, va: DVec2, vb: DVec2, disturbed: DVec2, turned: Turned) -> Frame {

@@ -1,4 +1,4 @@
-//! What placing an organ needs: the reading, the map to metres, the axes that already stand.
+//! Data for placing an organ: the reading, the map to metres, the axes that exist already.
 
 use base::{Draw, LiteMap, Seed, ops};
 use glam::{DVec2, DVec3};
@@ -11,7 +11,7 @@ use crate::{PlantMap, SketchSpec};
 /// Roots farther from their bearer than this get a stalk, ink units: nearer ones read as touching.
 const TOUCHING: f64 = 0.012;
 
-/// The half-built plant as organs see it.
+/// The half-built plant for organs to be placed on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scene<'a> {
     pub(crate) spec: &'a SketchSpec,
@@ -20,11 +20,11 @@ pub(crate) struct Scene<'a> {
     pub(crate) plans: &'a Plans,
     /// The plant's axis of each planned row.
     pub(crate) ids: &'a [Option<AxisId>],
-    /// Drawn with coloured pens: organs take the colour that they were drawn in.
+    /// Whether it was drawn with coloured pens: organs take the colour in which they were drawn.
     pub(crate) coloured: bool,
     /// The colour of petals that were drawn in ink alone, in a coloured drawing: that of most petals with one.
     pub(crate) petals: Option<[u8; 3]>,
-    /// How boldly strokes were drawn, beside the usual one, of those that differ from it.
+    /// Boldness of the strokes that differ from the usual one, relative to it.
     pub(crate) pressed: &'a LiteMap<u32, f64>,
 }
 
@@ -32,9 +32,9 @@ pub(crate) struct Scene<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bearing {
     pub(crate) node: NodeId,
-    /// Where it is, metres.
+    /// Its position, metres.
     pub(crate) position: DVec3,
-    /// Where it was drawn, ink units.
+    /// Its place in the drawing, ink units.
     pub(crate) drawn: DVec2,
     /// Direction of the axis in the drawing, unit.
     pub(crate) along: DVec2,
@@ -45,7 +45,7 @@ pub(crate) struct Bearing {
 }
 
 impl Scene<'_> {
-    /// The node of an attachment; `None` where there is no such axis.
+    /// Returns the node of an attachment; `None` if there is no such axis.
     pub(crate) fn bearing(&self, plant: &Plant, at: Option<Attachment>) -> Option<Bearing> {
         let (row, node) = self.plans.locate(at?)?;
         let plan = self.plans.rows.get(row)?.as_ref()?;
@@ -61,7 +61,8 @@ impl Scene<'_> {
         })
     }
 
-    /// Where an organ drawn at `root` (ink) sits: at its bearer's depth, before the bark of a bearer drawn thick.
+    /// Returns the seat of an organ drawn at `root` (ink): at its bearer's depth, in front of the bark of a bearer
+    /// drawn thick.
     pub(crate) fn seat(&self, root: DVec2, bearing: Option<&Bearing>) -> DVec3 {
         let Some(b) = bearing else { return self.map.plant_at_depth(root, 0.0) };
         let shift = b.position.truncate() - self.map.plant_from_ink(b.drawn);
@@ -70,8 +71,8 @@ impl Scene<'_> {
         (self.map.plant_from_ink(root) + shift).extend(b.position.z + front)
     }
 
-    /// The node that bears an organ seated at `seat` and drawn at `root`: the bearing's own where they touch, else
-    /// the end of a new stalk between them. The stalk has no source: it was not drawn.
+    /// Returns the node that bears an organ seated at `seat` and drawn at `root`: the bearing's own if they touch,
+    /// else the end of a new stalk between them. The stalk has no source: it was not drawn.
     pub(crate) fn stalk(
         &self,
         plant: &mut Plant,
@@ -102,12 +103,12 @@ impl Scene<'_> {
         plant.axis(id).node_ids().last()
     }
 
-    /// How boldly a stroke was drawn.
+    /// Returns how boldly a stroke was drawn: 1 as usual.
     pub(crate) fn boldness(&self, source: Option<u32>) -> f64 {
         source.and_then(|source| self.pressed.get(&source).copied()).unwrap_or(1.0)
     }
 
-    /// The colour in which an organ was drawn, if the drawing is a coloured one, else white; varied slightly in
+    /// Returns the colour in which an organ was drawn, if the drawing is coloured, else white; varied slightly in
     /// brightness and warmth, so that no two organs look alike.
     pub(crate) fn paint(&self, key: u64, color: Option<[u8; 3]>) -> Paint {
         let mut s = self.seed.child(key).stream(Draw::Tint);
@@ -120,8 +121,8 @@ impl Scene<'_> {
     }
 }
 
-/// The colour in which most blades were drawn that have one; of as many the first. Those of one kind that have none are hidden in
-/// part: their colour lies under those in front.
+/// Returns the colour of most blades that have one; on a tie the first. Blades that have none are hidden in part:
+/// their colour lies under those in front.
 pub(crate) fn usual_colour<'a>(blades: impl Iterator<Item = &'a BladeReading>) -> Option<[u8; 3]> {
     let mut counts: Vec<([u8; 3], usize)> = Vec::new();
     for color in blades.filter_map(|b| b.color).filter(|&c| drawn_light(c).is_some()) {
@@ -134,8 +135,9 @@ pub(crate) fn usual_colour<'a>(blades: impl Iterator<Item = &'a BladeReading>) -
     counts.into_iter().find(|(_, count)| *count == most).map(|(color, _)| color)
 }
 
-/// Whether a drawing was made with coloured pens: its organs have two different colours at least, one of which is
-/// no ink. A drawing in one colour tells the colour of the pen; no colour beside one is another.
+/// Whether a drawing was made with coloured pens: its organs have at least two different colours, at least one of
+/// which is not an ink colour. A drawing in one colour shows only the colour of the pen; no colour counts as different
+/// from a colour.
 pub(crate) fn coloured(mut colors: impl Iterator<Item = Option<[u8; 3]>> + Clone) -> bool {
     let Some(first) = colors.next() else { return false };
     let differ = |c: Option<[u8; 3]>| match c.zip(first) {
@@ -146,11 +148,11 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = Option<[u8; 3]>> + Clone
     other && (first.is_some_and(is_coloured) || colors.flatten().any(is_coloured))
 }
 
-/// The linear light of a colour that something was drawn in; `None` for ink: black or grey. Among colours white is one, as
-/// nobody draws with white ink: the petals of a daisy.
+/// Returns the linear light of a drawn colour; `None` for ink: black or grey. Among colours white counts, since nobody
+/// draws with white ink: the petals of a daisy.
 pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
     let light = color.map(base::light_of_byte);
-    // Of the darkest ink nobody sees the hue.
+    // The hue of the darkest ink cannot be seen.
     let is_seen = is_coloured(color) && light.into_iter().any(|x| x > 0.04);
     (is_seen || is_white(color)).then_some(light)
 }
@@ -159,23 +161,23 @@ fn is_white(c: [u8; 3]) -> bool {
     c.into_iter().all(|x| x > 215)
 }
 
-/// Not black, grey or white.
+/// Whether a colour is neither black, grey nor white.
 fn is_coloured(c: [u8; 3]) -> bool {
     let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
     high - low > 30
 }
 
-/// A number of the spec, kept within what the geometry can bear; nonsense becomes 0.
+/// Returns a number of the spec, clamped to the range that the geometry allows; nonsense becomes 0.
 pub(crate) fn sane(x: f64, most: f64) -> f64 {
     if x.is_finite() { x.clamp(-most, most) } else { 0.0 }
 }
 
-/// A factor around 1.
+/// Returns a factor around 1.
 pub(crate) fn around_one(u: f64, share: f64) -> f64 {
     ops::lerp(1.0 - share, 1.0 + share, u)
 }
 
-/// A coordinate pair that geometry can bear: finite and not farther off than any drawing reaches.
+/// Whether geometry can use a coordinate pair: finite and not farther off than any drawing reaches.
 pub(crate) fn usable(p: DVec2) -> bool {
     p.is_finite() && p.abs().max_element() < 1e6
 }

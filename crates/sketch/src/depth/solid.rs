@@ -10,24 +10,25 @@ use super::scene::{Scene, drawn_light, usable};
 
 /// Rings of the wall of a pot.
 const POT_RINGS: usize = 13;
-/// Of a pot's height: so near to its floor and its rim lines are theirs.
+/// Distance from a pot's floor and its rim within which lines belong to these, as a share of the pot's height.
 const FLAT: f64 = 0.04;
-/// Of its largest half width: how thick the wall is.
+/// Thickness of a pot's wall, as a share of its largest half width.
 const THICK_WALL: f64 = 0.09;
-/// Of its height: how far the soil lies below the rim.
+/// Depth of the soil below the rim, as a share of the pot's height.
 const SOIL_BELOW: f64 = 0.12;
-/// Linear red, green and blue of fired clay and of soil.
+/// Linear red, green and blue of fired clay.
 const CLAY: [f32; 3] = [0.48, 0.16, 0.07];
+/// Linear red, green and blue of soil.
 const EARTH: [f32; 3] = [0.06, 0.04, 0.025];
 
-/// Where edges cross a height, farthest to the left and to the right; infinite where none does.
+/// Returns the leftmost and rightmost places where edges cross a height; infinite if none does.
 pub(super) fn span(edges: impl Iterator<Item = [DVec2; 2]>, y: f64) -> [f64; 2] {
     let crossing = edges.filter(|[a, b]| (a.y - y) * (b.y - y) <= 0.0 && a.y != b.y);
     let xs = crossing.map(|[a, b]| ops::lerp(a.x, b.x, ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0)));
     xs.fold([f64::INFINITY, f64::NEG_INFINITY], |[left, right], x| [left.min(x), right.max(x)])
 }
 
-/// Adds a drawn pot: open above, its wall as wide as was drawn, with soil a little below its rim.
+/// Adds a drawn pot: open above, its wall as wide as drawn, with soil a little below its rim.
 pub(crate) fn place_pot(plant: &mut Plant, scene: &Scene<'_>, pot: &PotReading) {
     let Some((centre, low, wall)) = wall(pot) else { return };
     let s = scene.map.metres_per_ink;
@@ -48,7 +49,7 @@ pub(crate) fn place_pot(plant: &mut Plant, scene: &Scene<'_>, pot: &PotReading) 
     let level = DVec2::new(0.0, soil);
     let earth =
         vec![level - DVec2::Y * thick, DVec2::new(inner(soil), soil), level + DVec2::Y * (0.1 * thick)];
-    // As deep as the plant that stands in it.
+    // At the depth of the plant in it.
     let middle = scene.map.plant_from_ink(DVec2::new(centre, low));
     let feet = plant.axes.iter().filter(|a| a.bearer.is_none()).filter_map(|a| a.node_ids().next());
     let feet = feet.map(|n| plant.nodes.position[n.index()]).filter(|p| (p.x - middle.x).abs() < wide);
@@ -73,7 +74,8 @@ pub(crate) fn place_pot(plant: &mut Plant, scene: &Scene<'_>, pot: &PotReading) 
     }
 }
 
-/// The middle of a pot, its foot, and the line of its wall from the foot to the rim, `(half width, height)`, ink units.
+/// Returns the middle of a pot, its foot, and the line of its wall from the foot to the rim, `(half width, height)`,
+/// ink units.
 fn wall(pot: &PotReading) -> Option<(f64, f64, Vec<DVec2>)> {
     let points = || pot.lines.iter().flatten().copied().filter(|&p| usable(p));
     let (low, high) = geom::bounds(&points().collect::<Vec<_>>())?;
@@ -92,7 +94,7 @@ fn wall(pot: &PotReading) -> Option<(f64, f64, Vec<DVec2>)> {
         // Its floor and its rim are lines: a little inside of both.
         let y = low.y + tall * share.clamp(FLAT, 1.0 - FLAT);
         let [left, right] = span(edges(), y);
-        // One side alone tells nothing.
+        // A single side does not give the width.
         if right - left > 0.1 * (high.x - low.x) {
             line.push(DVec2::new(0.5 * (right - left), tall * share));
         }
@@ -107,7 +109,7 @@ fn wall(pot: &PotReading) -> Option<(f64, f64, Vec<DVec2>)> {
     Some((0.5 * (low.x + high.x), low.y, line))
 }
 
-/// Adds a drawn thorn: a strand that thins to a point, standing off a bearer that was drawn thick.
+/// Adds a drawn thorn: a strand that thins to a point, outside the bark of a bearer that was drawn thick.
 pub(crate) fn place_thorn(
     plant: &mut Plant,
     scene: &Scene<'_>,

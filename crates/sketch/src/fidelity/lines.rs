@@ -1,31 +1,31 @@
-//! The nearest of many lines.
+//! Finds the nearest of many lines.
 //!
 //! `lines -> distance of any point to them`
 
 use geom::KdTree2;
 use glam::DVec2;
 
-/// Longest piece that lines are cut into, ink units: a few points answer for each question.
+/// Longest piece that lines are cut into, ink units: few points are needed for each query.
 const PIECE: f64 = 0.01;
 /// Most points that lines are cut into, about.
 const MOST: f64 = 400_000.0;
-/// Most points that one question looks at after the nearest one: lines side by side have some ten near any place.
+/// Most points that one query examines after the nearest one: lines side by side have about ten near any place.
 const MOST_LOOKS: u32 = 64;
 
-/// Lines that tell how far a point is from them. Cost: n log n in points; log n and at most [`MOST_LOOKS`] points for a
-/// question, however many lines lie on one another.
+/// An index of lines for the distance of points. Cost: n log n in points; log n and at most [`MOST_LOOKS`] points for
+/// a query, however many lines lie on one another.
 #[derive(Debug)]
 pub(super) struct Lines {
     points: Vec<DVec2>,
     /// Whether a piece runs from this point to the next.
     joined: Vec<bool>,
-    /// No piece is longer.
+    /// Length of the longest piece.
     piece: f64,
     tree: KdTree2,
 }
 
 impl Lines {
-    /// Lines of any length; points that are not finite are left out.
+    /// Builds the index of lines of any length; points that are not finite are left out.
     pub(super) fn new<'a>(lines: impl Iterator<Item = &'a [DVec2]> + Clone) -> Self {
         let total: f64 = lines.clone().map(geom::polyline_length).filter(|l| l.is_finite()).sum();
         let piece = PIECE.max(total / MOST);
@@ -51,19 +51,19 @@ impl Lines {
                 *end = false;
             }
         }
-        // Where lines are short, so are their pieces, and fewer of them are near enough.
+        // If lines are short, so are their pieces, and fewer of them are near enough.
         let pieces = points.windows(2).zip(&joined).filter(|(_, joined)| **joined);
         let longest = pieces.map(|(w, _)| w[0].distance(w[1])).fold(0.0, f64::max);
         let tree = KdTree2::new(&points);
-        // A little more than the longest: a length is right to its last bit but one.
+        // A little more than the longest: a length is exact to its last bit but one.
         Self { points, joined, piece: piece.min(1.001 * longest), tree }
     }
 
-    /// The distance of a point to the nearest line; `None` where there is no line.
+    /// Returns the distance of a point to the nearest line; `None` if there is no line.
     ///
-    /// Exact where no more than [`MOST_LOOKS`] points of lines may matter. Where there are more, the answer may be too
-    /// large, but is at most the distance to the pieces at the nearest point: at most half a piece more than the truth, and
-    /// much less where so many points lie as near as that.
+    /// Exact if no more than [`MOST_LOOKS`] points of lines may matter. If there are more, the result may be too
+    /// large, but is at most the distance to the pieces at the nearest point: at most half a piece more than the true
+    /// one, and much less where so many points lie as near as that.
     pub(super) fn distance(&self, p: DVec2) -> Option<f64> {
         Some(self.search(p)?.distance)
     }
@@ -72,28 +72,28 @@ impl Lines {
         let nearest = self.tree.nearest(p, f64::INFINITY)?;
         // The nearest place of a line is at most half a piece from one of its points.
         let half = 0.5 * self.piece;
-        let mut found = Found { distance: self.beside(nearest, p), looks: 0 };
+        let mut found = Found { distance: self.distance_near_point(nearest, p), looks: 0 };
         self.tree.look(p, found.distance + half, |i| {
-            found.distance = found.distance.min(self.beside(i, p));
+            found.distance = found.distance.min(self.distance_near_point(i, p));
             found.looks += 1;
             (found.looks < MOST_LOOKS).then_some(found.distance + half)
         });
         Some(found)
     }
 
-    /// The distance of `p` to one of the points and the pieces that begin and end there.
-    fn beside(&self, i: usize, p: DVec2) -> f64 {
+    /// Returns the distance of `p` to one of the points and the pieces that begin and end there.
+    fn distance_near_point(&self, i: usize, p: DVec2) -> f64 {
         let pieces = [i.checked_sub(1), Some(i)].into_iter().flatten().filter(|&k| self.joined[k]);
         let to = |k: usize| geom::distance_to_segment(self.points[k], self.points[k + 1], p);
         pieces.map(to).fold(self.points[i].distance(p), f64::min)
     }
 }
 
-/// The answer to one question.
+/// The result of one query.
 #[derive(Clone, Copy, Debug)]
 struct Found {
     distance: f64,
-    /// Points that were looked at.
+    /// Number of points examined.
     looks: u32,
 }
 
@@ -121,7 +121,7 @@ mod tests {
         assert_eq!(Lines::new([].into_iter()).distance(DVec2::ZERO), None);
     }
 
-    /// Waves that lie on one another but for a jitter: so many of 41 points.
+    /// Waves that lie on one another except for a jitter: `count` waves of 41 points.
     fn pile(count: u32, jitter: f64) -> Vec<Vec<DVec2>> {
         let mut s = Seed::new(5).stream(Draw::TwigPlace);
         let wave = |i: u32| DVec2::new(0.3 + 0.02 * base::ops::sin(0.3 * f64::from(i)), 0.02 * f64::from(i));
@@ -132,7 +132,7 @@ mod tests {
         (0..count).map(|_| one()).collect()
     }
 
-    /// Straight lines across a square, so many of 20 points.
+    /// Straight lines across a square: `count` lines of 20 points.
     fn crossing(count: u32) -> Vec<Vec<DVec2>> {
         let mut s = Seed::new(6).stream(Draw::TwigPlace);
         let mut point = || DVec2::new(s.range(0.0, 0.7), s.range(0.0, 0.7));
@@ -143,7 +143,7 @@ mod tests {
         (0..count).map(|_| one()).collect()
     }
 
-    /// Questions at, between and beside the points of some lines.
+    /// Queries at, between and near the points of some lines.
     fn asked(lines: &[Vec<DVec2>]) -> impl Iterator<Item = DVec2> {
         let few = lines.iter().step_by(lines.len().div_ceil(20)).flat_map(|line| line.windows(2));
         few.flat_map(|w| [w[0], w[0].lerp(w[1], 0.4), w[1] + DVec2::new(0.003, -0.002)])

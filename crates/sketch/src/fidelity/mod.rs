@@ -1,4 +1,4 @@
-//! How well the model's front view shows what was drawn, measured both ways.
+//! Measures how well the model's front view shows the drawing, in both directions.
 //!
 //! `Built + Reading + Ink -> distances as shares of the drawing's diagonal, overlap of contours`
 
@@ -23,30 +23,30 @@ const STEP: f64 = 0.01;
 const MOST: f64 = 100_000.0;
 /// Fewest steps along a line, however short it is.
 const LEAST: f64 = 8.0;
-/// Points that are compared between two looks whether the measure is still wanted: below a hundredth of a second.
+/// Points that are compared between two checks for cancellation: below a hundredth of a second.
 const POINTS_AT_ONCE: usize = 256;
 /// Ink this near to a contour is its outline.
 const ON: f64 = 0.012;
 
 /// Distances between drawing and front view, in shares of the drawing's diagonal (ink units).
 ///
-/// A contour that twigs and leaves grow in is measured by overlap, all else by distances. Nothing is measured of
-/// strokes that were left out and of leaves that the light prior turned: they are not meant to lie as drawn.
+/// A contour in which twigs and leaves grow is measured by overlap, everything else by distances. Strokes that were
+/// left out and leaves that the light prior turned are not measured: they are not meant to lie as drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fidelity {
     /// Mean distance from the drawn lines to the model's.
     pub reprojection_mean: Option<f64>,
     /// 95 % of the drawn lines are nearer than this.
     pub reprojection_p95: Option<f64>,
-    /// Mean distance from the model's outlines and axes to the ink: what the model shows and nobody drew.
+    /// Mean distance from the model's outlines and axes to the ink: parts of the model that nobody drew.
     pub excess_mean: Option<f64>,
     /// 95 % of the model's outlines and axes are nearer than this.
     pub excess_p95: Option<f64>,
-    /// The area that contours share with what grew in them, over the area of either, 0 to 1.
+    /// The area that contours share with their growth, over the area of either, 0 to 1.
     pub overlap: Option<f64>,
     /// The share of the drawing's ink that was measured, by length, 0 to 1.
     pub compared: f64,
-    /// The strokes of which lines were compared, by their index in the drawing.
+    /// The strokes whose lines were compared, by their index in the drawing.
     pub strokes: Vec<StrokeFidelity>,
 }
 
@@ -63,10 +63,11 @@ pub struct StrokeFidelity {
 
 /// Measures a finished plant against the drawing that it came from.
 ///
-/// `ink` and `reading` are those that `built` was made of. What has nothing to compare is `None`. Distances are exact
-/// where lines lie beside one another; where hundreds lie on one another, those of single points are too large by a
-/// thousandth of the diagonal at most, by less than a ten-thousandth on the average. Cost: n log n in the length of lines, however many lie on one another, and
-/// in the leaves that grew; 1 to 3 ms for a drawing of 30 strokes.
+/// `ink` and `reading` are those that `built` was made of. A measure without anything to compare is `None`. Distances
+/// are exact where lines lie next to one another; where hundreds lie on one another, those of single points are too
+/// large by a thousandth of the diagonal at most, by less than a ten-thousandth on average. Cost: n log n in the
+/// length of lines, however many lie on one another, and in the leaves that grew; 1 to 3 ms for a drawing of 30
+/// strokes.
 ///
 /// # Errors
 /// [`Cancelled`] when the run was cancelled.
@@ -104,7 +105,7 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> R
         let weight = strokes[i].length / points.len().max(1) as f64;
         let outside = |p: DVec2| !wanted.contour(strokes[i].index, p);
         let own = distances(&points, outside, &model, run.cancel)?;
-        // Where nothing is shown, no point has a distance, wherever it lies.
+        // If nothing is shown, no point has a distance, wherever it lies.
         let in_contours = match shown.is_empty() {
             true => points.iter().filter(|p| !outside(**p)).count(),
             false => points.len() - own.len(),
@@ -121,7 +122,7 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> R
         }
         drawn.0.extend(own.into_iter().map(|d| (d, weight)));
     }
-    // Ink that was left out is ink: a model that shows it all the same shows nothing that nobody drew.
+    // Ink that was left out is still ink: a model that shows it does not show something that nobody drew.
     let sheet = Lines::new(ink.strokes.iter().map(|s| &s.points[..]));
     let outlines: Vec<&[DVec2]> = shown.iter().filter(|l| l.outline).map(|l| &l.points[..]).collect();
     run.cancel.check()?;
@@ -145,7 +146,7 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> R
     })
 }
 
-/// The distances to some lines of those points that count.
+/// Returns the distances to some lines of those points that count.
 fn distances(
     points: &[DVec2],
     counts: impl Fn(DVec2) -> bool,
@@ -160,13 +161,13 @@ fn distances(
     Ok(found)
 }
 
-/// Which ink is compared with what.
+/// The parts of the ink that are compared, and how.
 struct Wanted {
-    /// Strokes of which nothing is measured.
+    /// Strokes that are not measured.
     left_out: base::Set<u32>,
     /// Strokes that are, or have, a contour.
     filled: base::Set<u32>,
-    /// What was filled.
+    /// The contours that were filled.
     contours: Vec<Contour>,
 }
 
@@ -231,7 +232,7 @@ fn sampled(line: &[DVec2], step: f64) -> Vec<DVec2> {
     resample(line, step.min(geom::polyline_length(line) / LEAST).max(1e-9))
 }
 
-/// Distances, each with the length that it stands for.
+/// Distances, each with the length for which it stands.
 #[derive(Debug, Default)]
 struct Weighed(Vec<(f64, f64)>);
 
@@ -245,7 +246,7 @@ impl Weighed {
         (weight > 0.0).then(|| self.0.iter().map(|(d, w)| d * w).sum::<f64>() / weight)
     }
 
-    /// The smallest distance that 95 % of the length do not exceed.
+    /// Returns the smallest distance that 95 % of the length do not exceed.
     fn p95(&mut self) -> Option<f64> {
         let wanted = 0.95 * self.weight();
         base::sort_by(&mut self.0, |a, b| a.0.total_cmp(&b.0));
@@ -314,7 +315,7 @@ mod tests {
         assert!(good.excess_mean.is_some_and(|d| d < 1e-3) && good.compared > 0.999, "{good:?}");
         assert_eq!(good.overlap, None);
         let bad = measured(0.05, LeafDepth::Drawn);
-        // The stem's own line is 0.05 away; where the leaf is, the model's other lines may be nearer.
+        // The stem's own line is 0.05 away; near the leaf, the model's other lines may be nearer.
         assert!(bad.strokes[0].mean > 0.04 && bad.strokes[0].max < 0.051, "{bad:?}");
         assert!(bad.reprojection_p95.is_some_and(|d| d > 0.049) && bad.excess_p95.is_some_and(|d| d > 0.049));
     }
@@ -328,7 +329,7 @@ mod tests {
 
     #[test]
     fn ink_is_compared_with_all_that_the_model_shows() {
-        // The leaf was drawn in two strokes, of which the reading names one.
+        // The leaf was drawn in two strokes, only one of which the reading names.
         let (mut reading, whole) = stem_and_leaf(0.0);
         let leaf = &whole.strokes[1].points;
         let half = leaf.len() / 2;
@@ -360,7 +361,7 @@ mod tests {
         let good = fidelity(&made, &reading, &ink, &run).expect("not cancelled");
         assert!(good.overlap.is_some_and(|o| o > 0.8 && o <= 1.0), "{good:?}");
         assert!(good.compared > 0.99 && good.strokes.iter().all(|s| s.index == 0), "{good:?}");
-        // What grew to the right of the trunk is on its left: half of the crown is empty.
+        // The growth to the right of the trunk is on its left: half of the crown is empty.
         let mut half = made.clone();
         let organs = half.grown[0].organs.clone();
         half.plant.organs[organs].iter_mut().for_each(|o| o.frame.origin.x = -o.frame.origin.x.abs());

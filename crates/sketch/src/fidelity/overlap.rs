@@ -1,4 +1,4 @@
-//! How much a contour and what grew in it are the same area.
+//! Measures how far a contour and its growth cover the same area.
 //!
 //! `contour + twigs and leaves -> cells of both, of either`
 
@@ -15,12 +15,13 @@ use crate::fill::GrownContour;
 
 /// Cells along the longer side of a contour: half a cell is below 1 % of it.
 const CELLS: f64 = 64.0;
-/// A cell's side and its diagonal in whole numbers, which are compared in half of the time: the ratio is the square root
-/// of 2 to 4e-7.
+/// A cell's side in whole numbers, which are compared in half the time.
 const SIDE: u32 = 985;
+/// A cell's diagonal in the same unit: the ratio is the square root of 2 to 4e-7.
 const ACROSS: u32 = 1393;
 
-/// The areas that all contours share with what grew in them, over the areas of either: 0 to 1. `None` without contours.
+/// Returns the area that all contours share with their growth, over the area of either: 0 to 1. `None` without
+/// contours.
 ///
 /// Seen from the front. Gaps between leaves up to an eighth of the contour's inradius count as covered, between bare
 /// twigs up to half of it: a person, too, sees one crown.
@@ -56,7 +57,7 @@ impl Grid {
             return None;
         }
         let cell = longest / CELLS;
-        // A quarter around it: what stands out farther is not seen to the end, but counts.
+        // A quarter around it: growth that stands out farther is cut off, but counts.
         let margin = 0.25 * longest;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1.5 CELLS")]
         let count = |extent: f64| ((extent + 2.0 * margin) / cell).ceil() as usize + 1;
@@ -64,7 +65,7 @@ impl Grid {
         Some(Self { low: low - margin, cell, nx, ny, covered: vec![false; nx * ny] })
     }
 
-    /// Whether the middles of cells of one row lie in a polygon.
+    /// Returns whether the middle of each cell of one row lies in a polygon.
     fn within(&self, ring: &[DVec2], cells: Range<usize>) -> Vec<bool> {
         let y = self.centre(cells.start).y;
         contains_along(ring, y, cells.map(|i| self.centre(i).x)).collect()
@@ -76,7 +77,7 @@ impl Grid {
         self.low + (at + 0.5) * self.cell
     }
 
-    /// Marks the cells of what grew: blades by their outlines, axes by their lines.
+    /// Marks the cells of the growth: blades by their outlines, axes by their lines.
     fn cover(&mut self, plant: &Plant, grown: &GrownContour) {
         for axis in grown.axes.clone() {
             let line = plant.axis_points(AxisId::new(axis));
@@ -110,7 +111,7 @@ impl Grid {
         }
     }
 
-    /// The cells whose middle lies in a polygon, and those on its margin.
+    /// Marks the cells whose middle lies in a polygon, and those on its margin.
     fn polygon(&mut self, ring: &[DVec2]) {
         let n = ring.len();
         (0..n).for_each(|i| self.line(ring[i], ring[(i + 1) % n]));
@@ -131,7 +132,7 @@ impl Grid {
         }
     }
 
-    /// The area in both and in either, square metres.
+    /// Returns the area in both and in either, square metres.
     fn shared(&self, grown: &GrownContour) -> (f64, f64) {
         let row = |y| self.within(&grown.outline, y * self.nx..(y + 1) * self.nx);
         let inside: Vec<bool> = (0..self.ny).flat_map(row).collect();
@@ -147,15 +148,15 @@ impl Grid {
         (f64::from(both) * area, f64::from(either) * area)
     }
 
-    /// What is covered, gaps narrower than twice a distance filled: grown by it, then shrunk by it.
+    /// Returns the covered cells with gaps narrower than twice a distance filled: grown by it, then shrunk by it.
     fn closed(&self, radius: u32) -> Vec<bool> {
         let near: Vec<bool> = self.distances(&self.covered, true).into_iter().map(|d| d <= radius).collect();
         let open = self.distances(&near, false);
         open.into_iter().zip(&self.covered).map(|(d, &c)| c || d > radius).collect()
     }
 
-    /// Distance of each cell to the nearest that is, or is not, set, of which a cell's side is [`SIDE`] (chamfer, two
-    /// sweeps: exact to 8 %).
+    /// Returns the distance of each cell to the nearest one that is, or is not, set, in units where a cell's side is
+    /// [`SIDE`] (chamfer, two sweeps: exact to 8 %).
     fn distances(&self, cells: &[bool], set: bool) -> Vec<u32> {
         const FAR: u32 = u32::MAX / 2;
         // With a margin of cells that are far from everything, so that every cell has eight neighbours.

@@ -1,4 +1,4 @@
-//! What the model shows from the front, as lines in ink coordinates.
+//! The front view of the model, as lines in ink coordinates.
 //!
 //! `Built + Reading -> ShownLine`
 
@@ -22,8 +22,9 @@ pub(super) struct ShownLine {
     pub(super) outline: bool,
 }
 
-/// The lines of all that was not grown in a contour: axes, or both edges of those that were drawn as an outline;
-/// outlines of blades, discs, fruits; thorns, veins, stamens. Leaves that the light prior turned are left out.
+/// Returns the lines of all parts that did not grow in a contour: axes, or both edges of those that were drawn as an
+/// outline; outlines of blades, discs, fruits; thorns, veins, stamens. Leaves that the light prior turned are left
+/// out.
 pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
     let plant = &built.plant;
     let seen = |p: DVec3| built.map.ink_from_plant(p.truncate());
@@ -46,7 +47,7 @@ pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
     lines
 }
 
-/// Of so many rows, which lie in one of the ranges.
+/// Marks the rows below `count` that lie in one of the ranges.
 fn rows_within(count: usize, ranges: impl Iterator<Item = Range<usize>>) -> Vec<bool> {
     let mut within = vec![false; count];
     for range in ranges {
@@ -65,7 +66,7 @@ pub(super) fn lies_as_drawn(organ: &Organ) -> bool {
     }
 }
 
-/// One line around a tube: left edge, over the tip, right edge.
+/// Returns one line around a tube: left edge, over the tip, right edge.
 fn edges(middle: &[DVec2], radii_m: &[f64], metres_per_ink: f64) -> Vec<DVec2> {
     let edge = |side: f64| -> Vec<DVec2> {
         let pairs = middle.iter().zip(radii_m).enumerate();

@@ -2,8 +2,8 @@
 //!
 //! `contour + trunk -> leader and limbs -> branches -> twigs -> leaves`
 //!
-//! Big to small (Runions 2007, Fig 8): every level strews attraction points in what the last one left empty,
-//! joins each to the place from which it is best reached, and grows there by Eq 2 of He and Cheng (2021).
+//! From large to small (Runions 2007, Fig 8): every level scatters attraction points in the space that the last one
+//! left empty, joins each to the place from which it is best reached, and grows there by Eq 2 of He and Cheng (2021).
 
 use base::ops::sin_cos;
 use base::{Draw, Seed, ops};
@@ -21,7 +21,7 @@ const LEAVES_A_TWIG: f64 = 9.5;
 /// Most twigs of one region.
 pub(super) const MOST_TWIGS: usize = 4_000;
 
-/// What a crown is grown from.
+/// Input of the growth of a crown.
 #[derive(Debug)]
 pub(super) struct Crown<'a> {
     pub(super) volume: &'a Volume,
@@ -33,9 +33,9 @@ pub(super) struct Crown<'a> {
     /// Leaves wanted.
     pub(super) leaves: usize,
     pub(super) habit: Habit,
-    /// Branches are woody.
+    /// Whether branches are woody.
     pub(super) woody: bool,
-    /// Which contour of its bearer this is.
+    /// Rank of this contour among those of its bearer.
     pub(super) salt: u64,
 }
 
@@ -51,12 +51,12 @@ pub(super) enum Habit {
 }
 
 impl Habit {
-    /// The habit that a contour and its trunk suggest.
+    /// Returns the habit that a contour and its trunk suggest.
     ///
-    /// A crown of at least 0.9 times its width in height, whose upper part is less than 0.45 as wide as its
-    /// lower part, is a conifer's (a circle has 0.9, an egg 0.6, a triangle 0.25). Without a trunk to speak of
-    /// below it, it is a shrub.
-    pub(super) fn of(volume: &Volume, trunk: &[DVec3]) -> Self {
+    /// A crown with a height of at least 0.9 times its width, whose upper part is less than 0.45 times as wide as its
+    /// lower part, is a conifer's (a circle has 0.9, an egg 0.6, a triangle 0.25). If the trunk below it is too short,
+    /// it is a shrub.
+    pub(super) fn infer(volume: &Volume, trunk: &[DVec3]) -> Self {
         let (low, height) = (volume.low().y, volume.height());
         let mean = |from: f64, to: f64| {
             let rows = (0..6).map(|i| ops::lerp(from, to, f64::from(i) / 5.0));
@@ -96,7 +96,7 @@ impl Crown<'_> {
         if self.woody { AxisKind::Twig } else { AxisKind::Stem }
     }
 
-    /// Places on the drawn axes from which the crown may grow: those inside, else the trunk's tip.
+    /// Returns places on the drawn axes from which the crown may grow: those inside, else the trunk's tip.
     fn drawn_sites(&self, plant: &Plant) -> Vec<Site> {
         let mut sites = Vec::new();
         for &axis in self.bearers {
@@ -125,8 +125,8 @@ impl Crown<'_> {
         sites
     }
 
-    /// A point of the body seen from `from` in the direction of an azimuth and an elevation, at `share` of the
-    /// way to the surface.
+    /// Returns a point of the body seen from `from` in the direction of an azimuth and an elevation, at `share` of the
+    /// distance to the surface.
     fn aim(&self, from: DVec3, azimuth: f64, elevation: f64, share: f64) -> DVec3 {
         let ((sa, ca), (se, ce)) = (sin_cos(azimuth), sin_cos(elevation));
         let direction = DVec3::new(ca * ce, se, sa * ce);
@@ -149,7 +149,7 @@ impl Crown<'_> {
         grow_toward(self.volume, &spec, (from.at, from.tangent), top, step, &mut wobble, &mut points);
         let axis = add_axis(plant, &mut sites[highest], self.kind(), &points)?;
         add_sites(plant, axis, 0, from.path, sites);
-        // A trunk that ends below the crown has done its part: the crown grows from what is inside.
+        // If the trunk ends below the crown, the crown grows from the places inside only.
         let inside = |s: &Site| self.volume.contains_xy(s.at.truncate());
         if sites.iter().any(inside) {
             sites.retain(inside);
@@ -157,7 +157,7 @@ impl Crown<'_> {
         Some(axis)
     }
 
-    /// Main limbs around the trunk (golden angle) or from the ground. Returns the axes.
+    /// Grows the main limbs around the trunk (golden angle) or from the ground. Returns the axes.
     fn limbs(&self, plant: &mut Plant, sites: &mut Vec<Site>) -> Vec<AxisId> {
         let v = self.volume;
         let (low, height) = (v.low().y, v.height());
@@ -214,7 +214,7 @@ impl Crown<'_> {
         limbs
     }
 
-    /// A point inside the body near one that is not.
+    /// Returns a point inside the body near one that is not.
     fn entry(&self, from: DVec3) -> DVec3 {
         let v = self.volume;
         let middle = 0.5 * (v.low() + v.high());
@@ -224,7 +224,7 @@ impl Crown<'_> {
             .map_or_else(|| middle.extend(v.mid(middle)), |p| p.extend(v.mid(p)))
     }
 
-    /// Branches of the second level, towards points strewn through the body. Returns all axes that may bear
+    /// Grows branches of the second level, towards points scattered through the body. Returns all axes that may bear
     /// leaves at their ends.
     fn branches(&self, plant: &mut Plant, sites: &mut Vec<Site>, mut axes: Vec<AxisId>) -> Vec<AxisId> {
         let v = self.volume;
@@ -253,7 +253,7 @@ impl Crown<'_> {
         axes
     }
 
-    /// Twigs of the third level, on the shell of the body, and the leaves.
+    /// Grows twigs of the third level, on the shell of the body, and the leaves.
     fn twigs(&self, plant: &mut Plant, sites: &mut [Site], branches: &[AxisId], placed: &mut usize) {
         let v = self.volume;
         let n = count_of(self.leaves as f64 / LEAVES_A_TWIG, 24, MOST_TWIGS);
@@ -263,7 +263,7 @@ impl Crown<'_> {
         }
     }
 
-    /// Up to `n` leafy twigs from `sites` to points of the shell and of the contour's rim.
+    /// Grows up to `n` leafy twigs from `sites` to points of the shell and of the contour's rim.
     fn fill_shell(&self, plant: &mut Plant, sites: &mut [Site], n: usize, placed: &mut usize) {
         let v = self.volume;
         let length = self.foliage.length;
@@ -290,7 +290,7 @@ impl Crown<'_> {
         }
     }
 
-    /// A conifer: a leader to the top, whorls of boughs, sprays on both sides of each.
+    /// Grows a conifer: a leader to the top, whorls of boughs, sprays on both sides of each.
     fn whorls(&self, plant: &mut Plant, sites: &mut Vec<Site>, placed: &mut usize) {
         let v = self.volume;
         let (low, height) = (v.low().y, v.height());
@@ -329,13 +329,13 @@ impl Crown<'_> {
             whorl += 1;
             y += spacing;
         }
-        // What the whorls left open: short shoots from the boughs.
+        // The gaps between whorls: short shoots from the boughs.
         boughs.extend(trunk);
         let n = count_of(self.leaves as f64 / 5.0, 24, MOST_TWIGS);
         self.fill_shell(plant, &mut boughs, n, placed);
     }
 
-    /// One bough with its laterals and sprays.
+    /// Grows one bough with its laterals and sprays.
     fn bough(
         &self,
         plant: &mut Plant,
@@ -388,7 +388,7 @@ impl Crown<'_> {
     }
 }
 
-/// A count from a real number, bounded; `least` for NaN.
+/// Returns a count from a real number, bounded; `least` for NaN.
 pub(super) fn count_of(x: f64, least: usize, most: usize) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "float casts saturate")]
     let n = x.round().max(0.0) as usize;
@@ -399,7 +399,7 @@ fn nearest_in_height(sites: &[Site], y: f64) -> Option<usize> {
     (0..sites.len()).min_by(|&a, &b| (sites[a].at.y - y).abs().total_cmp(&(sites[b].at.y - y).abs()))
 }
 
-/// Sorts targets by their distance to what stands already, nearest first: near ones become stepping stones.
+/// Sorts targets by their distance to existing places, nearest first: near ones become stepping stones.
 fn near_first(targets: &mut Vec<DVec3>, sites: &[Site]) {
     let mut keyed: Vec<(f64, DVec3)> = targets
         .iter()

@@ -10,7 +10,7 @@ use plant::{AxisId, Frame, NodeId, Organ, OrganKind, Paint, Phyllotaxis, Plant, 
 use super::grow::{key_of, tangent};
 use super::volume::Volume;
 
-/// How the leaves of one region look.
+/// The look of the leaves of one region.
 #[derive(Clone, Debug)]
 pub(super) struct Foliage {
     /// Shapes to choose from, each with its length at scale 1; never empty.
@@ -20,15 +20,15 @@ pub(super) struct Foliage {
     pub(super) phyllotaxis: Phyllotaxis,
     /// Angle between twig and leaf, radians.
     pub(super) insertion: f64,
-    /// How strongly leaves turn to the light, 0 to 1.
+    /// Strength with which leaves turn to the light, 0 to 1.
     pub(super) light: f64,
-    /// Where light comes from beside from above: away from here.
+    /// Light comes from above, and from the sides away from this point.
     pub(super) core: DVec3,
     /// Most leaves of the region.
     pub(super) most: usize,
 }
 
-/// Puts leaves on the nodes of an axis from arc-length share `from` to its tip, and one at the tip.
+/// Puts leaves on the nodes of an axis from the share `from` of its length to its tip, and one at the tip.
 ///
 /// No leaf is rooted outside the contour. Stops when the region has its `most` leaves.
 pub(super) fn dress(
@@ -74,7 +74,7 @@ pub(super) fn dress(
     }
 }
 
-/// Makes a leaf smaller (at most by half) whose tip would stand out from the contour by more than a third of its
+/// Makes a leaf smaller (at most by half) if its tip would stand out from the contour by more than a third of its
 /// length.
 fn held_in(volume: &Volume, foliage: &Foliage, mut organ: Organ) -> Organ {
     let reach = |scale: f64| organ.frame.origin + organ.frame.along * (foliage.length * scale);
@@ -121,7 +121,7 @@ fn organ(foliage: &Foliage, node: NodeId, at: DVec3, twig: DVec3, azimuth: f64, 
     }
 }
 
-/// A shape with its length; `None` of one without.
+/// Returns a shape with its length; `None` for one without.
 pub(super) fn measured(plant: &Plant, shape: ShapeId) -> Option<(ShapeId, f64)> {
     match plant.shapes.get(shape.index()) {
         Some(Shape::Blade(b)) if b.length() > 1e-9 && b.length().is_finite() => Some((shape, b.length())),
@@ -129,7 +129,7 @@ pub(super) fn measured(plant: &Plant, shape: ShapeId) -> Option<(ShapeId, f64)> 
     }
 }
 
-/// The middle of the lengths of [`measured`] shapes.
+/// Returns the median of the lengths of [`measured`] shapes.
 pub(super) fn median_length(shapes: &[(ShapeId, f64)]) -> Option<f64> {
     base::median(shapes.iter().map(|(_, l)| *l).collect())
 }

@@ -16,13 +16,13 @@ pub(super) struct Site {
     pub(super) at: DVec3,
     /// Unit direction of its axis.
     pub(super) tangent: DVec3,
-    /// 0 trunk, 1 limb, 2 branch, 3 twig: how far from the trunk, counted in what was grown here.
+    /// 0 trunk, 1 limb, 2 branch, 3 twig: distance from the trunk, counted in axes grown here.
     pub(super) level: u32,
     /// Arc length from the trunk's entry, metres.
     pub(super) path: f64,
-    /// Axes that start here already.
+    /// Number of axes that already start here.
     pub(super) used: u32,
-    /// Tells the contours of one drawn axis apart: 0 for what was grown.
+    /// Distinguishes the contours of one drawn axis: 0 for a grown axis.
     pub(super) salt: u64,
 }
 
@@ -44,21 +44,21 @@ pub(super) fn add_sites(plant: &Plant, axis: AxisId, level: u32, path: f64, site
     }
 }
 
-/// Unit direction of a line at one of its points; up where it has none.
+/// Returns the unit direction of a line at one of its points; up if it has none.
 pub(super) fn tangent(points: &[DVec3], i: usize) -> DVec3 {
     let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
     (b - a).try_normalize().unwrap_or(DVec3::Y)
 }
 
-/// The right-hand side of Eq 2 without the step: what pulls, where the bearer runs, where growth came from.
+/// Returns the right-hand side of Eq 2 without the step: the pull, the direction of the bearer, the last direction.
 pub(super) fn eq2(spec: &FillSpec, pull: DVec3, bearer: DVec3, last: DVec3) -> DVec3 {
     spec.contour_pull * pull + spec.bearer_pull * bearer + spec.memory * last
 }
 
 /// Grows from `from` to the attraction point `target` by Eq 2 in steps of `step`, inside `volume`.
 ///
-/// The bearer's pull fades over the way, so that the axis leaves along its bearer and arrives at its target.
-/// Not guaranteed: that it arrives; it ends where the contour is in the way. `out` starts with `from`.
+/// The bearer's pull fades along the way, so that the axis leaves along its bearer and arrives at its target. Not
+/// guaranteed: that it arrives; it ends if the contour is in the way. `out` starts with `from`.
 pub(super) fn grow_toward(
     volume: &Volume,
     spec: &FillSpec,
@@ -75,7 +75,7 @@ pub(super) fn grow_toward(
         return;
     }
     let (mut p, mut last) = (from, bearer);
-    // 2 ways of 3 lengths: a way that is longer than that has lost its target.
+    // At most three times the straight distance: a longer way has lost its target.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by min")]
     let steps = (3.0 * whole / step).ceil().min(200.0) as usize;
     for _ in 0..steps {
@@ -97,39 +97,41 @@ pub(super) fn grow_toward(
     }
 }
 
-/// The contour of a region, turned about one place of a bearer: what draws a twig that starts there.
+/// The contour of a region, turned about one place of a bearer: it attracts a twig that starts there.
 ///
-/// The drawing shows the contour in its plane only. A twig that leaves its bearer towards the viewer is drawn by the
-/// same contour, turned about the bearer to where the twig stands.
+/// The drawing shows the contour in its plane only. A twig that leaves its bearer towards the viewer is attracted by
+/// the same contour, turned about the bearer to the twig's side.
 #[derive(Clone, Debug)]
 pub(super) struct Turned(Vec<DVec3>);
 
 impl Turned {
-    /// The attraction points `rim` on the side of `out`, a unit vector across the bearer, and not behind the place: the
-    /// nearest of those behind would pull against the bearer, and the twig would curl up. All points where none is there.
+    /// Collects the attraction points `rim` on the side of `out`, a unit vector across the bearer, and not behind the
+    /// place: the nearest of those behind would pull against the bearer, and the twig would curl up. All points if
+    /// there are none.
     pub(super) fn new(rim: &[DVec2], (from, bearer): (DVec3, DVec3), out: DVec3) -> Self {
         let along = bearer.truncate().try_normalize().unwrap_or(DVec2::Y);
         let right = if out.truncate().perp_dot(along) < 0.0 { -1.0 } else { 1.0 };
         let turned = |q: &DVec2| {
             let way = *q - from.truncate();
             let (ahead, aside) = (way.dot(along), way.perp_dot(along) * right);
-            // Samples lie a few degrees apart: level with the place there need not be one.
+            // Samples lie a few degrees apart: there need not be one level with the place.
             (aside > 0.0 && ahead > -0.06 * aside).then(|| from + (along * ahead).extend(0.0) + out * aside)
         };
         let points: Vec<DVec3> = rim.iter().filter_map(turned).collect();
         if points.is_empty() { Self(rim.iter().map(|q| q.extend(from.z)).collect()) } else { Self(points) }
     }
 
-    /// The attraction point nearest to `p`.
+    /// Returns the attraction point nearest to `p`.
     fn nearest(&self, p: DVec3) -> Option<DVec3> {
         self.0.iter().copied().min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))
     }
 }
 
-/// Grows from `from` by Eq 2 as He and Cheng (2021) mean it: at each step towards the attraction point of the contour that
-/// is nearest then, until the contour is `near`. `out` starts with `from`.
+/// Grows from `from` by Eq 2 as in He and Cheng (2021): each step goes towards the currently nearest attraction point
+/// of the contour, until the contour is `near`. `out` starts with `from`.
 ///
-/// As there, the bearer pulls all the way. Every step is `step` long: their rate r over the length of the sum.
+/// As in the paper, the bearer pulls all along. Every step has the length `step`: their rate r over the length of the
+/// sum.
 pub(super) fn grow_to_contour(
     volume: &Volume,
     spec: &FillSpec,
@@ -142,7 +144,7 @@ pub(super) fn grow_to_contour(
     out.clear();
     out.push(from);
     let (mut p, mut last) = (from, bearer);
-    // Three times across the body: what is longer runs along the contour.
+    // Three times across the body: a longer twig runs along the contour.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by min")]
     let steps = (6.0 * volume.inradius.max(volume.half_width) / step.max(1e-12)).ceil().min(200.0) as usize;
     for _ in 0..steps {
@@ -162,7 +164,7 @@ pub(super) fn grow_to_contour(
     }
 }
 
-/// Appends `q` if the way from `p` stays inside the contour, else the nearest inner point that does.
+/// Appends `q` if the segment from `p` stays inside the contour, else the nearest inner point for which it does.
 fn push_inside(volume: &Volume, p: DVec3, mut q: DVec3, out: &mut Vec<DVec3>) -> Option<DVec3> {
     let entering = !volume.contains_xy(p.truncate());
     if !entering && !volume.contains_xy(q.truncate()) {
@@ -186,17 +188,17 @@ fn push_inside(volume: &Volume, p: DVec3, mut q: DVec3, out: &mut Vec<DVec3>) ->
     Some(q)
 }
 
-/// The site from which `target` is best reached, or `None` if none is fit.
+/// Returns the site from which `target` is best reached, or `None` if none is fit.
 ///
-/// Cost: the way to the target, longer where the angle of departure is unlike 25 to 75 degrees, where many
-/// start already, where the contour is in between; plus a share of the way back to the trunk (balancing
-/// factor of Cuntz et al. 2010), which keeps detours short.
+/// Cost: the distance to the target, increased if the angle of departure is not within 25 to 75 degrees, if many axes
+/// start there already, or if the contour is in between; plus a share of the path back to the trunk (balancing factor
+/// of Cuntz et al. 2010), which keeps detours short.
 pub(super) fn attach(volume: &Volume, sites: &[Site], target: DVec3, avoid_level: u32) -> Option<usize> {
     let mut best: Option<(f64, usize)> = None;
     for (i, s) in sites.iter().enumerate() {
         let to = target - s.at;
         let bound = best.map_or(f64::INFINITY, |(c, _)| c);
-        // No cost is less than the way itself: most sites end here, without a root.
+        // No cost is less than the distance itself: most sites end here, without a root.
         let d2 = to.length_squared();
         if d2 < 1e-18 || d2 >= bound * bound {
             continue;
@@ -231,7 +233,8 @@ pub(super) fn add_axis(
     Some(plant.add_axis(kind, Some(site.node), key, points, None))
 }
 
-/// The next key of what starts at a site: from the bearer's key, the node's rank on it and the birth rank there.
+/// Returns the next key of an axis that starts at a site: from the bearer's key, the node's rank on it and the birth
+/// rank there.
 pub(super) fn child_key(plant: &Plant, site: &mut Site) -> u64 {
     let bearer = plant.axis(plant.nodes.axis[site.node.index()]);
     let rank = u64::from(site.node.raw() - bearer.nodes.start);
@@ -240,7 +243,7 @@ pub(super) fn child_key(plant: &Plant, site: &mut Site) -> u64 {
     key
 }
 
-/// A key from the bearer's key and the birth rank.
+/// Returns a key from the bearer's key and the birth rank.
 pub(super) const fn key_of(bearer: u64, rank: u64) -> u64 {
     base::Seed::new(bearer).child(rank).number()
 }

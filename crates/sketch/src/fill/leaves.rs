@@ -27,16 +27,16 @@ pub(super) struct Leaves<'a> {
     pub(super) foliage: Foliage,
     /// Leaves wanted.
     pub(super) leaves: usize,
-    /// Which contour of its bearer this is.
+    /// Rank of this contour among those of its bearer.
     pub(super) salt: u64,
 }
 
 impl Leaves<'_> {
     /// Grows the leaves; returns the number of axes and leaves added.
     ///
-    /// The middles of leaves are strewn evenly over the contour; each midrib starts at the place of a bearer
-    /// from which its middle is best reached, and runs on as far beyond it as leaves are long. Middles farther
-    /// away than that get a stalk first, which may carry further ones.
+    /// The middles of leaves are scattered evenly over the contour; each midrib starts at the place of a bearer from
+    /// which its middle is best reached, and runs on beyond it by half the length of a leaf. Middles too far away for
+    /// that first get a stalk, which may carry further ones.
     pub(super) fn grow(&self, plant: &mut Plant) -> (usize, usize) {
         let v = self.volume;
         let axes = plant.axes.len();
@@ -74,7 +74,7 @@ impl Leaves<'_> {
         (plant.axes.len() - axes, placed)
     }
 
-    /// One midrib from a site through a middle, and its leaf: root on its start, tip on its end.
+    /// Grows one midrib from a site through a middle, and its leaf: root on its start, tip on its end.
     fn leaf(
         &self,
         plant: &mut Plant,
@@ -91,16 +91,16 @@ impl Leaves<'_> {
         let leaf = Seed::new(child_key(plant, site));
         let size = f.length * (1.0 + 0.15 * leaf.stream(Draw::Size).normal()).clamp(0.75, 1.2);
         let way = middle - site.at;
-        // Half a leaf beyond the middle, within what leaves of one plant differ by.
+        // Half a leaf beyond the middle, within the size range of leaves of one plant.
         let size = size * (way.length() / f.length + 0.5).clamp(0.85, 1.15);
         let target = site.at + way.normalize_or_zero() * size;
         grow_toward(v, &self.spec, (site.at, site.tangent), target, size / 5.0, stream, points);
         let Some(&end) = points.last() else { return false };
         let mut midrib = end - site.at;
-        // Where the body recedes from its bearer a midrib would run to the back rather than across the drawing.
+        // If the body recedes from its bearer, a midrib would run to the back rather than across the drawing.
         let flat = midrib.truncate().length();
         midrib.z = midrib.z.clamp(-0.8 * flat, 0.8 * flat);
-        // A midrib that the contour cut short is no leaf.
+        // A midrib that the contour cut short becomes no leaf.
         if midrib.length() < 0.45 * f.length {
             return false;
         }
@@ -128,12 +128,12 @@ impl Leaves<'_> {
     }
 }
 
-/// Leaves that cover a contour of some area about `layers` times.
+/// Returns the number of leaves that cover a contour of some area about `layers` times.
 pub(super) fn leaves_for(area: f64, length: f64, layers: f64) -> usize {
     // A leaf covers half of length^2 lying flat, half of that on average as it hangs.
     count_of(layers * area / (0.25 * length * length), 3, MOST_LEAVES)
 }
 
-/// Length of a leaf that nobody drew over the height of its plant. The twelve leaf contours of our drawings for Table 1
-/// enclose 0.087 of the plant's squared height on average: leaves of this length number 35 there.
+/// Length of a leaf that was not drawn over the height of its plant. The twelve leaf contours of our drawings for
+/// Table 1 enclose 0.087 of the plant's squared height on average: leaves of this length number 35 there.
 pub(super) const DEFAULT_LENGTH: f64 = 0.08;

@@ -8,8 +8,8 @@
 //! | leaf contour | leaves on midribs by Eq 2 | `leaves` |
 //! | crown | limbs, branches, twigs, leaves | `crown`, `foliage` |
 //!
-//! All of them grow in the body that the contour stands for (`volume`) towards points strewn in it
-//! (`scatter`). Bounded: 4,000 twigs and 20,000 leaves a region, and about [`MOST_GROWN`] leaves a drawing.
+//! All of them grow in the body of the contour (`volume`) towards points scattered in it (`scatter`). Bounded: 4,000
+//! twigs and 20,000 leaves a region, and about [`MOST_GROWN`] leaves a drawing.
 
 mod crown;
 mod foliage;
@@ -38,36 +38,37 @@ use volume::{Inflation, Volume, above};
 /// Most leaves that grow in all contours of a drawing together; a fair share of them in each.
 pub(crate) const MOST_GROWN: usize = 200_000;
 
-/// Leaves of a crown that nobody drew leaves for, and sprays of a conifer's, metres: of a tree; smaller crowns have smaller
-/// ones.
+/// Length of a tree's leaves in a crown without drawn leaves, metres; smaller crowns have smaller ones.
 const NATURAL_LEAF: f64 = 0.12;
+/// Length of a conifer's sprays in such a crown, metres.
 const NATURAL_SPRAY: f64 = 0.35;
-/// What a leaf, and a spray with sky between its needles, covers over the square of its length.
+/// Area that a leaf covers over the square of its length.
 const LEAF_COVER: f64 = 0.5;
+/// Area that a spray with sky between its needles covers over the square of its length.
 const SPRAY_COVER: f64 = 0.2;
-/// Area of a crown's leaves over that of its shadow, the mean of its three projections: a narrow crown has light from the
-/// side. Broad-leaved trees have 3 to 6.
+/// Area of a crown's leaves over that of its shadow, the mean of its three projections: a narrow crown has light from
+/// the side. Broad-leaved trees have 3 to 6.
 const LEAF_AREA_INDEX: f64 = 5.0;
-/// So many leaves a crown of density 1 at most; they are larger where it would have more.
+/// Most leaves of a crown of density 1; leaves are larger if it would have more.
 const MOST_CROWN: usize = 8_000;
 
 /// Axes of a plant at which contours are left empty: a million nodes or more, a gigabyte of meshes.
 const MOST_AXES: usize = 250_000;
 
-/// What filling needs to know about the plant that it grows on.
+/// Properties of the plant for filling its contours.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FillContext<'a> {
-    /// What was asked for.
+    /// The requested settings.
     pub(crate) spec: &'a SketchSpec,
     /// The drawing's seed.
     pub(crate) seed: Seed,
     /// Ink to plant.
     pub(crate) map: PlantMap,
-    /// The plant's axis of each row of `Reading::axes`; `None` where it degenerated.
+    /// The plant's axis of each row of `Reading::axes`; `None` if it degenerated.
     pub(crate) axis_of_reading: &'a [Option<AxisId>],
     /// Blade shapes of the drawn leaves, in their order, with their strokes.
     pub(crate) templates: &'a [(ShapeId, Option<u32>)],
-    /// Height of the drawn plant, metres: twigs and leaves that nobody drew are a share of it.
+    /// Height of the drawn plant, metres: the size of twigs and leaves that nobody drew is a share of it.
     pub(crate) height_m: f64,
     /// A tree rather than a herb.
     pub(crate) woody: bool,
@@ -75,12 +76,12 @@ pub(crate) struct FillContext<'a> {
     pub(crate) coloured: bool,
 }
 
-/// What grew in one contour.
+/// The growth in one contour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrownContour {
-    /// What it was filled with.
+    /// The kind of growth.
     pub kind: RegionKind,
-    /// The part of the contour that was filled, metres: of a tree drawn in one line, that above its trunk.
+    /// The part of the contour that was filled, metres: for a tree drawn in one line, that above its trunk.
     pub outline: Vec<DVec2>,
     /// The plant's axes that grew in it.
     pub axes: Range<usize>,
@@ -88,13 +89,13 @@ pub struct GrownContour {
     pub organs: Range<usize>,
 }
 
-/// The plant of a stroke, where a drawing shows several.
+/// Returns the plant of a stroke, if a drawing shows several.
 fn plant_of(reading: &Reading, stroke: Option<u32>) -> Option<usize> {
     let stroke = stroke.filter(|_| reading.plants.len() > 1)?;
     reading.plants.iter().position(|p| p.strokes.binary_search(&stroke).is_ok())
 }
 
-/// Fills every region of the reading with twigs and leaves, borne by the plant's axes. Returns what grew, in the
+/// Fills every region of the reading with twigs and leaves, borne by the plant's axes. Returns the growth, in the
 /// order of the regions.
 ///
 /// Guaranteed: nodes and leaf roots inside a contour stay inside it as seen from the front; radii of the new
@@ -146,7 +147,8 @@ pub(crate) fn fill(
             continue;
         };
         let bearers = bearers(plant, region, ctx, &volume);
-        // Named by its bearer and its rank among that bearer's contours, so that editing one leaves others be.
+        // The name is the bearer and the rank among that bearer's contours, so that editing one does not change
+        // others.
         let bearer = bearers.first().map_or(0, |&a| plant.axis(a).key);
         let next = born.entry(bearer).or_default();
         let rank = *next;
@@ -156,7 +158,7 @@ pub(crate) fn fill(
         let spec = tame(ctx.spec.fill);
         let (first_axis, first) = (plant.axes.len(), plant.organs.len());
         let height_m = ctx.height_m;
-        // Grass beside a tree is not the tree's.
+        // Grass next to a tree does not belong to the tree.
         let own = plant_of(reading, region.source);
         let is_own = |of: Option<usize>| own.is_none() || of.is_none() || of == own;
         let drawn: Vec<(ShapeId, f64)> = templates.iter().filter(|t| is_own(t.1)).map(|t| t.0).collect();
@@ -176,7 +178,7 @@ pub(crate) fn fill(
                     .grow(plant)
             }
             RegionKind::Crown => {
-                let habit = Habit::of(&volume, plant.axis_points(bearers[0]));
+                let habit = Habit::infer(&volume, plant.axis_points(bearers[0]));
                 let (foliage, leaves) = look.of_crown(plant, &volume, habit);
                 let woody = ctx.woody;
                 let bearers = &bearers;
@@ -211,16 +213,16 @@ pub(crate) fn fill(
     Ok(grown)
 }
 
-/// The bodies of a drawing's contours, for the next time that the same drawing is built: those of contours that did not
-/// change are taken over. What comes out is the same with and without.
+/// The bodies of a drawing's contours, for the next time that the same drawing is built: those of unchanged contours
+/// are taken over. The result is the same with and without.
 #[derive(Clone, Debug, Default)]
 pub struct KeptBodies(Vec<(Vec<DVec2>, RegionKind, Option<Volume>)>);
 
 impl KeptBodies {
-    /// Of more contours none are kept: each is some hundred kilobytes.
+    /// Most contours that are kept: each takes some hundred kilobytes.
     const MOST: usize = 64;
 
-    /// The body of a contour, which goes into `next`; `None` where it encloses nothing.
+    /// Returns the body of a contour, and keeps it in `next`; `None` if it encloses nothing.
     fn take(&mut self, outline: Vec<DVec2>, kind: RegionKind, next: &mut Self) -> Option<Volume> {
         let known = self.0.iter().position(|(o, k, _)| *k == kind && *o == outline);
         let volume = match known {
@@ -234,9 +236,9 @@ impl KeptBodies {
     }
 }
 
-/// The part of a contour that is filled, and its body; `None` where it encloses nothing.
+/// Returns the part of a contour that is filled, and its body; `None` if it encloses nothing.
 ///
-/// Many people draw a tree in one line: what hangs below the crown is its trunk, not foliage.
+/// Many people draw a tree in one line: the part below the crown is its trunk, not foliage.
 fn body(outline: Vec<DVec2>, kind: RegionKind) -> Option<(Vec<DVec2>, Volume)> {
     let inflation = if kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
     let whole = Volume::new(&outline, inflation)?;
@@ -250,12 +252,13 @@ fn body(outline: Vec<DVec2>, kind: RegionKind) -> Option<(Vec<DVec2>, Volume)> {
     Some((outline, whole))
 }
 
-/// The plant's axes that run into a region; where the reading's have all degenerated, a new stem. Never empty.
+/// Returns the plant's axes that run into a region; if those of the reading have all degenerated, a new stem. Never
+/// empty.
 fn bearers(plant: &mut Plant, region: &RegionReading, ctx: &FillContext<'_>, volume: &Volume) -> Vec<AxisId> {
     let known = region.bearers.iter().filter_map(|&row| ctx.axis_of_reading.get(row).copied().flatten());
     let mut axes: Vec<AxisId> = known.collect();
     axes.dedup();
-    // The trunk first: of the lowest order, then the one with the lowest foot.
+    // The trunk first: the lowest order, then the lowest foot.
     base::sort_by(&mut axes, |&a, &b| {
         let foot = |x| plant.axis_points(x).first().map_or(0.0, |p: &DVec3| p.y);
         plant.axis(a).order.cmp(&plant.axis(b).order).then(foot(a).total_cmp(&foot(b)))
@@ -275,7 +278,7 @@ fn bearers(plant: &mut Plant, region: &RegionReading, ctx: &FillContext<'_>, vol
     axes
 }
 
-/// Puts the body where its bearers are in depth.
+/// Moves the body to the depth of its bearers.
 fn lay(plant: &Plant, volume: &mut Volume, bearers: &[AxisId], kind: RegionKind) {
     let inside = |p: &&DVec3| volume.contains_xy(p.truncate());
     let points = || bearers.iter().flat_map(|&a| plant.axis_points(a));
@@ -295,7 +298,7 @@ fn lay(plant: &Plant, volume: &mut Volume, bearers: &[AxisId], kind: RegionKind)
     }
 }
 
-/// The numbers within their documented ranges; defaults for what is not finite.
+/// Clamps the numbers to their documented ranges; defaults for those that are not finite.
 fn tame(spec: FillSpec) -> FillSpec {
     let d = FillSpec::default();
     let fix = |x: f64, lo: f64, hi: f64, or: f64| if x.is_finite() { x.clamp(lo, hi) } else { or };
@@ -312,11 +315,11 @@ fn tame(spec: FillSpec) -> FillSpec {
     }
 }
 
-/// Chooses leaves: the user's, where leaves were drawn, else botanical forms.
+/// Chooses leaves: the user's, if leaves were drawn, else botanical forms.
 struct Look<'a> {
     forms: &'a mut Vec<(BladeForm, ShapeId)>,
     drawn: &'a [(ShapeId, f64)],
-    /// Length of the drawn leaves: their median.
+    /// Median length of the drawn leaves.
     natural: Option<f64>,
     /// Most leaves for this contour.
     share: usize,

@@ -1,4 +1,4 @@
-//! Attraction points, evenly strewn.
+//! Attraction points, evenly scattered.
 //!
 //! `Volume + stream -> points with a guaranteed spacing`
 
@@ -12,8 +12,8 @@ const ROUNDS: u32 = 7;
 /// Darts per wanted point and round.
 const DARTS: usize = 4;
 
-/// At most `n` points of the body for which `accept` holds, spaced as widely as `n` points can be, about
-/// (Poisson-disc by dart throwing with shrinking spacing; Runions 2007, section 4, strews its points so).
+/// Returns at most `n` points of the body for which `accept` holds, spaced as widely as `n` points can be, about
+/// (Poisson-disc by dart throwing with shrinking spacing; Runions 2007, section 4, scatters its points so).
 ///
 /// Cost: linear in `n`.
 pub(super) fn scatter(
@@ -24,10 +24,10 @@ pub(super) fn scatter(
 ) -> Vec<DVec3> {
     let (lo, hi) = (volume.low(), volume.high());
     let deep = volume.deepest();
-    // Relative to the body's middle, so that a body that follows a bent branch is strewn like a straight one.
+    // Relative to the body's middle, so that points in a body along a bent branch are scattered as in a straight one.
     let mut flat: Vec<DVec3> = Vec::with_capacity(n);
     let lift = |p: &DVec3| *p + DVec3::Z * volume.mid(p.truncate());
-    // Where only a shell is accepted, the first rounds are soon full and the spacing shrinks.
+    // If only a shell is accepted, the first rounds are soon full and the spacing shrinks.
     let mut spacing = 1.1 * ops::cbrt(volume.bulk() / n.max(1) as f64);
     for _ in 0..ROUNDS {
         if flat.len() == n {
@@ -54,8 +54,8 @@ pub(super) fn scatter(
     flat.iter().map(lift).collect()
 }
 
-/// At most `n` points at least `margin` inside the contour, evenly strewn as seen from the front; their depths
-/// are spread over the middle `share` of the body. Cost: linear in `n`.
+/// Returns at most `n` points at least `margin` inside the contour, evenly scattered as seen from the front; their
+/// depths are spread over the middle `share` of the body. Cost: linear in `n`.
 pub(super) fn scatter_front(
     volume: &Volume,
     n: usize,
@@ -92,7 +92,7 @@ pub(super) fn scatter_front(
     flat
 }
 
-/// At most `n` points along the drawn contour, `margin` inside it: they make the front view fill it. Their
+/// Returns at most `n` points along the drawn contour, `margin` inside it: they make the front view fill it. Their
 /// depths are spread over the middle `share` of the body.
 pub(super) fn scatter_rim(
     volume: &Volume,
@@ -121,7 +121,7 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Cubes of edge `size`, or more where there would be over 32 along an edge of the box.
+    /// Builds cubes of edge `size`, or larger ones if there would be over 32 along an edge of the box.
     pub(super) fn new(lo: DVec3, hi: DVec3, size: f64) -> Self {
         let extent = (hi - lo).max(DVec3::ZERO);
         let size = size.max(extent.max_element() / 32.0).max(1e-12);

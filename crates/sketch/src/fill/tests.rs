@@ -69,7 +69,7 @@ fn leaf_of(length: f64) -> Shape {
     Shape::Blade(blade)
 }
 
-/// As [`grown`], with another seed, and with a drawn leaf of some length in metres.
+/// Grows a contour as [`grown`] does, with another seed, and with a drawn leaf of some length in metres.
 fn grown_again(
     outline: Vec<DVec2>,
     kind: RegionKind,
@@ -124,7 +124,7 @@ fn grown_again(
     let mut report = Report::default();
     fill(&mut plant, &reading, &ctx, &mut KeptBodies::default(), &Run::plain(), &mut report)
         .expect("nobody cancels");
-    // Of a crown drawn in one line with its trunk: without what is below the neck, which is the way to it.
+    // For a crown drawn in one line with its trunk: without the part below the neck, which is the way to it.
     let metres = body(metres.clone(), kind).map_or(metres, |(outline, _)| outline);
     Made { plant, outlines: vec![metres], drawn, report }
 }
@@ -150,7 +150,8 @@ fn inside(outline: &[DVec2], p: DVec2) -> bool {
     geom::contains(outline, p)
 }
 
-/// Every grown node, but the bearers' own, and every leaf's root lies in the contour as seen from the front.
+/// Checks that every grown node, except the bearers' own, and every leaf's root lies in the contour as seen from the
+/// front.
 fn check_inside(made: &Made, what: &str) {
     let plant = &made.plant;
     for axis in &plant.axes[made.drawn..] {
@@ -158,7 +159,7 @@ fn check_inside(made: &Made, what: &str) {
         for node in axis.node_ids().skip(1) {
             let p = plant.nodes.position[node.index()].truncate();
             let now = inside(&made.outlines[0], p);
-            // Where the drawn trunk ends below the crown, the way to the contour is outside of it.
+            // If the drawn trunk ends below the crown, the way to the contour is outside it.
             assert!(now || !entered, "{what}: a twig leaves the contour at {p}");
             entered |= now;
         }
@@ -178,7 +179,7 @@ fn crowns_of_all_forms_become_leafy_trees() {
         let (axes, leaves) = (made.plant.axes.len(), made.plant.organs.len());
         assert!((60..1_200).contains(&axes), "{name}: {axes} axes");
         assert!((400..12_000).contains(&leaves), "{name}: {leaves} leaves");
-        // On a tree of 8 m they are as long as leaves are, or a conifer's sprays.
+        // On a tree of 8 m they have the length of natural leaves, or of a conifer's sprays.
         let mean = made
             .plant
             .organs
@@ -375,7 +376,8 @@ fn smaller_leaves_are_more_leaves() {
 
 #[test]
 fn a_twig_grows_to_the_nearest_point_of_the_contour() {
-    // A tall box: from any place of a stem in its middle the nearest point of the contour is level with it, at its side.
+    // A tall box: from any place of a stem in its middle the nearest point of the contour is level with it, at its
+    // side.
     let tall: Vec<DVec2> =
         [(0.3, 0.1), (0.7, 0.1), (0.7, 0.95), (0.3, 0.95)].map(|(x, y)| DVec2::new(x, y)).to_vec();
     for (contour_pull, bearer_pull, rise) in [(1.0, 0.0, 0.0), (0.5, 0.5, 1.0), (0.65, 0.25, 0.25 / 0.65)] {
@@ -387,7 +389,7 @@ fn a_twig_grows_to_the_nearest_point_of_the_contour() {
             let mut seen = 0;
             for axis in made.plant.axes[made.drawn..].iter().filter(|a| a.order == 1) {
                 let p = &made.plant.nodes.position[axis.nodes.start as usize..axis.nodes.end as usize];
-                // The ends of the box are as near as its sides there; what has turned to the viewer seems steep.
+                // The ends of the box are as near as its sides there; twigs that have turned to the viewer seem steep.
                 let way = p[p.len() - 1] - p[0];
                 if p[0].y < 2.4 || p[p.len() - 1].y > 6.0 || way.z.abs() > 0.3 * way.x.abs() {
                     continue;

@@ -23,7 +23,7 @@ pub(super) struct Twigs<'a> {
     pub(super) kind: AxisKind,
     /// Twigs wanted.
     pub(super) wanted: usize,
-    /// Which contour of its bearer this is.
+    /// Rank of this contour among those of its bearer.
     pub(super) salt: u64,
 }
 
@@ -34,22 +34,22 @@ const ROOM: f64 = 1.0 / 12.0;
 
 /// Attraction points on a contour: 2.6 degrees of a circle apart.
 const ATTRACTORS: usize = 140;
-/// How near to the contour a twig ends, over the radius of the contour's greatest inscribed circle.
+/// Distance from the contour at which a twig ends, over the radius of the contour's greatest inscribed circle.
 const NEAR: f64 = 0.1;
 
-/// Twigs that fill a contour of some area, square metres, of a plant of some height, metres.
+/// Returns the number of twigs that fill a contour of some area, square metres, of a plant of some height, metres.
 pub(super) fn twigs_for(area: f64, height_m: f64, density: f64) -> usize {
     let room = ROOM * height_m;
-    // Who draws a contour means a cluster.
+    // A person who draws a contour means a cluster.
     count_of(density * area / (room * room), 4, MOST_TWIGS)
 }
 
 impl Twigs<'_> {
-    /// Grows the twigs; returns how many. `sites` gets the places on bearers and twigs inside the contour.
+    /// Grows the twigs; returns their number. `sites` gets the places on bearers and twigs inside the contour.
     ///
-    /// A bearer that ends well below the far side of its contour goes on there as a leading shoot. Twigs start
-    /// along bearers and leaders at equal arc lengths, in a spiral around them, and are drawn to the contour on
-    /// their side (He and Cheng 2021, section 4.3). What stays empty then is reached by twigs from twigs.
+    /// A bearer that ends well below the far side of its contour goes on there as a leading shoot. Twigs start along
+    /// bearers and leaders at equal arc lengths, in a spiral around them, and are attracted by the contour on their
+    /// side (He and Cheng 2021, section 4.3). Twigs on twigs reach the rest.
     pub(super) fn grow(&self, plant: &mut Plant, sites: &mut Vec<Site>) -> usize {
         let before = plant.axes.len();
         let v = self.volume;
@@ -141,7 +141,7 @@ impl Twigs<'_> {
         }
     }
 
-    /// One twig by Eq 2 to the contour, on the side that an azimuth about its bearer tells.
+    /// Grows one twig by Eq 2 to the contour, on the side given by an azimuth about its bearer.
     fn twig(
         &self,
         plant: &mut Plant,
@@ -165,7 +165,7 @@ impl Twigs<'_> {
         if long { add_axis(plant, site, self.kind, points) } else { None }
     }
 
-    /// One twig by Eq 2, unless it would be no more than a bud.
+    /// Grows one twig by Eq 2, unless it would be no more than a bud.
     fn shoot(
         &self,
         plant: &mut Plant,
@@ -185,7 +185,7 @@ impl Twigs<'_> {
     }
 }
 
-/// Places on the drawn axes inside the contour; where there is none, the place nearest to it.
+/// Returns places on the drawn axes inside the contour; if there are none, the place nearest to it.
 pub(super) fn inner_sites(plant: &Plant, volume: &Volume, bearers: &[AxisId], salt: u64) -> Vec<Site> {
     let mut sites = Vec::new();
     let mut outside: Option<(f64, Site)> = None;
@@ -214,7 +214,7 @@ fn distance_to(volume: &Volume, p: DVec2) -> f64 {
     volume.nearest_xy(p).distance(p)
 }
 
-/// About `n` sites at equal arc lengths, counted through all axes; half a space is left at the start.
+/// Returns about `n` sites at equal arc lengths, counted through all axes; half a space is left at the start.
 fn spaced(plant: &Plant, sites: &[Site], n: usize) -> Vec<usize> {
     let mut along = Vec::with_capacity(sites.len());
     let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! The body that a drawn contour stands for.
+//! The body of a drawn contour.
 //!
 //! `contour (metres) -> Volume: inside?, clearance, half depth`
 //!
@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// How the depth of a contour is guessed.
+/// Ways to guess the depth of a contour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Inflation {
     /// Every horizontal row becomes a disc: crowns stand around an upright trunk.
@@ -52,7 +52,7 @@ pub(super) struct Volume {
 }
 
 impl Volume {
-    /// The body of a simple polygon; `None` where it has no area to speak of (fewer than 3 points, a sliver,
+    /// Returns the body of a simple polygon; `None` if it has almost no area (fewer than 3 points, a sliver,
     /// coordinates that are not finite).
     pub(super) fn new(outline: &[DVec2], inflation: Inflation) -> Option<Self> {
         if outline.len() < 3 || outline.iter().any(|p| !p.is_finite()) {
@@ -107,42 +107,42 @@ impl Volume {
         Some(volume)
     }
 
-    /// The contour.
+    /// Returns the contour.
     pub(super) fn outline(&self) -> &[DVec2] {
         &self.outline
     }
 
-    /// Lower corner of the contour's box.
+    /// Returns the lower corner of the contour's box.
     pub(super) fn low(&self) -> DVec2 {
         self.lo + DVec2::splat(self.cell)
     }
 
-    /// Upper corner of the contour's box.
+    /// Returns the upper corner of the contour's box.
     pub(super) const fn high(&self) -> DVec2 {
         self.hi
     }
 
-    /// Height of the contour's box.
+    /// Returns the height of the contour's box.
     pub(super) fn height(&self) -> f64 {
         self.hi.y - self.low().y
     }
 
-    /// Length below which nothing can be told apart.
+    /// Returns the size of a cell, below which nothing is resolved.
     pub(super) const fn cell(&self) -> f64 {
         self.cell
     }
 
-    /// Half the depth of the body where it is deepest.
+    /// Returns half the depth of the body at its deepest place.
     pub(super) fn deepest(&self) -> f64 {
         self.depth.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Volume of the body, m3.
+    /// Returns the volume of the body, m3.
     pub(super) fn bulk(&self) -> f64 {
         2.0 * self.cell * self.cell * self.depth.iter().sum::<f64>()
     }
 
-    /// Lays the middle of the body on the lines that run through it, instead of on z = 0.
+    /// Moves the middle of the body to the lines that run through it, away from z = 0.
     pub(super) fn follow(&mut self, lines: &[DVec3]) {
         if lines.is_empty() {
             return;
@@ -163,12 +163,12 @@ impl Volume {
         }
     }
 
-    /// Puts the middle of the body at one depth.
+    /// Moves the middle of the body to one depth.
     pub(super) fn centre_at(&mut self, z: f64) {
         self.mid.fill(z);
     }
 
-    /// Is the point inside the contour, seen from the front? Exact (even-odd).
+    /// Whether the point is inside the contour, seen from the front. Exact (even-odd).
     pub(super) fn contains_xy(&self, p: DVec2) -> bool {
         let Some((ix, iy)) = self.cell_of(p) else {
             return false;
@@ -188,41 +188,41 @@ impl Volume {
         inside
     }
 
-    /// Is the point inside the body?
+    /// Whether the point is inside the body.
     pub(super) fn contains(&self, p: DVec3) -> bool {
         let xy = p.truncate();
         self.contains_xy(xy) && (p.z - self.mid(xy)).abs() <= self.half_depth(xy)
     }
 
-    /// Distance to the contour in the plane, positive inside.
+    /// Returns the distance to the contour in the plane, positive inside.
     pub(super) fn clearance(&self, p: DVec2) -> f64 {
         self.sample(&self.clear, p)
     }
 
-    /// Half the depth of the body behind a point of the plane.
+    /// Returns half the depth of the body behind a point of the plane.
     pub(super) fn half_depth(&self, p: DVec2) -> f64 {
         self.sample(&self.depth, p)
     }
 
-    /// Depth of the body's middle.
+    /// Returns the depth of the body's middle.
     pub(super) fn mid(&self, p: DVec2) -> f64 {
         self.sample(&self.mid, p)
     }
 
-    /// How far a point is from the surface, about: 0 on it, the inradius at most.
+    /// Returns the approximate distance of a point from the surface: 0 on it, the inradius at most.
     pub(super) fn inset(&self, p: DVec3) -> f64 {
         let xy = p.truncate();
         self.clearance(xy).min(self.half_depth(xy) - (p.z - self.mid(xy)).abs())
     }
 
-    /// The nearest point of the contour, in the plane.
+    /// Returns the nearest point of the contour, in the plane.
     pub(super) fn nearest_xy(&self, p: DVec2) -> DVec2 {
         let clamped =
             p.clamp(self.lo, self.lo + DVec2::new(self.nx as f64, self.ny as f64) * self.cell * 0.999_9);
         self.cell_of(clamped).map_or(p, |(ix, iy)| self.nearest[iy * self.nx + ix])
     }
 
-    /// At most `n` points of the contour at equal arc lengths.
+    /// Returns at most `n` points of the contour at equal arc lengths.
     pub(super) fn rim(&self, n: usize) -> Vec<DVec2> {
         let count = self.outline.len();
         let edge = |e: usize| (self.outline[e], self.outline[(e + 1) % count]);
@@ -241,7 +241,7 @@ impl Volume {
         out
     }
 
-    /// Unit direction into the contour from a point on it; zero where it has none.
+    /// Returns the unit direction into the contour from a point on it; zero if it has none.
     pub(super) fn inward(&self, p: DVec2) -> DVec2 {
         let h = DVec2::splat(self.cell);
         let dx = self.clearance(p + h * DVec2::X) - self.clearance(p - h * DVec2::X);
@@ -249,7 +249,7 @@ impl Volume {
         DVec2::new(dx, dy).normalize_or_zero()
     }
 
-    /// Distance from an inner point to the surface along a unit vector, at most `reach`; to half a cell.
+    /// Returns the distance from an inner point to the surface along a unit vector, at most `reach`; to half a cell.
     pub(super) fn ray(&self, from: DVec3, direction: DVec3, reach: f64) -> f64 {
         let step = self.cell * 0.5;
         let mut at = 0.0;
@@ -262,12 +262,12 @@ impl Volume {
         reach
     }
 
-    /// Is the straight way between two points inside the contour, seen from the front?
+    /// Whether the straight segment between two points is inside the contour, seen from the front.
     pub(super) fn sees(&self, a: DVec2, b: DVec2) -> bool {
         (1..6).all(|i| self.contains_xy(a.lerp(b, f64::from(i) / 6.0)))
     }
 
-    /// Widest run of inner cells of the row at height `y`: its middle and half width; `None` outside.
+    /// Returns the widest run of inner cells of the row at height `y`: its middle and half width; `None` outside.
     pub(super) fn row(&self, y: f64) -> Option<(f64, f64)> {
         let (_, iy) = self.cell_of(DVec2::new(self.lo.x, y))?;
         let mut best: Option<(usize, usize)> = None;
@@ -288,11 +288,11 @@ impl Volume {
         best.map(|(a, b)| (self.lo.x + self.cell * 0.5 * (a + b) as f64, self.cell * 0.5 * (b - a) as f64))
     }
 
-    /// Height at which a crown begins that was drawn in one line with its trunk; `None` where there is no such
-    /// neck.
+    /// Returns the height at which a crown that was drawn in one line with its trunk begins; `None` if there is no
+    /// such neck.
     ///
-    /// A neck is one narrow run (below 0.4 of the widest row), at least 0.12 of the height long, and opens at once
-    /// (1.8 times as wide 0.08 of the height farther up): what opens evenly is a shrub.
+    /// A neck is one narrow run (below 0.4 of the widest row), at least 0.12 of the height long, and opens at once (to
+    /// 1.8 times its width over 0.08 of the height): a contour that opens evenly is a shrub.
     pub(super) fn neck(&self) -> Option<f64> {
         let (low, height) = (self.low().y, self.height());
         let width = |t: f64| self.row(low + t * height).map_or(0.0, |(_, w)| w);
@@ -471,7 +471,7 @@ impl Volume {
     }
 }
 
-/// The part of a polygon above a height (Sutherland and Hodgman; parts may stay joined along the cut).
+/// Returns the part of a polygon above a height (Sutherland and Hodgman; parts may stay joined along the cut).
 pub(super) fn above(outline: &[DVec2], y: f64) -> Vec<DVec2> {
     let n = outline.len();
     let mut out = Vec::with_capacity(n + 4);
@@ -487,7 +487,8 @@ pub(super) fn above(outline: &[DVec2], y: f64) -> Vec<DVec2> {
     out
 }
 
-/// Not [`geom::signed_area`], which is relative to a corner: that rounds otherwise, and plants are told by the last bit.
+/// Returns the signed area. [`geom::signed_area`] is relative to a corner and rounds differently, and plants are
+/// compared to the last bit.
 fn shoelace(outline: &[DVec2]) -> f64 {
     let n = outline.len();
     0.5 * (0..n).map(|i| outline[i].perp_dot(outline[(i + 1) % n])).sum::<f64>()

@@ -41,7 +41,7 @@ fn large_fruits_have_the_skin_of_their_form_and_only_what_is_no_fruit_is_a_green
     assert!(banana[green] > 0.5 * banana[red] && banana[blue] < 0.2 * banana[red]);
     assert!(carrot[green] < 0.5 * carrot[red] && carrot[blue] < 0.1 * carrot[red]);
     assert!(pod[green] > 1.5 * pod[red] && tuber[red] > tuber[green] && tuber[blue] > 0.2 * tuber[red]);
-    // A cactus is green flesh, and what was drawn in colour keeps it.
+    // A cactus is green flesh, and a body drawn in colour keeps it.
     assert_eq!(look(Kind::Cactus, &ball).0, OrganKind::Body);
     assert_eq!(look(Kind::None, &ball).0, OrganKind::Body);
     let mut drawn = whole(Kind::Fruit, |t| 0.3 * ball(t), Some([20, 60, 200]));
@@ -71,15 +71,28 @@ fn what_looks_like_one_thing_has_its_colour_and_slices_of_a_melon_show_their_fle
     assert!(broccoli[green] > 1.5 * broccoli[red] && mushroom[red] > mushroom[green]);
     let berry = tinted(Kind::Fruit, "blueberry");
     assert!(berry[blue] > 2.0 * berry[red]);
+    let mut on_a_stalk = whole(Kind::Fruit, ball, None);
+    on_a_stalk.plants[0].word = Some("blueberry");
+    on_a_stalk.axes.push(reading::AxisReading {
+        points: vec![v(0.5, 0.95), v(0.55, 1.3)],
+        kind: plant::AxisKind::Stem,
+        bearer: None,
+        half_width: Vec::new(),
+        source: None,
+    });
+    let on_a_stalk = made(&on_a_stalk, &SketchSpec::default()).plant;
+    let on_a_stalk = on_a_stalk.organs.iter().find(|o| o.kind == OrganKind::Fruit).expect("a fruit").paint;
+    assert!(matches!(on_a_stalk, Paint::Natural(_)), "a fruit on a stalk of its own is an apple");
     let melon = tinted(Kind::Fruit, "watermelon");
     assert!(melon[green] > 1.5 * melon[red]);
     assert!(matches!(look(Kind::Fruit, Some("watermelon"), &slice), Paint::Natural(_)), "red flesh");
     assert!(matches!(look(Kind::Fruit, Some("apple"), &ball), Paint::Natural(_)), "red");
-    // A word that says no colour leaves it to the form.
+    // For a word that determines no colour the form does.
     assert_eq!(look(Kind::Vegetable, Some("cactus"), &ball), look(Kind::Vegetable, None, &ball));
 }
 
-/// An arc of a circle of radius 1 about (1, 1), half as wide as given at each share of its length, drawn all round.
+/// An arc of a circle of radius 1 about (1, 1), with the half width given at each share of its length, drawn all
+/// round.
 fn arc_body(half_width: impl Fn(f64) -> f64) -> Vec<DVec2> {
     let at = |t: f64, side: f64| {
         let (s, c) = ops::sin_cos(ops::PI * (1.0 + 0.6 * (t - 0.5)) + 0.5 * ops::PI);

@@ -201,7 +201,7 @@ fn a_flower_in_profile_is_as_deep_as_it_is_wide() {
         });
         let far = points.fold(DVec3::ZERO, |far, p| far.max((p - got.centre).abs()));
         assert!((0.7..1.2).contains(&(far.z / far.x)), "{n}: {far}");
-        // Each petal has another one behind it or before it.
+        // Each petal has another one behind it or in front of it.
         assert_eq!(petals.count(), 2 * n as usize);
     }
 }
@@ -665,7 +665,7 @@ fn a_bold_line_is_thick_and_nothing_is_thicker_than_what_bears_it() {
     let bold = radii(vec![(0, 1.6), (2, 0.5)]);
     assert!(near(bold[0], 1.6 * usual[0]) && near(bold[1], 1.6 * usual[1]), "{usual:?} {bold:?}");
     assert!(near(bold[2], 0.5 * usual[2]), "{usual:?} {bold:?}");
-    // However boldly a twig was drawn.
+    // The trunk limits even a boldly drawn twig.
     let thin = radii(vec![(0, 0.5), (1, 2.0)]);
     assert!(thin[1] <= thin[0], "{thin:?}");
     assert_eq!(radii(vec![(0, f64::NAN), (9, 2.0)]), usual);
@@ -697,7 +697,7 @@ fn a_pot_stands_on_the_ground_and_bears_its_plant() {
     let tall = profile.iter().map(|p| p.y).fold(0.0, f64::max);
     let wide = profile.iter().map(|p| p.x).fold(0.0, f64::max);
     assert!((tall - 0.3).abs() < 1e-9 && (wide - 0.15).abs() < 0.005, "{tall} {wide}");
-    // Nothing is measured of it.
+    // The pot is not measured.
     let [one, other] = [&bare, &potted].map(Plant::measure);
     assert_eq!((one.crown_volume_m3, one.leaf_area_m2), (other.crown_volume_m3, other.leaf_area_m2));
 }
@@ -727,7 +727,7 @@ fn a_crown_has_the_leaves_of_its_own_plant_and_a_pot_is_as_deep_as_the_plant_in_
         source: Some(20),
         color: None,
     });
-    // A blade of grass beside it.
+    // A blade of grass next to it.
     reading.leaves.push(blade(v(0.9, 0.0), v(0.95, 0.3), 0.02, 30));
     let shapes_of = |plants: Vec<PlantReading>| {
         let built = made(&Reading { plants, ..reading.clone() }, &SketchSpec::default());

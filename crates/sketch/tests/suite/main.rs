@@ -1,4 +1,5 @@
-//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-sketch --test suite MODULE::`.
+//! The integration tests, linked as one program. One module of them: `cargo test -p burgeon-sketch --test suite
+//! MODULE::`.
 
 mod bodies;
 mod build;

@@ -1,4 +1,4 @@
-//! What the tests of plants from readings share.
+//! Helpers shared by the tests of plants from readings.
 
 use base::{Report, Run, Seed};
 use glam::DVec2;

@@ -1,4 +1,4 @@
-//! With which others a stroke is compared.
+//! Companions of a stroke: the other strokes with which it is compared.
 
 use std::sync::Arc;
 
@@ -7,20 +7,20 @@ use base::LiteMap;
 use super::{KeptMeasures, Whole};
 use crate::classify::features::Shape;
 
-/// Most strokes that one stroke is compared with: the longest ones and its neighbours. Keeps a drawing of
+/// Most strokes that one stroke is compared with: the longest ones and its neighbours. The bound keeps a drawing of
 /// 100,000 strokes linear.
 pub(super) const COMPANIONS: usize = 48;
-/// Of those, the longest of the whole drawing.
+/// Number of companions that are the longest strokes of the whole drawing.
 pub(super) const LONGEST: usize = 16;
-/// Cells along the diagonal of the grid in which neighbours are looked up.
+/// Number of cells along the diagonal of the grid in which neighbours are looked up.
 const CELLS: f64 = 24.0;
-/// Strokes kept in one cell.
+/// Most strokes kept in one cell.
 const PER_CELL: usize = 6;
 
 /// Strokes in each cell.
 pub(super) type Grid = LiteMap<(i64, i64), Vec<usize>>;
 
-/// Where a stroke is looked up.
+/// Returns the places at which a stroke is looked up, in cells.
 fn places(s: &Shape) -> [(f64, f64); 3] {
     [s.first(), s.points[s.points.len() / 2], s.last()]
         .map(|p| ((p.x * CELLS).floor(), (p.y * CELLS).floor()))
@@ -31,12 +31,12 @@ fn key(x: f64, y: f64) -> (i64, i64) {
     (x as i64, y as i64)
 }
 
-/// The cells at a place and around it.
+/// Returns the cells at a place and around it.
 fn cells((x, y): (f64, f64)) -> impl Iterator<Item = (i64, i64)> {
     [0.0, -1.0, 1.0].into_iter().flat_map(move |dy| [0.0, -1.0, 1.0].map(|dx| key(x + dx, y + dy)))
 }
 
-/// The cells that strokes lie in.
+/// Enters strokes into the cells that they lie in.
 pub(super) fn grid(shapes: &[Arc<Shape>]) -> Grid {
     let mut grid = Grid::new();
     for (i, s) in shapes.iter().enumerate() {
@@ -50,9 +50,9 @@ pub(super) fn grid(shapes: &[Arc<Shape>]) -> Grid {
     grid
 }
 
-/// For each stroke the others that it is compared with, ascending: all of them in a sketch, else the longest of
-/// the drawing and a bounded number of neighbours. Those of strokes of which neither they nor their cells changed are
-/// taken over.
+/// Returns for each stroke the others that it is compared with, ascending: all of them in a sketch, else the longest of
+/// the drawing and a bounded number of neighbours. Companions are reused where neither the stroke nor its cells
+/// changed.
 pub(super) fn companions(
     shapes: &[Arc<Shape>],
     same: &[bool],
@@ -73,7 +73,7 @@ pub(super) fn companions(
     let before = kept.strokes.len();
     let known = |i: usize| {
         let known = kept.strokes.get(i).filter(|_| same[i] && kept.whole.longest == *longest)?;
-        // The last has one more behind it now.
+        // The stroke that was last may now have one behind it.
         let last = (i + 1 < n) == (i + 1 < before);
         let lasts = last && places(&shapes[i]).into_iter().flat_map(cells).all(|c| !changed.contains_key(&c));
         lasts.then(|| Arc::clone(&known.companions))

@@ -17,7 +17,7 @@ pub(super) struct RbfLearner {
 }
 
 impl RbfLearner {
-    /// The model's text, from rows that are scaled already.
+    /// Returns the model's text for rows that are scaled already.
     ///
     /// # Errors
     /// [`SvmError`] where there are fewer than two classes.
@@ -114,15 +114,15 @@ impl Svm {
     }
 }
 
-/// A number of a vector in whole [`GRAIN`]s; scaled features lie within 5.
+/// Rounds a number of a vector to whole [`GRAIN`]s; scaled features lie within 5.
 #[expect(clippy::cast_possible_truncation, reason = "a cast to i16 stops at its ends")]
 fn steps(value: f32) -> i16 {
     (value / GRAIN).round() as i16
 }
 
 impl Scale {
-    /// Of these rows.
-    pub(super) fn of(rows: &[Vec<f64>]) -> Self {
+    /// Computes the scale of these rows.
+    pub(super) fn fit(rows: &[Vec<f64>]) -> Self {
         let n = rows.len().max(1) as f64;
         let width = rows.first().map_or(0, Vec::len);
         let column = |k: usize| {
@@ -134,7 +134,7 @@ impl Scale {
         Self { columns: (0..width).map(column).collect() }
     }
 
-    /// One line a column: name, mean, one over the deviation.
+    /// Returns one line for each column: name, mean, one over the deviation.
     pub(super) fn to_text(&self, names: &[&str]) -> String {
         let mut text = String::new();
         for (name, (mean, scale)) in names.iter().zip(&self.columns) {
@@ -148,7 +148,7 @@ impl Scale {
 /// Writes a machine of `columns` columns; [`unpack`](super::super::packed::unpack) gives it back bit for bit.
 ///
 /// # Errors
-/// [`SvmError`] where it has 2^32 of anything.
+/// [`SvmError`] where a count reaches 2^32.
 pub(in crate::classify) fn pack(svm: &Svm, columns: usize) -> Result<Vec<u8>, SvmError> {
     let number = |n: usize| u32::try_from(n).map(u32::to_le_bytes).map_err(|e| fault(0, e.to_string()));
     let classes = svm.labels.len();

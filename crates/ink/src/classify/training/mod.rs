@@ -1,4 +1,4 @@
-//! `table -> models` and how good they are: cross-validation by drawing, never by stroke.
+//! Training `table -> models` and its quality: cross-validation by drawing, never by stroke.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,13 +16,13 @@ pub use table::{StrokeRow, StrokeSource, read_stroke_table, write_stroke_table};
 mod libsvm;
 mod table;
 
-/// The classes: chosen by cross-validation among 1 to 100.
+/// Settings for the classes, chosen by cross-validation among 1 to 100.
 const CLASSES: RbfLearner = RbfLearner { cost: 10.0, gamma: 0.3 };
-/// Closed outline or line, by the three features of He and Cheng (2021), section 4.1.
+/// Settings for closed outline or line, by the three features of He and Cheng (2021), section 4.1.
 const CLOSED: RbfLearner = RbfLearner { cost: 10.0, gamma: 3.0 };
-/// Drawings are dealt into this many folds.
+/// Number of folds that drawings are dealt into.
 const FOLDS: usize = 10;
-/// Classes with fewer clear strokes than this are not counted in the macro F1: chance would rule it.
+/// Least clear strokes of a class that counts in the macro F1: with fewer, chance would dominate.
 pub const FEW_CLEAR: usize = 20;
 
 /// The models as text, as they are kept in the repository.
@@ -35,10 +35,10 @@ pub struct StrokeModelTexts {
 }
 
 impl StrokeModelTexts {
-    /// The classes as programs carry them: the same machine in a quarter of the bytes.
+    /// Returns the classes as programs carry them: the same machine in a quarter of the bytes.
     ///
     /// # Errors
-    /// [`SvmError`] where the text is no model of today's features.
+    /// [`SvmError`] where the text is not a model of today's features.
     pub fn packed_classes(&self) -> Result<Vec<u8>, SvmError> {
         let columns = StrokeFeatures::NAMES.len();
         pack(&Svm::parse(&self.classes, columns)?, columns)
@@ -58,27 +58,28 @@ impl StrokeModels {
     }
 }
 
-/// How well strokes of drawings that were not trained on were recognised.
+/// How well strokes of drawings outside the training set were recognised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeFigures {
-    /// Rows are labels, columns what was found, both in the order of [`StrokeClass::ALL`].
+    /// Rows are labels, columns classes found, both in the order of [`StrokeClass::ALL`].
     pub confusion: [[u32; 12]; 12],
     /// F1 of each class that has at least 20 clear strokes, else `None`.
     pub f1: [Option<f64>; 12],
-    /// Mean of those.
+    /// Mean of the F1 values.
     pub macro_f1: f64,
     /// Share of closed outlines (blade, corolla, crown, disc) and lines (axis, vein) whose class found is in the
     /// same group; any third class counts as wrong.
     pub grouped: f64,
-    /// Share of them that were not taken for the other group.
+    /// Share of those strokes that were not taken for the other group.
     pub not_swapped: f64,
-    /// Share of them that the machine with the three features of He and Cheng (2021) alone puts right.
+    /// Share of those strokes that the machine with the three features of He and Cheng (2021) alone classifies
+    /// correctly.
     pub three_features: f64,
-    /// Label, found, for every clear stroke of SPG, by kind of drawing.
+    /// Kind of drawing, label and class found for every clear stroke of SPG.
     pub parts: Vec<(String, StrokeClass, StrokeClass)>,
 }
 
-/// 1 for closed outlines, 0 for lines, `None` for what is neither.
+/// Returns 1 for closed outlines, 0 for lines, `None` for other classes.
 fn closed(class: StrokeClass) -> Option<bool> {
     match class {
         StrokeClass::Blade | StrokeClass::Corolla | StrokeClass::Crown | StrokeClass::Disc => Some(true),
@@ -101,7 +102,7 @@ pub fn train_strokes(rows: &[StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
 fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
     let clear: Vec<&&StrokeRow> = rows.iter().filter(|r| r.is_clear()).collect();
     let values: Vec<Vec<f64>> = clear.iter().map(|r| r.features.values().to_vec()).collect();
-    let scale = Scale::of(&values);
+    let scale = Scale::fit(&values);
     let scaled: Vec<Vec<f64>> = values.iter().map(|v| scale.apply(v)).collect();
     let labels: Vec<i32> = clear.iter().map(|r| r.label as i32).collect();
     Ok(StrokeModelTexts {
@@ -110,12 +111,13 @@ fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, SvmError> {
     })
 }
 
-/// The three features of He and Cheng (2021), section 4.1, each in \[0, 1\].
+/// Returns the three features of He and Cheng (2021), section 4.1, each in \[0, 1\].
 fn three(row: &StrokeRow) -> Vec<f64> {
     vec![row.features.gap, row.features.slim, row.features.box_area]
 }
 
-/// The machine of He and Cheng (2021) itself: closed outline (1) or line (0) by the three features alone. It is here to measure by.
+/// Trains the machine of He and Cheng (2021) itself: closed outline (1) or line (0) by the three features alone. It
+/// serves as a baseline.
 fn train_three(rows: &[&StrokeRow]) -> Result<Svm, SvmError> {
     let clear = rows.iter().filter(|r| r.is_clear());
     let (values, sides): (Vec<Vec<f64>>, Vec<i32>) =
@@ -144,22 +146,22 @@ pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFi
     Ok(figures(rows, &found))
 }
 
-/// A classifier that was trained without some drawings: for fair figures of what is made of its classes.
+/// A classifier that was trained without some drawings, for fair figures of results that depend on its classes.
 #[derive(Clone, Debug)]
 pub struct HeldOut {
-    /// Keys of those drawings.
+    /// Keys of the drawings left out of training.
     pub drawings: BTreeSet<String>,
     models: StrokeModels,
 }
 
 impl HeldOut {
-    /// As [`classify`](crate::classify), by this classifier.
+    /// Classifies as [`classify`](crate::classify) does, with this classifier.
     pub fn classify(&self, ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
         judge(Some(&self.models), ink, &[], &mut KeptMeasures::default(), run)
     }
 }
 
-/// A classifier for each tenth of the drawings, dealt as for [`cross_validate_strokes`].
+/// Trains a classifier for each tenth of the drawings, dealt as for [`cross_validate_strokes`].
 ///
 /// # Errors
 /// [`SvmError`] where the table has too few rows.
@@ -171,7 +173,7 @@ pub fn held_out_strokes(rows: &[StrokeRow], seed: Seed) -> Result<Vec<HeldOut>, 
     folds(rows, seed).map(fold).collect()
 }
 
-/// For each fold the numbers of the rows that it holds out, and all the other rows.
+/// Returns for each fold the numbers of the rows that it holds out, and all the other rows.
 fn folds(rows: &[StrokeRow], seed: Seed) -> impl Iterator<Item = (Vec<usize>, Vec<&StrokeRow>)> {
     let fold = deal(rows, seed);
     (0..FOLDS).map(move |k| {
@@ -180,7 +182,7 @@ fn folds(rows: &[StrokeRow], seed: Seed) -> impl Iterator<Item = (Vec<usize>, Ve
     })
 }
 
-/// The fold of every row: by drawing, kinds dealt evenly.
+/// Returns the fold of every row: by drawing, kinds dealt evenly.
 fn deal(rows: &[StrokeRow], seed: Seed) -> Vec<usize> {
     let mut kinds: BTreeMap<(StrokeSource, &str), Vec<&str>> = BTreeMap::new();
     for row in rows {

@@ -6,12 +6,12 @@ use crate::StrokeClass;
 use crate::classify::features::StrokeFeatures;
 use crate::classify::svm::SvmError;
 
-/// Who drew a stroke, which decides how it is used.
+/// Source of a stroke, which decides how it is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StrokeSource {
-    /// The public, in "Quick, Draw!": trained on and counted in the figures.
+    /// Drawn by the public in "Quick, Draw!": trained on and counted in the figures.
     Public,
-    /// The public, parts labelled by others (SPG): trained on a little, figures of its own.
+    /// Drawn by the public, parts labelled by others (SPG): trained on a little, with separate figures.
     Parts,
     /// Made by our own programs: trained on only.
     Made,
@@ -30,26 +30,26 @@ impl StrokeSource {
 /// One stroke of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeRow {
-    /// Who drew it.
+    /// Its source.
     pub source: StrokeSource,
-    /// What the drawing shows; used to spread kinds over the folds, never to classify.
+    /// Subject of the drawing; used to spread kinds over the folds, never to classify.
     pub kind: String,
     /// The drawing's key.
     pub drawing: String,
     /// The stroke's number in the drawing.
     pub stroke: u32,
-    /// What it is.
+    /// Its class according to the labeller.
     pub label: StrokeClass,
-    /// The labeller was not sure.
+    /// Whether the labeller was unsure.
     pub unsure: bool,
-    /// It is several things at once.
+    /// Whether it is several things at once.
     pub mixed: bool,
-    /// What was measured.
+    /// Its measured features.
     pub features: StrokeFeatures,
 }
 
 impl StrokeRow {
-    /// Neither unsure nor mixed: trained on and counted.
+    /// Whether it is neither unsure nor mixed: trained on and counted.
     pub fn is_clear(&self) -> bool {
         !self.unsure && !self.mixed
     }
@@ -90,7 +90,7 @@ pub fn write_stroke_table(rows: &[StrokeRow]) -> String {
 /// Reads a table.
 ///
 /// # Errors
-/// [`SvmError`] with the line that is wrong; also where the features are not the ones that are measured now.
+/// [`SvmError`] with the faulty line; also where the features are not those measured now.
 pub fn read_stroke_table(text: &str) -> Result<Vec<StrokeRow>, SvmError> {
     let fault = |line: usize, what: &str| SvmError { line, what: what.to_owned() };
     let mut lines = text.lines().enumerate();

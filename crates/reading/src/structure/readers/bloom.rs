@@ -8,9 +8,9 @@ use super::{LIMITS, Part, Proposal, Scene, widest_gap};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
-/// What a flower from the front must have.
+/// Requirements of a flower seen from the front.
 struct BloomLimits {
-    /// How many petals at least.
+    /// Fewest petals.
     petals: usize,
     /// The smallest petal has more than this share of the area of the largest.
     alike: f64,
@@ -18,15 +18,15 @@ struct BloomLimits {
     meet: f64,
     /// Between neighbours no wider angle than this, radians.
     gap: f64,
-    /// Petals reach out alike: the shortest more than this share of the longest.
+    /// Petals have similar reach: the shortest more than this share of the longest.
     reach: f64,
-    /// The disc is at most so many times as large as the largest petal.
+    /// Greatest area of the disc relative to the largest petal.
     disc: f64,
-    /// What is neither petal, disc nor leaf covers less than this share of all that is enclosed.
+    /// Faces that are neither petal, disc nor leaf cover less than this share of the enclosed area.
     other: f64,
-    /// So many petals all round are no chance, with a disc or without.
+    /// This many petals all round are no coincidence, with a disc or without.
     many: usize,
-    /// See [`Proposal::likelihood`], round a disc or of many petals, and of few without a disc.
+    /// See [`Proposal::likelihood`], for petals round a disc or many petals, and for few without a disc.
     likelihood: [f64; 2],
 }
 
@@ -50,7 +50,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     discs.filter_map(|disc| around(scene, disc)).max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))
 }
 
-/// A flower whose petals stand round a face, or round the place where they meet.
+/// Proposes a flower whose petals stand round a face, or round the place where they meet.
 fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     let faces = &scene.faces;
     let rest = || (0..faces.len()).filter(move |k| Some(*k) != disc);
@@ -98,7 +98,7 @@ fn around(scene: &Scene, disc: Option<usize>) -> Option<Proposal> {
     })
 }
 
-/// The middle of the largest faces, if they are petals that meet there.
+/// Returns the middle of the largest faces, if they are petals that meet there.
 fn meeting_place(scene: &Scene) -> Option<DVec2> {
     let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
     let large: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > BLOOM.alike * largest).collect();

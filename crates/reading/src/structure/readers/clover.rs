@@ -3,13 +3,13 @@
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{LIMITS, Part, Proposal, Scene};
+use super::{Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
-/// What a clover must have.
+/// Requirements of a clover.
 struct CloverLimits {
-    /// How many leaflets.
+    /// Number of leaflets.
     leaflets: core::ops::RangeInclusive<usize>,
     /// The smallest has more than this share of the area of the largest.
     alike: f64,
@@ -40,7 +40,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     if !faces.iter().all(is_leaflet) {
         return None;
     }
-    let touches = |p: DVec2| p.distance(middle) < CLOVER.meet * largest.sqrt() + LIMITS.touch;
+    let touches = |p: DVec2| p.distance(middle) < CLOVER.meet * largest.sqrt() + scene.touch;
     let stalks = scene.lines.iter().filter(|l| {
         touches(l.points[0])
             || touches(l.points[l.points.len() - 1])

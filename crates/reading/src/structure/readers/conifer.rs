@@ -9,12 +9,14 @@ use super::{Part, Proposal, Scene};
 use crate::Kind;
 use crate::contour::runs_at;
 
-/// What a conifer must have. Shares of the crown's height or width.
+/// Requirements of a conifer. Shares of the crown's height or width.
 struct ConiferLimits {
-    /// The crown covers more than this share of all that is enclosed.
+    /// The crown covers more than this share of the enclosed area.
     whole: f64,
     /// Tiers have more than this share of the area of the largest.
     tier: f64,
+    /// The lowest face is the trunk if its width is below this share of the widest.
+    trunk_wide: f64,
     /// Its apex lies within this share of its width from its middle,
     centred: f64,
     /// and is narrower than this at a tenth of the height below the top.
@@ -31,11 +33,13 @@ struct ConiferLimits {
     tiers: f64,
     /// Levels at which it is measured.
     levels: usize,
-    /// A triangle fills this much of its box; more than that is a dome.
+    /// Greatest share of its box that it fills: a triangle fills this much; a dome fills more.
     full: f64,
-    /// Its trunk is in the lowest part of it, this near to its middle, and reaches below it by more than that, ink units.
+    /// Its trunk is in this lowest part of it,
     trunk_low: f64,
+    /// is this near to its middle,
     trunk_middle: f64,
+    /// and reaches below it by more than this, ink units.
     trunk_below: f64,
     /// No line outside is longer than this.
     longest_line: f64,
@@ -46,6 +50,7 @@ struct ConiferLimits {
 const CONIFER: ConiferLimits = ConiferLimits {
     whole: 0.7,
     tier: 0.12,
+    trunk_wide: 0.5,
     centred: 0.12,
     pointed: 0.42,
     foot: 0.4,
@@ -65,15 +70,17 @@ const CONIFER: ConiferLimits = ConiferLimits {
 pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let largest = scene.faces.iter().map(|f| f.shape.area).fold(0.0, f64::max);
     // One outline, or tiers one over the other.
-    let tiers: Vec<&Face> = scene.faces.iter().filter(|f| f.shape.area > CONIFER.tier * largest).collect();
+    let trunk = trunk_among(&scene.faces);
+    let is_tier = |&k: &usize| trunk != Some(k) && scene.faces[k].shape.area > CONIFER.tier * largest;
+    let tiers: Vec<&Face> = (0..scene.faces.len()).filter(is_tier).map(|k| &scene.faces[k]).collect();
     let face = match tiers[..] {
         [one] => one.clone(),
         _ => scene.union(&tiers)?,
     };
-    if face.shape.area < CONIFER.whole * scene.enclosed() || !is_crown(&face) {
+    let trunk_area = trunk.map_or(0.0, |k| scene.faces[k].shape.area);
+    if face.shape.area < CONIFER.whole * (scene.enclosed() - trunk_area) || !is_crown(&face) {
         return None;
     }
-    let is_tier = |k: usize| tiers.iter().any(|t| core::ptr::eq(*t, &scene.faces[k]));
     let (low, high) = bounds(&face.outline)?;
     // The trunk: lines or a face below the crown, in its middle.
     let below = |p: DVec2| {
@@ -83,7 +90,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let stands = |points: &[DVec2]| {
         bounds(points).is_some_and(|(a, b)| a.y < low.y - CONIFER.trunk_below && below(a.midpoint(b)))
     };
-    let trunk_face = (0..scene.faces.len()).find(|&k| !is_tier(k) && stands(&scene.faces[k].outline));
+    let trunk_face = (0..scene.faces.len()).find(|k| !is_tier(k) && stands(&scene.faces[*k].outline));
     let lines: Vec<_> = scene.lines.iter().filter(|l| stands(&l.points)).collect();
     if trunk_face.is_none() && lines.is_empty() {
         return None;
@@ -106,6 +113,15 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         likelihood: CONIFER.likelihood,
         word: None,
     })
+}
+
+/// The row of the lowest face, if it is much narrower than the widest: tiers widen downwards, so that is the trunk.
+fn trunk_among(faces: &[Face]) -> Option<usize> {
+    let width = |f: &Face| bounds(&f.outline).map_or(0.0, |(low, high)| high.x - low.x);
+    let lowest =
+        (0..faces.len()).min_by(|&a, &b| faces[a].shape.middle.y.total_cmp(&faces[b].shape.middle.y))?;
+    let widest = faces.iter().map(width).fold(0.0, f64::max);
+    (width(&faces[lowest]) < CONIFER.trunk_wide * widest).then_some(lowest)
 }
 
 /// Whether an outline is the crown of a conifer.

@@ -1,55 +1,58 @@
-//! A flower seen from the side: petals that rise from one base like a fan, with their tips above (tulip, lotus, crocus).
+//! A flower in profile: petals that rise from one base like a fan, with their tips above (tulip, lotus, crocus).
 
 use geom::convex_hull;
 use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{Axis, LIMITS, Part, Proposal, Scene};
+use super::{Axis, Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
-/// What a flower from the side must have. Shares of the height of the head.
+/// Requirements of a flower in profile. Shares of the height of the head.
 struct CupLimits {
-    /// The stem is attached below this height, in the middle of the head (a share of its width to either side).
+    /// The stem is attached below this height,
     base: f64,
+    /// in the middle of the head: within this share of its width to either side.
     middle: f64,
-    /// Without a stem it is at this height at least so wide, a share of its width: a crown stands on a trunk.
+    /// At the first height a head without a stem has at least the second share of its width: a crown stands on a
+    /// trunk.
     foot: [f64; 2],
     /// Its tips lie above this height.
     tips: f64,
     /// Its notches lie above this height.
     notches: f64,
-    /// So many petals: faces with a tip each, or lobes of one face.
+    /// Number of petals: faces with a tip each, or lobes of one face.
     petals: core::ops::RangeInclusive<usize>,
-    /// A petal is at least so convex (area over that of the hull),
+    /// Least convexity of a petal (area over that of the hull),
     convex: f64,
-    /// so many are seen down to their base,
+    /// at least this many are visible down to their base,
     in_front: usize,
-    /// and what is led on behind others is at most so many times as large as what is seen.
+    /// and the area of a petal completed behind others is at most this factor of its visible part.
     hidden: f64,
-    /// ... of one that stands behind the others.
+    /// That factor for a petal that stands behind the others.
     behind: f64,
-    /// The largest petal is at most so many times as large as the smallest.
+    /// Greatest area of the largest petal relative to the smallest.
     alike: f64,
     /// A line that goes farther than this from the head leads out of it.
     leads_out: f64,
-    /// What is seen of a petal comes nearer to its base than this share of its length.
+    /// The visible part of a petal comes nearer to its base than this share of its length.
     seen: f64,
     /// Petals cover more than this share of the head; the rest are leaves that float or bracts.
     most: f64,
     /// The halves of the head left and right of its base differ by less than this share of it.
     lopsided: f64,
-    /// One face has no corner in its lower half but within this of its base,
+    /// A single face has no corner in its lower half except within this distance of its base,
     low_corner: f64,
-    /// and is at least so convex, with at most so many notches.
+    /// and has at least this convexity,
     whole_convex: f64,
+    /// and at most this many notches.
     most_notches: usize,
-    /// The head is at least so high and so wide, shares of the drawing's diagonal.
+    /// Least height and width of the head, as shares of the drawing's diagonal.
     size: f64,
-    /// What is neither petal nor leaf covers less than this share of all that is enclosed.
+    /// Faces that are neither petal nor leaf cover less than this share of the enclosed area.
     other: f64,
-    /// See [`Proposal::likelihood`], where two petals are seen down to their base, and where one is.
+    /// See [`Proposal::likelihood`], if two petals are visible down to their base, and if one is.
     likelihood: [f64; 2],
 }
 
@@ -88,20 +91,19 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let at_base = |p: DVec2| {
         p.y < low.y + CUP.base * size.y && (p.x - low.midpoint(high).x).abs() < CUP.middle * size.x
     };
-    // Nothing leads out of it above its base, and one stem at most below: a trunk has two sides.
+    // No line leads out of it above its base, and at most one stem below: a trunk has two sides.
     let off_head = |p: DVec2| {
         if geom::contains(&head.outline, p) { 0.0 } else { nearest_on_ring(&head.outline, p).1 }
     };
     let leads_out = |line: &[DVec2]| line.iter().map(|&p| off_head(p)).fold(0.0, f64::max) > CUP.leads_out;
     let out: Vec<&Vec<DVec2>> = scene.axes.iter().map(|a| &a.points).filter(|l| leads_out(l)).collect();
-    let from_head =
-        out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < LIMITS.touch).count();
+    let from_head = out.iter().filter(|l| off_head(l[0]).min(off_head(l[l.len() - 1])) < scene.touch).count();
     if from_head > 1 || out.iter().any(|l| l.iter().any(|p| p.y > low.y + CUP.tips * size.y)) {
         return None;
     }
-    let goes_below = |axis: &Axis| axis.points.iter().any(|q| q.y < low.y - LIMITS.touch);
+    let goes_below = |axis: &Axis| axis.points.iter().any(|q| q.y < low.y - scene.touch);
     let is_stem_end = |p: DVec2| {
-        nearest_on_ring(&head.outline, p).1 < LIMITS.touch
+        nearest_on_ring(&head.outline, p).1 < scene.touch
             || scene.axes.iter().any(|a| goes_below(a) && a.points.contains(&p))
     };
     let stem = scene.axes.iter().flat_map(Axis::ends).find(|&p| at_base(p) && is_stem_end(p));
@@ -112,8 +114,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
             nearest_on_ring(&head.outline, middle).0
         }
     };
-    let foot = crate::contour::runs_at(&head.outline, low.y + CUP.foot[0] * size.y);
-    if stem.is_none() && foot.iter().map(|(a, b)| b - a).sum::<f64>() < CUP.foot[1] * size.x {
+    let foot = crate::contour::width_at(&head.outline, low.y + CUP.foot[0] * size.y);
+    if stem.is_none() && foot < CUP.foot[1] * size.x {
         return None;
     }
     let side = |sign: f64| {
@@ -149,7 +151,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
 
 type Petal = (Vec<DVec2>, Vec<usize>);
 
-/// Faces that rise from the base, each with a tip, led on to the base where they are hidden; and how many are seen down to it.
+/// Returns faces that rise from the base, each with a tip, extended to the base if they are hidden; and the number of
+/// those visible down to it.
 fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal>, usize)> {
     let tip = |f: &Face| f.shape.tip_from(base);
     let rises = |f: &&&Face| tip(f).is_some_and(|t| t.y > low + CUP.notches * height);
@@ -161,7 +164,7 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
         let length = tip(f).map_or(0.0, |t| t.distance(base));
         nearest_on_ring(&f.outline, base).1 < CUP.seen * length
     };
-    // Of a petal behind others the tip is enough.
+    // For a petal behind others the tip is enough.
     let in_front: Vec<&&&Face> = petals.iter().filter(|f| is_seen(f)).collect();
     let sound = |f: &&&&Face| f.shape.convexity > CUP.convex && CUP.alike * f.shape.area > largest;
     if !CUP.petals.contains(&petals.len())
@@ -172,7 +175,7 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
         return None;
     }
     let mean = petals.iter().filter_map(|f| tip(f)).sum::<DVec2>() / petals.len() as f64;
-    // They rise: petals all round a middle are seen from the front.
+    // They rise: petals all round a middle belong to a flower seen from the front.
     if mean.y < low + CUP.tips * height {
         return None;
     }
@@ -186,7 +189,7 @@ fn fan(faces: &[&Face], base: DVec2, low: f64, height: f64) -> Option<(Vec<Petal
     Some((petals.iter().map(led).collect::<Option<_>>()?, in_front.len()))
 }
 
-/// One face whose upper side has tips and notches: cut from the notches to the base.
+/// Cuts one face whose upper side has tips and notches into lobes, from the notches to the base.
 fn lobes(head: &Face, base: DVec2, low: f64, height: f64) -> Option<Vec<Petal>> {
     let is_high = |p: &&DVec2, least: f64| p.y > low + least * height;
     let tips = head.shape.corners.iter().filter(|p| is_high(p, CUP.tips)).count();

@@ -1,40 +1,61 @@
-//! A flower whose petals cannot be told apart (rose, peony, poppy): one closed head on a stem that bears leaves below it.
+//! A flower in one closed outline on a stem: petals that cannot be separated (rose, peony, poppy), where the stem bears
+//! leaves, or petals that are the lobes of the outline.
 
+use geom::polyline_length;
 use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{Axis, LIMITS, Part, Proposal, Scene};
+use super::{Axis, Part, Proposal, Scene};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
+use crate::corolla::{dips, turned_to_nearest};
 
-/// What a flower head must have.
+/// Requirements of a flower head.
 struct HeadLimits {
-    /// It is at least so convex,
+    /// Least convexity,
     convex: f64,
-    /// and at least so round (width over length).
+    /// and least roundness (width over length).
     round: f64,
-    /// It is at least so high and wide, ink units.
+    /// Least convexity of a head of lobes.
+    lobed_convex: f64,
+    /// Number of lobes that are petals.
+    lobes: core::ops::RangeInclusive<usize>,
+    /// A notch between two lobes is at least this deep, as a share of the head's reach.
+    notch: f64,
+    /// The shortest lobe is at least this share of the longest.
+    lobes_alike: f64,
+    /// The disc lies within this share of the head's reach from its middle.
+    disc: f64,
+    /// Least height and width, ink units.
     size: f64,
     /// Its stem goes on below it by more than this share of its height.
     stem: f64,
+    /// A stem that stands in a pot goes on below it by more than this share of its height.
+    potted_stem: f64,
     /// The stem is attached below this height, a share of the head's.
     base: f64,
     /// Petals within it have more than the first and less than the second share of its area.
     petal: [f64; 2],
     /// The largest leaf is smaller than this share of the head: an ear ends in a grain like the others.
     leaf: f64,
-    /// What is neither head nor leaf covers less than this share of all that is enclosed.
+    /// Faces that are neither head nor leaf cover less than this share of the enclosed area.
     other: f64,
-    /// See [`Proposal::likelihood`], of a head with lines or faces in it, and of an empty one.
+    /// See [`Proposal::likelihood`], for a head with lines or faces in it, and for an empty one.
     likelihood: [f64; 2],
 }
 
 const HEAD: HeadLimits = HeadLimits {
     convex: 0.85,
     round: 0.6,
+    lobed_convex: 0.6,
+    lobes: 4..=12,
+    notch: 0.045,
+    lobes_alike: 0.5,
+    disc: 0.25,
     size: 0.2,
     stem: 0.3,
+    potted_stem: 0.1,
     base: 0.35,
     petal: [0.04, 0.9],
     leaf: 0.6,
@@ -50,17 +71,17 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     members.extend(inner);
     let (low, high) = geom::bounds(&head.outline)?;
     let size = high - low;
-    if head.shape.convexity < HEAD.convex
-        || head.shape.slenderness < HEAD.round
-        || size.min_element() < HEAD.size
-    {
+    let lobes = lobes(scene, &members, &head);
+    let least = if lobes.is_some() { HEAD.lobed_convex } else { HEAD.convex };
+    if head.shape.convexity < least || head.shape.slenderness < HEAD.round || size.min_element() < HEAD.size {
         return None;
     }
-    let goes_below = |axis: &&Axis| axis.points.iter().any(|p| p.y < low.y - HEAD.stem * size.y);
+    let stem = if scene.pot.is_some() { HEAD.potted_stem } else { HEAD.stem };
+    let goes_below = |axis: &&Axis| axis.points.iter().any(|p| p.y < low.y - stem * size.y);
     // A trunk has two sides.
     let below: Vec<&Axis> = scene.axes.iter().filter(goes_below).collect();
     let [stem] = below[..] else { return None };
-    let on_head = |p: DVec2| Some(nearest_on_ring(&head.outline, p)).filter(|(_, d)| *d < LIMITS.touch);
+    let on_head = |p: DVec2| Some(nearest_on_ring(&head.outline, p)).filter(|(_, d)| *d < scene.touch);
     let (base, _) = stem.ends().into_iter().find_map(on_head)?;
     if base.y > low.y + HEAD.base * size.y {
         return None;
@@ -68,20 +89,54 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     let beside = || (0..scene.faces.len()).filter(|k| !members.contains(k));
     let leaves = scene.leaves_among(beside(), HEAD.other)?;
     let largest = beside().map(|k| scene.faces[k].shape.area).fold(0.0, f64::max);
-    if leaves.is_empty() || largest > HEAD.leaf * head.shape.area {
+    if leaves.is_empty() && lobes.is_none() || largest > HEAD.leaf * head.shape.area {
         return None;
     }
-    let petals = petals(scene, &members, &head, base);
-    let heads = vec![(0..petals.len()).collect()];
-    let is_marked = petals.len() > 1 || scene.marks.iter().any(|(face, _)| members.contains(face));
-    let mut parts = petals;
+    let (mut parts, is_marked) = match lobes {
+        Some(lobes) => (lobes, true),
+        None => {
+            let petals = petals(scene, &members, &head, base);
+            let is_marked = petals.len() > 1 || scene.marks.iter().any(|(face, _)| members.contains(face));
+            (petals, is_marked)
+        }
+    };
+    let heads = vec![(0..parts.len()).collect()];
     parts.extend(leaves);
     parts.extend(scene.axes.iter().map(Part::of_axis));
     let likelihood = HEAD.likelihood[usize::from(!is_marked)];
     Some(Proposal { kind: Kind::Flower, parts, heads, likelihood, word: None })
 }
 
-/// The head as a whole, and before it the petals that are seen in it.
+/// Cuts a head into lobes round its disc, if its outline has alike ones all round: petals.
+fn lobes(scene: &Scene, members: &[usize], head: &Face) -> Option<Vec<Part>> {
+    let middle = head.shape.middle;
+    let outline = turned_to_nearest(&head.outline, |p| p.distance(middle));
+    let away: Vec<f64> = outline.iter().map(|p| p.distance(middle)).collect();
+    let reach = away.iter().copied().fold(0.0, f64::max);
+    let cuts = dips(&away, HEAD.notch * reach);
+    let arcs: Vec<&[DVec2]> = cuts.windows(2).map(|w| &outline[w[0]..=w[1]]).collect();
+    let lengths = || arcs.iter().map(|arc| polyline_length(arc));
+    let (least, most) = lengths().fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+    if !HEAD.lobes.contains(&arcs.len()) || least < HEAD.lobes_alike * most {
+        return None;
+    }
+    let is_central = |p: DVec2| p.distance(middle) < HEAD.disc * reach;
+    let inner =
+        scene.faces.iter().enumerate().filter(|(k, f)| members.contains(k) && f.shape.area < head.shape.area);
+    let discs = inner.map(|(_, f)| f.shape.middle).filter(|p| is_central(*p));
+    let marks = scene.marks.iter().filter(|(face, _)| members.contains(face)).map(|(_, run)| run);
+    let marks = marks.filter(|run| run.points.iter().all(|p| is_central(*p))).map(|run| run.points[0]);
+    let has_disc = discs.chain(marks).next().is_some();
+    let petal = |arc: &[DVec2]| Part {
+        points: arc.iter().copied().chain([middle, arc[0]]).collect(),
+        class: StrokeClass::Blade,
+        root: Some(middle),
+        strokes: head.strokes.clone(),
+    };
+    has_disc.then(|| arcs.iter().map(|arc| petal(arc)).collect())
+}
+
+/// Returns the head as a whole, and in front of it the petals that are visible in it.
 fn petals(scene: &Scene, members: &[usize], head: &Face, base: DVec2) -> Vec<Part> {
     let [least, most] = HEAD.petal.map(|share| share * head.shape.area);
     let is_petal = |f: &&Face| f.shape.area > least && f.shape.area < most;

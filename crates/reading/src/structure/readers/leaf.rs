@@ -9,9 +9,9 @@ use super::{LIMITS, Part, Proposal, Scene, is_leaf_from, length_of};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
-/// What a leaf must have.
+/// Requirements of a leaf.
 struct LeafLimits {
-    /// It covers more than this share of all that is enclosed.
+    /// It covers more than this share of the enclosed area.
     whole: f64,
     /// Its midrib is at least this share of its length,
     rib: f64,
@@ -19,11 +19,11 @@ struct LeafLimits {
     rib_along: f64,
     /// and begins this near to its base, a share of its length.
     rib_base: f64,
-    /// Its petiole is at most this share of its length, and all lines outside together.
+    /// Its petiole, and all lines outside together, are at most this share of its length.
     petiole: f64,
     /// Without a midrib it is more slender than this.
     without_rib: f64,
-    /// See [`Proposal::likelihood`], of a leaf with a midrib, and of one with a petiole alone.
+    /// See [`Proposal::likelihood`], for a leaf with a midrib, and for one with a petiole alone.
     likelihood: [f64; 2],
 }
 
@@ -81,7 +81,7 @@ fn reach(run: &Run) -> f64 {
     polyline_length(&run.points)
 }
 
-/// Where a line within a leaf begins, if it is the midrib: at the margin, from where it leads to the tip.
+/// Returns where a line within a leaf begins, if it is the midrib: at the margin, from where it leads to the tip.
 fn rib_base(face: &Face, mark: &Run) -> Option<DVec2> {
     let (a, b) = (mark.points[0], mark.points[mark.points.len() - 1]);
     let off = |p: DVec2| nearest_on_ring(&face.outline, p).1;

@@ -1,17 +1,22 @@
-//! Readers: each says of a drawing what plant it is by its faces and lines, or nothing.
+//! Readers: each recognises one arrangement of faces and lines as a plant, or returns nothing.
 //!
-//! `Scene -> Proposal`: the parts of the plant, cut from the strokes as they are needed. A reader never looks at the kind that
-//! the drawing resembles; it says what it sees only where the arrangement leaves little doubt.
+//! `Scene -> Proposal`: the parts of the plant, cut from the strokes as needed. A reader never looks at the kind that
+//! the drawing resembles; it proposes a plant only if the arrangement leaves little doubt.
 
 mod bloom;
+mod bunch;
+mod cactus;
 mod clover;
 mod conifer;
 mod cup;
+mod fruit;
 mod head;
 mod leaf;
 mod lobed;
+mod loose;
 mod mushroom;
 mod palm;
+mod pot;
 mod sprig;
 mod taproot;
 #[cfg(test)]
@@ -34,43 +39,47 @@ pub const ARRANGEMENT: &str = "arrangement";
 pub(crate) struct Part {
     pub(crate) points: Vec<DVec2>,
     pub(crate) class: StrokeClass,
-    /// Where it is attached, if that is known.
+    /// Its attachment, if that is known.
     pub(crate) root: Option<DVec2>,
-    /// Rows of the strokes that it is made of, the first most of it.
+    /// Rows of the strokes that it is made of, the one with the largest part first.
     pub(crate) strokes: Vec<usize>,
 }
 
-/// A plant that a reader sees.
+/// A plant that a reader recognised.
 #[derive(Clone, Debug)]
 pub(crate) struct Proposal {
     pub(crate) kind: Kind,
     pub(crate) parts: Vec<Part>,
     /// Flowers: rows of the parts that are petals of one.
     pub(crate) heads: Vec<Vec<usize>>,
-    /// How many times as often this arrangement is found in drawings of the kind as in others (a likelihood ratio): the readers'
-    /// judgement, to be weighed with how likely the kind is otherwise.
+    /// How much more often this arrangement is found in drawings of the kind than in others (a likelihood ratio): the
+    /// readers' judgement, to be combined with how likely the kind is otherwise.
     pub(crate) likelihood: f64,
-    /// What a plant of the kind is called that has this arrangement, if only one has: a word of [`crate::glance::WORDS`].
+    /// The name of a plant of the kind with this arrangement, if only one has it: a word of [`crate::glance::WORDS`].
     pub(crate) word: Option<&'static str>,
 }
 
-/// What touches and what is small, for all readers. Lengths are in ink units (the drawing's diagonal is 1).
+/// Limits of touching and of small faces, for all readers. Lengths are in ink units (the drawing's diagonal is 1).
 pub(crate) struct ReaderLimits {
-    /// A line that ends nearer than this to an outline touches it.
+    /// A line that ends nearer than this to an outline touches it, whatever its pen.
     pub(crate) touch: f64,
-    /// Faces nearer to one another than this hang together.
+    /// Greatest width of a pen within which a line touches an outline.
+    pub(crate) widest_pen: f64,
+    /// Faces nearer to one another than this are connected.
     pub(crate) adjoining: f64,
-    /// A drawing of more strokes is no icon, and no single leaf.
+    /// Most strokes of an icon, or of a single leaf.
     pub(crate) most_strokes: usize,
     /// Faces below this share of the area of all are dirt, or shade.
     pub(crate) speck: f64,
-    /// A leaf is at least so convex (area over that of the hull), and between so slender and so wide (width over length).
+    /// Least convexity of a leaf (area over that of the hull).
     pub(crate) leaf_convex: f64,
+    /// Least and greatest slenderness of a leaf (width over length).
     pub(crate) leaf_slender: [f64; 2],
 }
 
 pub(crate) const LIMITS: ReaderLimits = ReaderLimits {
     touch: 0.035,
+    widest_pen: 0.09,
     adjoining: 0.0105,
     most_strokes: 80,
     speck: 0.01,
@@ -86,13 +95,19 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Where it begins and where it ends.
+    /// Returns its start and its end.
     pub(crate) fn ends(&self) -> [DVec2; 2] {
         [self.points[0], self.points[self.points.len() - 1]]
     }
+
+    /// Returns its lower end and its upper end; the end of a level line counts as the lower one.
+    pub(crate) fn foot_and_top(&self) -> [DVec2; 2] {
+        let [a, b] = self.ends();
+        if a.y < b.y { [a, b] } else { [b, a] }
+    }
 }
 
-/// What the readers look at.
+/// The faces and lines that readers look at.
 pub(crate) struct Scene {
     picture: Picture,
     /// Faces that are no specks.
@@ -101,17 +116,24 @@ pub(crate) struct Scene {
     pub(crate) lines: Vec<Run>,
     /// Lines within a face: its row among `faces`.
     pub(crate) marks: Vec<(usize, Run)>,
-    /// Lines that may be stems: strokes that lead from one end to the other without a detour and run outside of the faces for a
-    /// part of their way, whole; of other strokes what runs outside.
+    /// Lines that may be stems: whole strokes that lead from one end to the other without a detour and run outside the
+    /// faces for part of their length; and the parts of other strokes that run outside.
     pub(crate) axes: Vec<Axis>,
+    /// The pot in which a stem stands; it is none of the faces.
+    pub(crate) pot: Option<Part>,
+    /// The ground on which a line ends, drawn as a flat line.
+    pub(crate) ground: Option<Axis>,
+    /// A line that ends nearer than this to an outline touches it: [`ReaderLimits::touch`], or the width of the pen.
+    pub(crate) touch: f64,
     pub(crate) low: DVec2,
     pub(crate) high: DVec2,
 }
 
 impl Scene {
-    /// `None` for drawings of too many strokes or with contours, and where nothing is enclosed.
+    /// Finds the faces and lines; `None` for drawings of too many strokes or with contours, and if nothing is
+    /// enclosed.
     pub(crate) fn new(ink: &Ink) -> Option<Self> {
-        // Contours that are to be filled say themselves what they are.
+        // Contours that are to be filled have a class already.
         let is_part = |s: &ink::InkStroke| s.mode == StrokeMode::Parts;
         if ink.strokes.is_empty()
             || ink.strokes.len() > LIMITS.most_strokes
@@ -140,48 +162,70 @@ impl Scene {
                 Place::Between => {}
             }
         }
-        let axes = axes(ink, &lines);
-        (!kept.is_empty()).then_some(Self { picture, faces: kept, lines, marks, axes, low, high })
+        let touch = LIMITS.touch.max(ink.pen_width().min(LIMITS.widest_pen));
+        let mut axes = axes(ink, &lines);
+        let ground = ground_row(&axes, low, touch).map(|row| axes.remove(row));
+        if let Some(ground) = &ground {
+            lines.retain(|line| line.stroke != ground.stroke);
+        }
+        let mut scene =
+            Self { picture, faces: kept, lines, marks, axes, pot: None, ground, touch, low, high };
+        if let Some((pot, rows)) = pot::find(&scene) {
+            scene.pot = Some(pot);
+            scene.remove_faces(&rows);
+        }
+        (!scene.faces.is_empty()).then_some(scene)
     }
 
-    /// The end of a line that touches a face, if one does.
+    /// Removes faces and the marks in them. `rows`: in ascending order.
+    fn remove_faces(&mut self, rows: &[usize]) {
+        self.marks.retain(|(face, _)| !rows.contains(face));
+        for (face, _) in &mut self.marks {
+            *face -= rows.iter().filter(|row| **row < *face).count();
+        }
+        for &row in rows.iter().rev() {
+            self.faces.remove(row);
+        }
+    }
+
+    /// Returns the end of a line that touches a face, if one does.
     pub(crate) fn touching_end(&self, line: &Run, face: usize) -> Option<DVec2> {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         let off = |p: DVec2| nearest_on_ring(&self.faces[face].outline, p).1;
-        ends.into_iter().filter(|&p| off(p) < LIMITS.touch).min_by(|a, b| off(*a).total_cmp(&off(*b)))
+        ends.into_iter().filter(|&p| off(p) < self.touch).min_by(|a, b| off(*a).total_cmp(&off(*b)))
     }
 
-    /// The area of all faces together.
+    /// Returns the area of all faces together.
     pub(crate) fn enclosed(&self) -> f64 {
         self.faces.iter().map(|f| f.shape.area).sum()
     }
 
-    /// The row of the face that covers more than a share of all that is enclosed. `share`: at least 0.5, so that there is one at
-    /// most.
+    /// Returns the row of the face that covers more than a share of the enclosed area. `share`: at least 0.5, so that
+    /// there is at most one.
     pub(crate) fn main_face(&self, share: f64) -> Option<usize> {
         let least = share * self.enclosed();
         self.faces.iter().position(|f| f.shape.area > least)
     }
 
-    /// Several faces as one, if they hang together.
+    /// Unites several faces, if they are connected.
     pub(crate) fn union(&self, faces: &[&Face]) -> Option<Face> {
         self.picture.union(faces)
     }
 
-    /// The corner of a leaf that lies on a stem, the one nearest to the foot of the stem: the side of a leaf may touch it, too, and
-    /// the tip of a grain in an ear.
+    /// Returns the corner of a leaf that lies on a stem, the one nearest to the foot of the stem: the side of a leaf
+    /// may touch it, too, and so may the tip of a grain in an ear.
     fn corner_on_stem(&self, face: &Face) -> Option<DVec2> {
         let corner_on = |axis: &Axis| {
             let foot = axis.ends().into_iter().min_by(|p, q| p.y.total_cmp(&q.y))?;
-            let is_on =
-                |p: &&DVec2| distance_to_polyline(&axis.points, **p).is_some_and(|d| d < LIMITS.touch);
+            let is_on = |p: &&DVec2| distance_to_polyline(&axis.points, **p).is_some_and(|d| d < self.touch);
             let corners = face.shape.corners.iter().filter(is_on);
             corners.min_by(|a, b| a.distance(foot).total_cmp(&b.distance(foot))).copied()
         };
         self.axes.iter().find_map(corner_on)
     }
 
-    /// Where a leaf is attached: its point nearest to a stem's end, or to a stem that passes it, or to the end of its vein.
+    /// Returns the attachment of a leaf: its point nearest to a stem's end, or to a stem that passes it, or to the end
+    /// of its vein.
     pub(crate) fn root_of(&self, face: &Face) -> Option<DVec2> {
         let nearest = |p: DVec2| nearest_on_ring(&face.outline, p);
         let end = self
@@ -190,14 +234,14 @@ impl Scene {
             .flat_map(Axis::ends)
             .map(nearest)
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|(_, d)| *d < LIMITS.touch);
+            .filter(|(_, d)| *d < self.touch);
         let along = || {
             let off = |p: DVec2| {
                 let lines = self.axes.iter().filter_map(|a| distance_to_polyline(&a.points, p));
                 lines.fold(f64::INFINITY, f64::min)
             };
             let nearest = face.outline.iter().map(|&p| (p, off(p))).min_by(|a, b| a.1.total_cmp(&b.1))?;
-            (nearest.1 < LIMITS.touch).then_some(nearest)
+            (nearest.1 < self.touch).then_some(nearest)
         };
         let marked = || {
             let row = self.faces.iter().position(|f| core::ptr::eq(f, face))?;
@@ -207,7 +251,8 @@ impl Scene {
         self.corner_on_stem(face).or_else(|| end.or_else(along).or_else(marked).map(|(p, _)| p))
     }
 
-    /// Faces that are leaves on stems, as parts; `None` where others among them cover more than a share of all that is enclosed.
+    /// Returns faces that are leaves on stems, as parts; `None` if others among them cover more than a share of the
+    /// enclosed area.
     pub(crate) fn leaves_among(
         &self,
         rows: impl Iterator<Item = usize>,
@@ -223,14 +268,11 @@ impl Scene {
         (other <= most_other * self.enclosed()).then_some(leaves)
     }
 
-    /// The highest face and all that hang together with it: their rows, and all of them as one.
+    /// Returns the rows of the highest face and all connected faces, and all of them as one.
     pub(crate) fn highest_group(&self) -> Option<(Vec<usize>, Face)> {
         let top = |f: &Face| f.outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
         let first =
             (0..self.faces.len()).max_by(|&a, &b| top(&self.faces[a]).total_cmp(&top(&self.faces[b])))?;
-        let adjoins = |a: &Face, b: &Face| {
-            a.outline.iter().any(|p| nearest_on_ring(&b.outline, *p).1 < LIMITS.adjoining)
-        };
         let mut members = vec![first];
         let is_next =
             |members: &[usize], k: usize| members.iter().any(|&m| adjoins(&self.faces[m], &self.faces[k]));
@@ -242,13 +284,13 @@ impl Scene {
         Some((members, head))
     }
 
-    /// Lines within a face.
+    /// Returns the lines within a face.
     pub(crate) fn marks_of(&self, face: usize) -> impl Iterator<Item = &Run> {
         self.marks.iter().filter(move |(f, _)| *f == face).map(|(_, run)| run)
     }
 }
 
-/// See [`Scene::axes`].
+/// Finds the lines described at [`Scene::axes`].
 fn axes(ink: &Ink, lines: &[Run]) -> Vec<Axis> {
     let is_straight = |stroke: usize| {
         let s = &ink.strokes[stroke];
@@ -273,6 +315,40 @@ fn axes(ink: &Ink, lines: &[Run]) -> Vec<Axis> {
     found
 }
 
+/// The ground is at least this many times as wide as high.
+const GROUND_FLAT: f64 = 2.0;
+/// A stem ends on the ground at least this share of its width away from its ends.
+const GROUND_INNER: f64 = 0.12;
+
+/// Finds the row of the line that is the ground: flat, or a low mound, at the foot of the drawing, and a stem ends on
+/// it from above.
+fn ground_row(axes: &[Axis], low: DVec2, touch: f64) -> Option<usize> {
+    axes.iter().position(|axis| {
+        let Some((lo, hi)) = bounds(&axis.points) else { return false };
+        let size = hi - lo;
+        let inner = GROUND_INNER * size.x;
+        let stands = |stem: &Axis| {
+            let [foot, _] = stem.foot_and_top();
+            foot.x > lo.x + inner
+                && foot.x < hi.x - inner
+                && foot.y > hi.y - touch
+                && distance_to_polyline(&axis.points, foot).is_some_and(|d| d < touch)
+        };
+        let others = || axes.iter().filter(|a| a.stroke != axis.stroke);
+        size.x > GROUND_FLAT * size.y && lo.y < low.y + touch && others().any(stands)
+    })
+}
+
+/// Whether two faces have a part of their outlines in common.
+pub(crate) fn adjoins(a: &Face, b: &Face) -> bool {
+    let (Some((low, high)), Some((from, to))) = (bounds(&a.outline), bounds(&b.outline)) else {
+        return false;
+    };
+    // Boxes that lie apart spare the comparison of all points.
+    let is_apart = (low - to).max(from - high).max_element() >= LIMITS.adjoining;
+    !is_apart && a.outline.iter().any(|p| nearest_on_ring(&b.outline, *p).1 < LIMITS.adjoining)
+}
+
 impl Part {
     pub(crate) fn of_axis(axis: &Axis) -> Self {
         let strokes = vec![axis.stroke];
@@ -295,35 +371,89 @@ pub(crate) fn is_leaf_from(face: &Face, root: DVec2) -> bool {
     let shape = &face.shape;
     let far = face.outline.iter().map(|p| p.distance(root)).fold(0.0, f64::max);
     shape.convexity > LIMITS.leaf_convex
+        && !has_straight_side(face)
         && (LIMITS.leaf_slender[0]..LIMITS.leaf_slender[1]).contains(&shape.slenderness)
         && shape.tip_from(root).is_some_and(|tip| tip.distance(root) > TIP * far)
+}
+
+/// A straight side deviates from its chord by at most this share of it.
+const SIDE_STRAIGHT: f64 = 0.025;
+/// A straight side is at least this share of the length of its face.
+const SIDE_LONG: f64 = 0.8;
+
+/// Whether an outline with two corners is straight from one to the other, as that of a slice is and no leaf's.
+pub(crate) fn has_straight_side(face: &Face) -> bool {
+    let [a, b] = face.shape.corners[..] else { return false };
+    let chord = b - a;
+    let across = chord.normalize_or_zero().perp();
+    let of_side = |sign: f64| face.outline.iter().map(|p| sign * (*p - a).dot(across)).fold(0.0, f64::max);
+    let length = chord.length();
+    length > SIDE_LONG * face.shape.length() && of_side(1.0).min(of_side(-1.0)) < SIDE_STRAIGHT * length
 }
 
 /// The tip of a leaf lies farther from its root than this share of the farthest point.
 const TIP: f64 = 0.88;
 
-/// What the readers propose for a drawing, the surest first. What one sees may be part of what another looks for: the one that
-/// needs more rules the other out.
+/// Returns the proposals of the readers for a drawing, the surest first. One reader's plant may be part of another's:
+/// the one that requires more excludes the other.
 pub(crate) fn propose(ink: &Ink) -> Vec<Proposal> {
     let Some(scene) = Scene::new(ink) else { return Vec::new() };
     let clover = clover::propose(&scene);
     let lobed = lobed::propose(&scene);
-    let bloom = if clover.is_none() { bloom::propose(&scene) } else { None };
-    // Petals all round a disc are seen from the front.
+    let bunch = bunch::propose(&scene);
+    let may_be_bloom = clover.is_none() && bunch.is_none();
+    let bloom = if may_be_bloom { bloom::propose(&scene) } else { None };
+    // Petals all round a disc belong to a flower seen from the front.
     let is_from_front = bloom.as_ref().is_some_and(|b| b.likelihood >= bloom::ROUND_A_DISC);
-    let cup = if clover.is_none() && !is_from_front { cup::propose(&scene) } else { None };
+    // Petals seen from the side have no midribs.
+    let loose = loose::propose(&scene);
+    let may_be_cup = clover.is_none() && !is_from_front && loose.is_none();
+    let cup = if may_be_cup { cup::propose(&scene) } else { None };
     // Lobes that spread from the foot are fingers, not tiers.
     let conifer = if lobed.is_none() { conifer::propose(&scene) } else { None };
     let head = if cup.is_none() && !is_from_front { head::propose(&scene) } else { None };
-    let others = [leaf::propose, sprig::propose, palm::propose, taproot::propose, mushroom::propose]
-        .map(|read| read(&scene));
-    let mut found: Vec<Proposal> =
-        [clover, lobed, bloom, cup, head, conifer].into_iter().chain(others).flatten().collect();
+    let others = [
+        cactus::propose,
+        fruit::propose,
+        leaf::propose,
+        sprig::propose,
+        palm::propose,
+        taproot::propose,
+        mushroom::propose,
+    ]
+    .map(|read| read(&scene));
+    let mut found: Vec<Proposal> = [clover, lobed, loose, bloom, bunch, cup, head, conifer]
+        .into_iter()
+        .chain(others)
+        .flatten()
+        .collect();
+    if let Some(ground) = &scene.ground {
+        let part = Part { class: StrokeClass::Ground, ..Part::of_axis(ground) };
+        found.iter_mut().for_each(|p| p.parts.push(part.clone()));
+    }
+    if let Some(pot) = &scene.pot {
+        for proposal in &mut found {
+            proposal.kind = Kind::HousePlant;
+            proposal.parts.push(pot.clone());
+        }
+    }
     base::sort_by(&mut found, |a, b| b.likelihood.total_cmp(&a.likelihood));
     found
 }
 
-/// The widest angle between neighbouring directions, radians.
+/// Turns an outline so that `up` points up, about a place that becomes the origin.
+pub(crate) fn upright(outline: &[DVec2], origin: DVec2, up: DVec2) -> Vec<DVec2> {
+    outline.iter().map(|&p| DVec2::new((p - origin).perp_dot(up), (p - origin).dot(up))).collect()
+}
+
+/// Returns the greatest width, and the share of the height at which it is, of those measured at the middles of `levels`
+/// levels.
+pub(crate) fn widest(levels: usize, width: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
+    let shares = (0..levels).map(|level| (level as f64 + 0.5) / levels as f64);
+    shares.map(|share| (width(share), share)).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Returns the widest angle between neighbouring directions, radians.
 pub(crate) fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
     let mut angles: Vec<f64> = ways.map(|d| base::ops::atan2(d.y, d.x)).collect();
     base::sort_by(&mut angles, f64::total_cmp);
@@ -332,7 +462,7 @@ pub(crate) fn widest_gap(ways: impl Iterator<Item = DVec2>) -> f64 {
     angles.windows(2).map(|w| w[1] - w[0]).fold(seam, f64::max)
 }
 
-/// How long all these lines are.
+/// Returns the length of all these lines.
 pub(crate) fn length_of<'a>(lines: impl Iterator<Item = &'a Run>) -> f64 {
     lines.map(|l| polyline_length(&l.points)).sum()
 }

@@ -8,12 +8,13 @@ use super::{Axis, LIMITS, Part, Proposal, Scene, widest_gap};
 use crate::Kind;
 use crate::blade::{LENS, lens, nearest_on_ring};
 
-/// What a palm must have. Shares of the height of the drawing where nothing else is said.
+/// Requirements of a palm. Shares of the height of the drawing, if not stated otherwise.
 struct PalmLimits {
-    /// How many fronds at least.
+    /// Fewest fronds.
     fronds: usize,
-    /// A trunk is at least so high, and begins below this height.
+    /// Least height of a trunk.
     high: f64,
+    /// A trunk begins below this height.
     foot: f64,
     /// A trunk that is a face is more slender than this (width over length).
     slender: f64,
@@ -21,16 +22,19 @@ struct PalmLimits {
     apart: f64,
     /// A frond begins this near to the top of the trunk, a share of its own length.
     near: f64,
-    /// Its farthest point from there is farther than this share of its length: it begins with its end, not with its side.
+    /// Its farthest point from there is farther than this share of its length: it begins with its end, not with its
+    /// side.
     end_on: f64,
-    /// A frond that is a face is more slender than this, and at least so convex.
+    /// A frond that is a face is more slender than this,
     narrow: f64,
+    /// and has at least this convexity.
     convex: f64,
-    /// A frond that is a line bends one way: the hull goes round it within this share of its length and chord.
+    /// A frond that is a line bends in one direction: the outline of its hull equals its length and chord within this
+    /// share.
     one_way: f64,
-    /// Fronds leave no wider angle free than this, radians: half a circle and what the trunk takes.
+    /// Fronds leave no angle wider than this free, radians: half a circle and the part that the trunk takes.
     gap: f64,
-    /// What is neither trunk nor frond covers less than this share of all that is enclosed.
+    /// Faces that are neither trunk nor frond cover less than this share of the enclosed area.
     other: f64,
     /// See [`Proposal::likelihood`].
     likelihood: f64,
@@ -58,13 +62,14 @@ struct Trunk {
     /// Half its width there.
     half_width: f64,
     parts: Vec<Part>,
-    /// Rows of the face and of the axes that it is.
+    /// Row of the face that it is.
     face: Option<usize>,
+    /// Rows of the axes that it is.
     sides: Vec<usize>,
 }
 
 impl Trunk {
-    /// Whether a frond of a length begins at its top, where it begins so far from the middle of that.
+    /// Whether a frond of this length begins at its top; `off`: its distance from the middle of the top.
     fn bears(&self, off: f64, length: f64) -> bool {
         off - self.half_width < (PALM.near * length).max(LIMITS.touch)
     }
@@ -100,7 +105,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     Some(Proposal { kind: Kind::Palm, parts, heads: Vec::new(), likelihood: PALM.likelihood, word: None })
 }
 
-/// A narrow face that stands on the ground.
+/// Finds a trunk: a narrow face that stands on the ground.
 fn trunk_of_face(scene: &Scene) -> Option<Trunk> {
     let height = scene.high.y - scene.low.y;
     let stands = |face: &Face| {
@@ -116,12 +121,11 @@ fn trunk_of_face(scene: &Scene) -> Option<Trunk> {
     Some(Trunk { top, half_width, parts: vec![part], face: Some(face), sides: Vec::new() })
 }
 
-/// Two lines that rise side by side.
+/// Finds a trunk: two lines that rise side by side.
 fn trunk_of_sides(scene: &Scene) -> Option<Trunk> {
     let height = scene.high.y - scene.low.y;
     let upright = |axis: &Axis| {
-        let [a, b] = axis.ends();
-        let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
+        let [foot, top] = axis.foot_and_top();
         let rises = top.y - foot.y > PALM.high * height && foot.y < scene.low.y + PALM.foot * height;
         rises.then_some((foot, top))
     };
@@ -138,7 +142,7 @@ fn trunk_of_sides(scene: &Scene) -> Option<Trunk> {
     Some(Trunk { top: one.midpoint(other), half_width, parts: parts.into(), face: None, sides: vec![a, b] })
 }
 
-/// Where a face begins at the top of the trunk, if it is a frond.
+/// Returns where a face begins at the top of the trunk, if it is a frond.
 fn frond_root(face: &Face, trunk: &Trunk) -> Option<DVec2> {
     let (root, off) = nearest_on_ring(&face.outline, trunk.top);
     let length = face.shape.length();
@@ -150,14 +154,14 @@ fn frond_root(face: &Face, trunk: &Trunk) -> Option<DVec2> {
         .then_some(root)
 }
 
-/// A frond that was drawn as one line, if it begins at the top of the trunk.
+/// Returns a frond that was drawn as one line, if it begins at the top of the trunk.
 fn frond_of_line(axis: &Axis, trunk: &Trunk) -> Option<Part> {
     let mut line = axis.points.clone();
     if axis.ends()[1].distance(trunk.top) < axis.ends()[0].distance(trunk.top) {
         line.reverse();
     }
     let length = geom::polyline_length(&line);
-    // A line that bends one way is as long as its hull goes round, less its chord.
+    // The length of a line that bends in one direction is that of its hull's outline, less its chord.
     let chord = axis.ends()[0].distance(axis.ends()[1]);
     if geom::perimeter(&geom::convex_hull(&line)) < PALM.one_way * (length + chord) {
         return None;

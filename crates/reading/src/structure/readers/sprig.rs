@@ -5,14 +5,14 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{LIMITS, Part, Proposal, Scene, is_leaf_from};
+use super::{Part, Proposal, Scene, is_leaf_from};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 use crate::thresholds::FEWEST_PETALS;
 
-/// What a sprig must have.
+/// Requirements of a sprig.
 struct SprigLimits {
-    /// Leaves cover more than this share of all that is enclosed.
+    /// Leaves cover more than this share of the enclosed area.
     whole: f64,
     /// Leaves have more than this share of the area of the largest.
     alike: f64,
@@ -36,7 +36,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     // A leaf that touches no stem stands on the leaf below it.
     let on_leaf = |face: &Face| {
         let near = leaves.iter().flat_map(|(f, _)| &f.outline).map(|&p| nearest_on_ring(&face.outline, p));
-        near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d < LIMITS.touch).map(|(p, _)| p)
+        near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d < scene.touch).map(|(p, _)| p)
     };
     let free = scene.faces.iter().filter(|f| !leaves.iter().any(|(leaf, _)| core::ptr::eq(*leaf, *f)));
     let upper: Vec<(&Face, DVec2)> = free.filter_map(|face| Some((face, on_leaf(face)?))).collect();

@@ -1,26 +1,26 @@
-//! A root with its leaves (carrot, radish, turnip): a body that tapers away from where lines or leaves stand on it.
+//! A root with its leaves (carrot, radish, turnip): a body that tapers away from the lines or leaves on it.
 
 use glam::DVec2;
 use ink::StrokeClass;
 
 use super::super::faces::Face;
-use super::{LIMITS, Part, Proposal, Scene};
+use super::{LIMITS, Part, Proposal, Scene, upright};
 use crate::Kind;
 use crate::blade::nearest_on_ring;
 
-/// What a root must have.
+/// Requirements of a root.
 struct TaprootLimits {
-    /// Its body covers more than this share of all that is enclosed,
+    /// Its body covers more than this share of the enclosed area,
     whole: f64,
-    /// is at least so convex,
+    /// has at least this convexity,
     convex: f64,
-    /// and at least so slender.
+    /// and is at least this slender.
     slender: f64,
-    /// Near its tip it is narrower than this share of what it is near its leaves.
+    /// Near its tip it is narrower than this share of its width near its leaves.
     taper: f64,
     /// Both places, shares of the way from the leaves to the tip.
     places: [f64; 2],
-    /// So many lines or leaves stand on it at least,
+    /// At least this many lines or leaves stand on it,
     leaves: usize,
     /// within this share of its length of one another.
     together: f64,
@@ -53,7 +53,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         points.iter().filter_map(|&p| on_body(p)).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(p, _)| p)
     };
     let (mut parts, mut feet) = (Vec::new(), Vec::new());
-    // Where the tip is thin, its own outline encloses nothing.
+    // If the tip is thin, its own outline encloses nothing.
     for line in scene.lines.iter().filter(|l| !body.strokes.contains(&l.stroke)) {
         let ends = [line.points[0], line.points[line.points.len() - 1]];
         feet.push(nearest(&ends)?);
@@ -61,7 +61,8 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
     }
     for face in (0..scene.faces.len()).filter(|k| *k != row).map(|k| &scene.faces[k]) {
         let root = nearest(&face.outline)?;
-        feet.push(root);
+        // A tuft in one outline has a notch between each two of its leaves.
+        feet.extend(core::iter::repeat_n(root, face.shape.notches.len() + 1));
         parts.push(Part::of_face(face, StrokeClass::Blade, Some(root)));
     }
     let top = feet.iter().sum::<DVec2>() / feet.len().max(1) as f64;
@@ -76,7 +77,7 @@ pub(super) fn propose(scene: &Scene) -> Option<Proposal> {
         parts,
         heads: Vec::new(),
         likelihood: TAPROOT.likelihood,
-        word: None,
+        word: Some("carrot"),
     })
 }
 
@@ -85,12 +86,9 @@ fn tapers_from(body: &Face, top: DVec2) -> bool {
     let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(top).total_cmp(&b.distance_squared(top));
     let Some(tip) = body.outline.iter().max_by(far).copied() else { return false };
     let along = (tip - top).normalize_or_zero();
-    // From the leaves upright, so that a level of the turned outline is a section across.
-    let turned: Vec<DVec2> =
-        body.outline.iter().map(|&p| DVec2::new((p - top).dot(along.perp()), (p - top).dot(along))).collect();
-    let [wide, narrow] = TAPROOT.places.map(|share| {
-        let runs = crate::contour::runs_at(&turned, share * tip.distance(top));
-        runs.iter().map(|(a, b)| b - a).sum::<f64>()
-    });
+    // Upright from the leaves, a level of the outline is a section across.
+    let turned = upright(&body.outline, top, along);
+    let [wide, narrow] =
+        TAPROOT.places.map(|share| crate::contour::width_at(&turned, share * tip.distance(top)));
     tip.y < top.y - LIMITS.touch && narrow < TAPROOT.taper * wide
 }

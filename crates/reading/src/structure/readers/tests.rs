@@ -49,7 +49,7 @@ fn first(lines: &[Vec<DVec2>]) -> Option<Kind> {
 fn an_outline_with_a_midrib_that_leaves_it_as_petiole_is_a_leaf() {
     let lines = [leaf(p(0.0, 0.0), p(6.0, 6.0), 0.5), vec![p(-1.5, -1.5), p(0.0, 0.0), p(3.5, 3.5)]];
     assert_eq!(first(&lines), Some(Kind::Leaf));
-    // Without the line it may be anything that is pointed.
+    // Without the line it may be any pointed shape.
     assert_eq!(first(&lines[..1]), None);
     // A stalk on a round outline is an apple's.
     assert_eq!(first(&[ring(p(0.0, 0.0), 3.0), vec![p(0.0, 3.0), p(0.4, 4.2)]]), None);
@@ -209,4 +209,168 @@ fn half_a_ball_on_a_narrow_stem_is_a_mushroom_and_a_round_crown_is_not() {
     assert!(!is_mushroom(&[ring(p(0.0, 5.5), 2.6), stem.clone()]), "widest in its middle");
     let conifer = vec![p(-3.0, 3.0), p(0.0, 7.5), p(3.0, 3.0), p(-3.0, 3.0)];
     assert!(!is_mushroom(&[conifer, stem]), "it runs out to a point");
+}
+
+#[test]
+fn a_column_with_arms_that_turn_up_is_a_cactus_and_one_with_arms_that_hang_is_not() {
+    let dome = |k: u8| ops::sin_cos(0.5 * ops::TAU * f64::from(k) / 16.0);
+    let mut body = vec![p(1.0, 0.0)];
+    body.extend((0..=16).map(dome).map(|(s, c)| p(c, 6.0 + s)));
+    body.push(p(-1.0, 0.0));
+    let ground = vec![p(-2.0, 0.0), p(2.0, 0.0)];
+    let arm = |end: f64| vec![p(1.0, 3.0), p(2.4, 3.0), p(2.8, end)];
+    let other = vec![p(-1.0, 2.2), p(-2.2, 2.2), p(-2.6, 4.0)];
+    let lines = [body.clone(), ground.clone(), arm(5.0), other.clone()];
+    let proposals = seen(&lines);
+    let cactus = proposals.iter().find(|p| p.kind == Kind::Cactus).expect("a cactus");
+    assert_eq!((cactus.word, cactus.parts.len()), (Some("cactus"), 4));
+    let is_cactus = |lines: &[Vec<DVec2>]| seen(lines).iter().any(|p| p.kind == Kind::Cactus);
+    assert!(!is_cactus(&[body, ground.clone(), arm(1.0), other.clone()]), "branches hang");
+    let cone = vec![p(1.0, 0.0), p(0.0, 7.0), p(-1.0, 0.0)];
+    assert!(!is_cactus(&[cone, ground, arm(5.0), other]), "it has no round top");
+}
+
+#[test]
+fn leaves_over_one_another_with_midribs_are_loose_leaves_and_petals_from_one_base_are_not() {
+    let front = leaf(p(0.0, 0.0), p(6.0, 6.0), 0.4);
+    let rib = vec![p(-0.8, -0.8), p(0.0, 0.0), p(3.5, 3.5)];
+    // It goes behind the first one, on whose side both its ends lie.
+    let behind = [arc(p(1.0, 3.0), p(-3.0, 4.0), p(-2.5, 9.0)), arc(p(-2.5, 9.0), p(1.0, 9.0), p(2.6, 5.2))];
+    let its_rib = vec![p(0.9, 4.6), p(-1.0, 7.0)];
+    let [one, two] = behind;
+    let lines = [front, rib, one, two, its_rib];
+    let found = seen(&lines);
+    let leaves = found.iter().find(|p| p.kind == Kind::Leaf).expect("leaves");
+    let blades = leaves.parts.iter().filter(|p| p.class == ink::StrokeClass::Blade);
+    assert_eq!(blades.count(), 2);
+    let petals = [p(-4.0, 5.0), p(0.0, 7.0), p(4.0, 5.0)];
+    let ribbed: Vec<Vec<DVec2>> =
+        petals.iter().flat_map(|&tip| [leaf(DVec2::ZERO, tip, 0.3), vec![tip * 0.1, tip * 0.6]]).collect();
+    assert!(!seen(&ribbed).iter().any(|p| p.kind == Kind::Leaf));
+}
+
+#[test]
+fn the_narrow_face_below_a_pointed_crown_is_its_trunk() {
+    let crown = vec![p(-3.0, 2.0), p(0.0, 9.0), p(3.0, 2.0), p(-3.0, 2.0)];
+    let trunk = vec![p(-1.0, 2.0), p(-1.4, 0.0), p(1.4, 0.0), p(1.0, 2.0)];
+    let found = seen(&[crown, trunk]);
+    let conifer = found.first().expect("a conifer");
+    let classes: Vec<ink::StrokeClass> = conifer.parts.iter().map(|p| p.class).collect();
+    assert_eq!(classes, [ink::StrokeClass::Crown, ink::StrokeClass::TrunkOutline]);
+}
+
+#[test]
+fn leaves_over_a_root_may_be_drawn_in_one_outline() {
+    let body =
+        vec![p(-1.6, 6.0), p(-1.2, 7.0), p(0.0, 7.3), p(1.2, 7.0), p(1.6, 6.0), p(0.0, 0.0), p(-1.6, 6.0)];
+    let tuft =
+        [[0.3, 7.3], [1.4, 9.6], [0.5, 8.6], [0.0, 10.2], [-0.5, 8.6], [-1.4, 9.6], [-0.3, 7.3], [0.3, 7.3]];
+    let tuft: Vec<DVec2> = tuft.into_iter().map(DVec2::from).collect();
+    let found = seen(&[body, tuft]);
+    assert_eq!(found.first().map(|p| (p.kind, p.word)), Some((Kind::Vegetable, Some("carrot"))));
+}
+
+#[test]
+fn balls_packed_on_a_stalk_are_a_bunch_and_petals_round_a_disc_are_not() {
+    let rows = [(4, 0.0), (3, -1.75), (2, -3.5), (1, -5.25)];
+    let balls = rows.iter().flat_map(|&(count, y)| {
+        (0..count).map(move |k| ring(p(2.0 * f64::from(k) - f64::from(count), y), 1.0))
+    });
+    let mut lines: Vec<Vec<DVec2>> = balls.collect();
+    let stalk = vec![p(-1.0, 0.9), p(-0.6, 3.0)];
+    lines.push(stalk);
+    let found = seen(&lines);
+    assert_eq!(found.first().map(|p| (p.kind, p.word)), Some((Kind::Fruit, Some("grapes"))));
+    assert_eq!(found[0].parts.iter().filter(|p| p.class == ink::StrokeClass::Fruit).count(), 10);
+    let petals = (0..6).map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 6.0));
+    let mut flower: Vec<Vec<DVec2>> = petals.map(|(s, c)| ring(p(c, s) * 2.0, 1.0)).collect();
+    flower.push(ring(DVec2::ZERO, 1.0));
+    flower.push(vec![p(0.0, -3.0), p(0.0, -9.0)]);
+    assert_eq!(first(&flower), Some(Kind::Flower));
+}
+
+#[test]
+fn lobes_round_a_ring_on_a_stem_are_petals_also_in_a_pot() {
+    let head: Vec<DVec2> = (0..=120)
+        .map(|k| {
+            let turn = ops::TAU * f64::from(k) / 120.0;
+            let (sin, cos) = ops::sin_cos(turn);
+            p(0.0, 9.0) + p(cos, sin) * (2.6 + 0.5 * ops::sin(5.0 * turn))
+        })
+        .collect();
+    let (disc, stem) = (ring(p(0.0, 9.0), 0.7), vec![p(0.0, 6.9), p(0.0, 3.0)]);
+    let free = [head.clone(), disc.clone(), vec![p(0.0, 6.9), p(0.0, 0.0)]];
+    let found = seen(&free);
+    assert_eq!(found.first().map(|p| (p.kind, p.heads[0].len())), Some((Kind::Flower, 5)));
+    // Without the ring it is the crown of a tree.
+    assert_eq!(first(&[head.clone(), stem.clone()]), None);
+    let pot = vec![p(-1.8, 3.0), p(-1.2, 0.0), p(1.2, 0.0), p(1.8, 3.0), p(-1.8, 3.0)];
+    let found = seen(&[head, disc, stem, pot]);
+    let potted = found.first().expect("a potted flower");
+    assert_eq!((potted.kind, potted.heads[0].len()), (Kind::HousePlant, 5));
+    assert!(potted.parts.iter().any(|p| p.class == ink::StrokeClass::Pot));
+}
+
+#[test]
+fn a_cap_over_two_lines_on_the_ground_is_a_mushroom() {
+    let mut cap: Vec<DVec2> = (0..=24)
+        .map(|k| ops::sin_cos(0.5 * ops::TAU * f64::from(k) / 24.0))
+        .map(|(s, c)| p(3.0 * c, 3.5 + 2.8 * s))
+        .collect();
+    cap.push(cap[0]);
+    let sides = [-0.8, 0.8].map(|x| vec![p(x, 3.2), p(x, 0.0)]);
+    let [left, right] = sides;
+    let found = seen(&[cap, left, right, vec![p(-2.0, 0.0), p(2.0, 0.0)]]);
+    let mushroom = found.iter().find(|p| p.word == Some("mushroom")).expect("a mushroom");
+    let count = |class: ink::StrokeClass| mushroom.parts.iter().filter(|p| p.class == class).count();
+    let (bodies, ground) = (count(ink::StrokeClass::Fruit), count(ink::StrokeClass::Ground));
+    assert_eq!((bodies, bodies + ground), (2, mushroom.parts.len()));
+}
+
+#[test]
+fn a_blade_with_pointed_lobes_is_a_leaf_and_tiers_are_a_conifer() {
+    let half = [
+        [0.4, 2.0],
+        [2.0, 1.6],
+        [1.7, 2.6],
+        [3.6, 3.9],
+        [2.9, 4.2],
+        [3.1, 5.2],
+        [1.4, 4.4],
+        [1.5, 6.2],
+        [0.9, 5.9],
+    ];
+    let mirrored = half.iter().rev().map(|q| p(-q[0], q[1]));
+    let mut maple: Vec<DVec2> = half.iter().map(|&q| DVec2::from(q)).collect();
+    maple.push(p(0.0, 8.0));
+    maple.extend(mirrored);
+    maple.push(maple[0]);
+    let petiole = vec![p(0.0, 0.0), p(0.0, 3.5)];
+    assert_eq!(first(&[maple, petiole]), Some(Kind::Leaf));
+    let tiers = [[0.0, 9.0], [1.6, 6.6], [0.8, 6.6], [2.4, 4.4], [1.4, 4.4], [3.2, 2.0]];
+    let mut conifer: Vec<DVec2> = tiers.iter().map(|&q| DVec2::from(q)).collect();
+    conifer.extend(tiers.iter().rev().map(|q| p(-q[0], q[1])));
+    assert_eq!(first(&[conifer, vec![p(0.0, 0.0), p(0.0, 2.0)]]), Some(Kind::Conifer));
+}
+
+#[test]
+fn two_lenses_are_leaves_and_two_slices_are_not() {
+    let lens = |x: f64| leaf(p(x, 0.0), p(x + 3.0, 3.0), 0.5);
+    assert_eq!(first(&[lens(0.0), lens(4.5)]), Some(Kind::Leaf));
+    let slice = |x: f64| {
+        let mut line = arc(p(x, 0.0), p(x + 3.6, -0.6), p(x + 3.0, 3.0));
+        line.push(p(x, 0.0));
+        line
+    };
+    assert_eq!(first(&[slice(0.0), slice(4.5)]), None);
+}
+
+#[test]
+fn a_round_body_with_ribs_is_one_fruit() {
+    let ribs = [-1.2, 1.2].map(|x| arc(p(x * 0.6, 2.5), p(x * 1.4, 0.0), p(x * 0.6, -2.5)));
+    let [left, right] = ribs;
+    let pumpkin = [ring(DVec2::ZERO, 3.0), left, right, vec![p(0.0, 3.0), p(0.3, 4.0)]];
+    let found = seen(&pumpkin);
+    let fruit = found.iter().find(|p| p.kind == Kind::Fruit).expect("a fruit");
+    assert_eq!(fruit.parts.len(), 2);
 }
